@@ -177,6 +177,31 @@ void vtkStratusTetrahedraRepresentation::SetDevice(const char* device)
   this->Mapper->SetDevice(device);
 }
 
+void vtkStratusTetrahedraRepresentation::SetShade(bool on)
+{
+  this->Property->SetShade(on);
+}
+
+void vtkStratusTetrahedraRepresentation::SetAmbient(double share)
+{
+  this->Property->SetAmbient(share);
+}
+
+void vtkStratusTetrahedraRepresentation::SetDiffuse(double share)
+{
+  this->Property->SetDiffuse(share);
+}
+
+void vtkStratusTetrahedraRepresentation::SetSpecular(double share)
+{
+  this->Property->SetSpecular(share);
+}
+
+void vtkStratusTetrahedraRepresentation::SetSpecularPower(double power)
+{
+  this->Property->SetSpecularPower(power);
+}
+
 void vtkStratusTetrahedraRepresentation::SetNumberOfIsosurfaces(int number)
 {
   this->Property->GetIsoSurfaceValues()->SetNumberOfContours(number);
