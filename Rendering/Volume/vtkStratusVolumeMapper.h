@@ -14,7 +14,8 @@
  * - the blend modes composite, maximum and minimum intensity, average intensity (AverageIPScalarRange), additive, isosurface
  *   (vtkVolumeProperty::GetIsoSurfaceValues(), up to 16, linear interpolation, every root of the field in each cell), and slice
  *   (SliceFunction: a vtkPlane, vtkSphere, vtkCylinder, vtkCone or vtkQuadric without a transform, in the world);
- * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): the whole picture lies between them, at its first depth;
+ * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): in composite rays are cast up to each of them, so that the parts
+ *   between lie in order; in other modes the whole picture lies between them, at its first depth;
  * - hardware picking, which finds the volume where it is visible;
  * - arrays of any number of components by one component or the magnitude (VectorMode);
  * - pictures as images, not in the window (RenderToImage).

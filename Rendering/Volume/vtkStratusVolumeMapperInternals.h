@@ -92,6 +92,7 @@ private:
   bool SetContours(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
+  bool CastTo(const stratus_ray_cast_options& options, const float* depths, std::vector<float>& rgba);
   bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error);
   vtkStratusPicture::Others FindOthers(vtkRenderer* renderer, vtkVolume* prop) const;
 
@@ -99,7 +100,7 @@ private:
   vtkStratusPicture Picture;
   bool HasPicture = false;
   bool HasSamples = false; // the picture was drawn with CountSamples
-  std::vector<float> Rgba, Depth;
+  std::vector<float> Rgba, Depth, PartDepth;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples;             // empty: not counted
   vtkSmartPointer<vtkAbstractArray> Offered; // the array of the tree that the caster was last given

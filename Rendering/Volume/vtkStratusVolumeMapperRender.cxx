@@ -113,6 +113,21 @@ bool vtkStratusVolumeMapper::Internals::Cast(
   return status == STRATUS_OK;
 }
 
+// Casts the rays of the last picture up to window depths, in place of the opaque ones. Reports stay those of the picture.
+bool vtkStratusVolumeMapper::Internals::CastTo(const stratus_ray_cast_options& options, const float* depths, std::vector<float>& rgba)
+{
+  if (this->Picture.IsWhole(depths)) {
+    rgba = this->Rgba;
+    return true;
+  }
+  const stratus_image image = this->Picture.MakeRoom(rgba, this->PartDepth, depths);
+  stratus_ray_cast_options plain = options;
+  stratus_ray_cast_report report;
+  plain.audit = 0;
+  return stratus_ray_caster_render(
+           this->Caster, &this->Image.GetVolume(), this->Functions.data(), &this->Picture.Camera, &plain, &image, &report) == STRATUS_OK;
+}
+
 bool vtkStratusVolumeMapper::Internals::Describe(
   vtkRenderer* renderer, vtkVolume* prop, stratus_ray_cast_options& options, std::string& error)
 {
@@ -176,6 +191,9 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   std::copy_n(this->Report.window, 4, pixels.Window);
   pixels.Depth = &this->Depth;
   pixels.WritesDepth = this->IsFirstHit();
+  if (!this->IsFirstHit() && this->Mapper->BlendMode == vtkVolumeMapper::COMPOSITE_BLEND) {
+    pixels.Cast = [this, options](const float* depths, std::vector<float>& rgba) { return this->CastTo(options, depths, rgba); };
+  }
   const bool drawn = this->Display.Draw(renderer, this->Picture, pixels, error);
   if (drawn) {
     this->DrawMilliseconds = Now() - cast + read - start;
