@@ -28,3 +28,12 @@ foreach (test IN ITEMS pictures datasets)
     "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview")
   set_tests_properties(paraview_${test} PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin")
 endforeach ()
+
+find_program(STRATUS_MPIEXEC mpiexec)
+mark_as_advanced(STRATUS_MPIEXEC)
+if (STRATUS_MPIEXEC)
+  stratus_add_test(paraview_ranks paraview ${stratus_display} "${CMAKE_CURRENT_SOURCE_DIR}/ParaView/test_ranks" "${paraview}/usr/bin/pvbatch"
+    "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview_ranks")
+  stratus_test_needs(paraview_ranks NOTHING)
+  set_tests_properties(paraview_ranks PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin" PROCESSORS 2)
+endif ()

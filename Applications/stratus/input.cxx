@@ -65,14 +65,14 @@ void set_values(vtkDataSet* image, vtkDataArray* array, bool on_cells, stratus_v
 
 namespace cli {
 
-vtkSmartPointer<vtkDataObject> read_data(const std::string& path)
+vtkSmartPointer<vtkDataObject> read_data(const std::string& path, const std::string& variable, const std::string& raw)
 {
-  return series(path).read(0);
+  return series(path, variable, raw).read(0);
 }
 
-vtkSmartPointer<vtkImageData> read_image(const std::string& path)
+vtkSmartPointer<vtkImageData> read_image(const std::string& path, const std::string& variable, const std::string& raw)
 {
-  const vtkSmartPointer<vtkDataObject> output = read_data(path);
+  const vtkSmartPointer<vtkDataObject> output = read_data(path, variable, raw);
   vtkImageData* image = vtkImageData::SafeDownCast(output);
   if (!image) {
     throw failure("'" + path + "' holds " + (output ? output->GetClassName() : "nothing") + ", not an image (vtkImageData)");
@@ -186,10 +186,10 @@ bool is_scene(const std::string& source)
   return !exists && has_scene(source);
 }
 
-input::input(context& core, const std::string& source, const std::string& array) : Core(core)
+input::input(context& core, const std::string& source, const std::string& array, const std::string& raw) : Core(core)
 {
   if (!is_scene(source)) {
-    this->set(read_image(source), source, array);
+    this->set(read_image(source, array, raw), source, array);
     return;
   }
   if (!array.empty()) {

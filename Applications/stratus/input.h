@@ -11,10 +11,10 @@ class vtkRectilinearGrid;
 
 namespace cli {
 
-// Reads the first step of any file that series reads.
-vtkSmartPointer<vtkDataObject> read_data(const std::string& path);
+// Reads the first step of any file that series reads, which says what the others are.
+vtkSmartPointer<vtkDataObject> read_data(const std::string& path, const std::string& variable = "", const std::string& raw = "");
 // Reads an image as read_data() does, and fails for other data.
-vtkSmartPointer<vtkImageData> read_image(const std::string& path);
+vtkSmartPointer<vtkImageData> read_image(const std::string& path, const std::string& variable = "", const std::string& raw = "");
 
 // Borrows the array's values. A sheet (an image with one point along an axis) gets the thickness of a cell, because it would be invisible
 // otherwise.
@@ -34,7 +34,7 @@ bool is_scene(const std::string& source);
 class input
 {
 public:
-  input(context& core, const std::string& source, const std::string& array);
+  input(context& core, const std::string& source, const std::string& array, const std::string& raw);
   // Takes an image or a rectilinear grid that was read from the file `source`.
   input(context& core, const std::string& source, vtkDataSet* image, const std::string& array);
   ~input();

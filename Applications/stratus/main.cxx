@@ -85,7 +85,7 @@ void info(const cli::options& o)
 {
   if (cli::is_scene(o.source)) {
     cli::context core("host", o.threads);
-    const cli::input in(core, o.source, o.array);
+    const cli::input in(core, o.source, o.array, o.raw);
     std::printf("%s\n", o.source.c_str());
     print_volume(o, core, in);
     return;

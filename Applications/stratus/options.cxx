@@ -44,7 +44,7 @@ What is drawn
                           with .x, .y or .z behind its name a component. --variable is the same
   --raw NXxNYxNZ:TYPE     what a file of bare values (.raw) does not tell: its size, x fastest, and int8, uint8, int16, uint16, int32,
                           uint32, float32 or float64; then, with a colon before each, big (default little), a spacing DX,DY,DZ, +N
-                          for N bytes before the values. To be drawn or told of
+                          for N bytes before the values
   --time T                the step: first, last, step:N from 0, a time in the file's units, or a length of time with its unit (3h, 90min,
                           "2 d") from where the file counts from, with + before it from its first step. The nearest step is taken, and told
   --frames OUT-%04d.png   a film: a picture of every step (--time all), all with one look and one camera
@@ -57,6 +57,7 @@ What is drawn
   --crop-regions N        of the 27 regions that the planes of --crop make, bit x + 3 y + 9 z for each that is shown, 0..134217727
                           (default 8192: between all of them)
   --mask FILE             an image of one byte a value, 0 where nothing is to be seen
+  --mask-raw ...          what --raw is, for a mask of bare values
   --unit-distance D       world length that alpha is per (default: a voxel's edge)
   --exaggerate F          heights F times as large (along the upward axis)
   --log                   colours, and a guessed opacity, over the logarithm of the value, four decades at most
@@ -86,8 +87,9 @@ How
   --jitter SEED           move each ray's samples by a part of their distance, so that grain turns into noise; another seed, another noise
   --structure S           auto, none, block, distance, octant, hybrid: how empty space is skipped; never changes the picture
   --mode M                composite; first-hit: what shows at all as solid voxels, lit from the eye; maximum, minimum: of the values along a
-                          ray, in their colour; average, additive: of opacity times value, in grey; isosurface (default composite)
+                          ray, in their colour; average, additive: of opacity times value, in grey; isosurface; slice (default composite)
   --contours V,V,...      of isosurfaces: 1 to 16 values, each in the colour and opacity that the functions give it
+  --slice X,Y,Z,NX,NY,NZ  of slices: the plane through a point, and its normal, in the file's coordinates
   --average-range A,B     of averages: the values that count (default: all)
   --method M              of unstructured grids: rays march through faces, or cells are sorted and projected; the same picture. auto, march,
                           project (default auto: what should cost less)
@@ -191,7 +193,7 @@ stratus_tree_method method_named(const std::string& text)
 stratus_mode mode_named(const std::string& text)
 {
   std::string names;
-  for (int i = STRATUS_MODE_COMPOSITE; i <= STRATUS_MODE_ISOSURFACE; ++i) {
+  for (int i = STRATUS_MODE_COMPOSITE; i <= STRATUS_MODE_SLICE; ++i) {
     const stratus_mode mode = static_cast<stratus_mode>(i);
     if (text == stratus_mode_name(mode)) {
       return mode;
@@ -326,6 +328,7 @@ constexpr struct {
   { "--crop", [](options& o, text word, text value) { o.crop = numbers(value, word, 6, 6); } },
   { "--crop-regions", [](options& o, text word, text value) { o.crop_regions = whole_number(value, word, 0, STRATUS_CROP_ALL); } },
   { "--mask", keep<&options::mask> },
+  { "--mask-raw", keep<&options::mask_raw> },
   { "--unit-distance", keep_positive<&options::unit_distance> },
   { "--exaggerate", keep_positive<&options::exaggeration> },
   { "--caption", keep<&options::caption> },
@@ -343,6 +346,7 @@ constexpr struct {
   { "--structure", [](options& o, text, text value) { o.structure = structure_named(value); } },
   { "--mode", [](options& o, text, text value) { o.mode = mode_named(value); } },
   { "--contours", [](options& o, text word, text value) { o.contours = numbers(value, word, 1, STRATUS_CONTOURS_MAX); } },
+  { "--slice", [](options& o, text word, text value) { o.slice = numbers(value, word, 6, 6); } },
   { "--average-range", [](options& o, text word, text value) { o.average = numbers(value, word, 2, 2); } },
   { "--method", set_method },
   { "--normals", [](options& o, text, text value) { o.normals = normals_named(value); } },
@@ -381,11 +385,13 @@ template <class Entry> bool set_companion(companion& last, const Entry* entry, c
 {
   options alone;
   const std::string word = entry->word;
-  if (word != "--array" && word != "--variable" && word != "--opacity" && word != "--color" && word != "--unit-distance") {
+  if (word != "--array" && word != "--variable" && word != "--raw" && word != "--opacity" && word != "--color" &&
+    word != "--unit-distance") {
     return false;
   }
   entry->set(alone, word, value);
   last.array = alone.array.empty() ? last.array : alone.array;
+  last.raw = alone.raw.empty() ? last.raw : alone.raw;
   last.opacity = alone.opacity.empty() ? last.opacity : alone.opacity;
   last.color = alone.color.empty() ? last.color : alone.color;
   last.unit_distance = alone.unit_distance > 0.0 ? alone.unit_distance : last.unit_distance;
@@ -424,8 +430,14 @@ void check_complete(const options& o)
     if (o.mode == STRATUS_MODE_ISOSURFACE && o.contours.empty()) {
       throw usage("--mode isosurface: which values? Give --contours V,V,...");
     }
+    if ((o.mode == STRATUS_MODE_SLICE) == o.slice.empty()) {
+      throw usage(o.slice.empty() ? "--mode slice: where? Give --slice X,Y,Z,NX,NY,NZ" : "--slice is for --mode slice");
+    }
     if (o.crop_regions != STRATUS_CROP_INSIDE && o.crop.empty()) {
       throw usage("--crop-regions: between which planes? Give --crop X,X,Y,Y,Z,Z");
+    }
+    if (!o.mask_raw.empty() && o.mask.empty()) {
+      throw usage("--mask-raw: of which file? Give --mask FILE");
     }
     if (o.cell_error > 0.0 && o.sampling != STRATUS_SAMPLING_AUTO && o.sampling != STRATUS_SAMPLING_CELLS) {
       throw usage("--cell-error is for --sampling cells, or auto");
@@ -477,7 +489,7 @@ options parse(int argc, char* argv[])
     } else if (o.source.empty()) {
       o.source = word;
     } else if (o.command == "render" && o.companions.size() + 1 < STRATUS_SEVERAL_MAX) {
-      o.companions.push_back({ word, "", "", "", 0.0 });
+      o.companions.push_back({ word, "", "", "", "", 0.0 });
     } else {
       throw usage("one INPUT at a time, or of render up to " + std::to_string(STRATUS_SEVERAL_MAX) + ": '" + word + "' is too many");
     }

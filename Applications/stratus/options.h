@@ -12,7 +12,7 @@ namespace cli {
 
 // A volume that is drawn with the first one, and how it looks.
 struct companion {
-  std::string source, array, opacity, color;
+  std::string source, array, raw, opacity, color;
   double unit_distance = 0.0;
 };
 
@@ -62,11 +62,13 @@ struct options {
   stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_AUTO; // render: method for unstructured grids
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
   std::vector<double> contours; // isosurface
+  std::vector<double> slice;    // slice: a point of the plane, and its normal
   std::vector<double> average;  // average: empty, or the range of values that count
   std::vector<double> crop;     // empty, or six planes across the grid's axes
   int crop_regions = STRATUS_CROP_INSIDE;
-  std::string mask; // file of an image of bytes, 0 where the volume is hidden
-  int jitter = -1;  // seed, or -1: none
+  std::string mask;     // file of an image of bytes, 0 where the volume is hidden
+  std::string mask_raw; // what a mask in a .raw file does not tell
+  int jitter = -1;      // seed, or -1: none
   stratus_normals normals = STRATUS_NORMALS_FACES;
   stratus_structure structure = STRATUS_STRUCTURE_AUTO;
   stratus_sampling sampling = STRATUS_SAMPLING_AUTO;

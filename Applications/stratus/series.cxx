@@ -63,12 +63,22 @@ private:
   std::streambuf* Stream;
 };
 
-// Extracts the message. VTK puts "ERROR: In file, line n\nvtkClass (0x..): " before it.
+// Extracts the first message that says more than that a reader failed. VTK puts "ERROR: In file, line n\nvtkClass (0x..): " before each,
+// and two ends of line behind it.
 std::string first_message(const std::string& heard)
 {
-  size_t at = heard.find("): ");
-  std::string text = heard.substr(at == std::string::npos ? 0 : at + 3);
-  text = text.substr(0, text.find("\n\n"));
+  std::string text;
+  bool says_nothing = true;
+  for (size_t begin = 0, end; says_nothing && begin < heard.size(); begin = end + 2) {
+    end = std::min(heard.find("\n\n", begin), heard.size());
+    text = heard.substr(begin, end - begin);
+    const size_t at = text.find("): ");
+    text = text.substr(at == std::string::npos ? 0 : at + 3);
+    says_nothing = text.find("returned failure for request") != std::string::npos || text.find_first_not_of('\n') == std::string::npos;
+  }
+  if (says_nothing) {
+    return "its reader cannot make sense of it: it is cut short, damaged, or of another kind than its name says";
+  }
   std::replace(text.begin(), text.end(), '\n', ' ');
   while (!text.empty() && text.back() == ' ') {
     text.pop_back();

@@ -72,7 +72,8 @@ private:
 void volume_drawing::take(const cli::routed& data)
 {
   const cli::options& o = this->Options;
-  this->Input.reset(data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array));
+  this->Input.reset(
+    data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array, o.raw));
   this->Input->volume.revision = ++this->Steps;
   this->Up = o.up.empty() ? this->Input->up_axis : o.up[0] - 'x';
   this->Input->volume.matrix[5 * this->Up] *= o.exaggeration;
@@ -89,7 +90,7 @@ void volume_drawing::read_more()
     more.o.opacity = companion.opacity;
     more.o.color = companion.color;
     more.o.unit_distance = companion.unit_distance;
-    more.input = std::make_unique<cli::input>(this->Core, companion.source, companion.array);
+    more.input = std::make_unique<cli::input>(this->Core, companion.source, companion.array, companion.raw);
     more.input->volume.matrix[5 * this->Up] *= this->Options.exaggeration;
     more.functions = cli::make_transfer(more.input->volume, more.input->scene, more.o);
     this->Core.check(stratus_ray_caster_create(this->Core, &more.caster), "ray caster");
@@ -147,7 +148,7 @@ void volume_drawing::choose_parts(stratus_ray_cast_options& cast)
     return;
   }
   if (!this->Mask) {
-    this->Mask = std::make_unique<cli::input>(this->Core, o.mask, "");
+    this->Mask = std::make_unique<cli::input>(this->Core, o.mask, "", o.mask_raw);
   }
   const stratus_volume& bytes = this->Mask->volume;
   if (bytes.type != STRATUS_UINT8 || !std::equal(bytes.dimensions, bytes.dimensions + 3, volume.dimensions)) {
@@ -166,6 +167,11 @@ void volume_drawing::draw(const stratus_image& image)
   std::copy(o.average.begin(), o.average.end(), cast.average_range);
   cast.contour_count = static_cast<int>(o.contours.size());
   std::copy(o.contours.begin(), o.contours.end(), cast.contours);
+  for (size_t a = 0; a < 3 && !o.slice.empty(); ++a) {
+    const double scale = static_cast<int>(a) == this->Up ? o.exaggeration : 1.0;
+    cast.slice.center[a] = o.slice[a] * scale;
+    cast.slice.linear[a] = o.slice[3 + a] / scale;
+  }
   this->choose_parts(cast);
   cast.jitter = o.jitter < 0 ? 0 : 1;
   cast.jitter_seed = static_cast<uint32_t>(std::max(0, o.jitter));
@@ -236,7 +242,7 @@ void volume_drawing::tell_report() const
   row(
     "structure", cli::format("%s (%s KiB)", stratus_structure_name(r.structure), cli::grouped((r.structure_bytes + 1023) / 1024).c_str()));
   row("mode", stratus_mode_name(o.mode));
-  if (o.mode != STRATUS_MODE_FIRST_HIT && o.mode != STRATUS_MODE_ISOSURFACE) {
+  if (o.mode != STRATUS_MODE_FIRST_HIT && o.mode != STRATUS_MODE_ISOSURFACE && o.mode != STRATUS_MODE_SLICE) {
     row("sampling",
       stratus_sampling_name(r.sampling) +
         (r.sampling == STRATUS_SAMPLING_CELLS ? std::string() : cli::format(", every %.4g", r.sample_distance)));

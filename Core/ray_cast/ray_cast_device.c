@@ -17,7 +17,7 @@ _Static_assert(sizeof(stratus_ray_cast_arguments) ==
     sizeof(stratus_picture_arguments) + sizeof(stratus_ray_camera) + sizeof(stratus_ray_lattice) + sizeof(float) +
       sizeof(stratus_ray_crop) + sizeof(stratus_ray_values) + sizeof(stratus_ray_grid_arguments) + sizeof(stratus_ray_map) +
       sizeof(stratus_ray_rough) + sizeof(stratus_table_arguments) + sizeof(stratus_ray_mode) + sizeof(stratus_ray_lights) +
-      sizeof(stratus_ray_media),
+      sizeof(stratus_ray_media) + sizeof(stratus_ray_function_2d) + sizeof(stratus_ray_surface),
   "arguments must have no padding");
 
 void stratus_ray_device_destroy(stratus_ray_caster* caster)
@@ -81,10 +81,12 @@ static stratus_status upload_data(stratus_ray_caster* caster, const stratus_ray_
 static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame)
 {
   stratus_ray_device* d = caster->device;
-  const uint64_t table_serial = 2 * caster->table_serial + caster->shades; /* shading has a table of its own */
+  /* shading has a table of its own, and so have functions of two variables */
+  const uint64_t table_serial = 3 * caster->table_serial + (caster->transfer_2d.on ? 2 : caster->shades);
   if (d->table_serial != table_serial) {
-    const size_t bytes = stratus_table_words(caster->made.table) * sizeof(float);
-    TRY(replace(caster, TABLE, frame->table, caster->shades ? caster->shading_tables.bytes : bytes));
+    size_t bytes = 0;
+    const void* table = stratus_ray_table_of(caster, &bytes);
+    TRY(replace(caster, TABLE, table, bytes));
     d->table_serial = table_serial;
   }
   const uint64_t map_serial = frame->map ? caster->map_serial : 0; /* 0 without a map, so that the device keeps none borrowed */
@@ -143,6 +145,8 @@ static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_
     [STRATUS_VARIANT_ISOSURFACE] = STRATUS_RAY_ISOSURFACE,
     [STRATUS_VARIANT_CELLS] = STRATUS_RAY_CELLS,
     [STRATUS_VARIANT_LOCAL] = STRATUS_RAY_LOCAL,
+    [STRATUS_VARIANT_TRANSFER_2D] = STRATUS_RAY_TRANSFER_2D,
+    [STRATUS_VARIANT_SLICE] = STRATUS_RAY_SLICE,
     [STRATUS_VARIANT_SHADING_MIDPOINT] = STRATUS_RAY_SHADING,
     [STRATUS_VARIANT_SHADING_PREINTEGRATED] = STRATUS_RAY_SHADING };
   char defines[256];

@@ -40,6 +40,7 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
       caster->parts[c] = NULL;
     }
     stratus_ray_shading_release(caster);
+    stratus_ray_transfer_2d_release(caster);
     stratus_ray_device_destroy(caster);
   }
 }

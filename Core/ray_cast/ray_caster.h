@@ -10,6 +10,7 @@
 #include "ray_modes_render.h"
 #include "ray_sampling.h"
 #include "ray_shading_table.h"
+#include "ray_transfer_2d_host.h"
 #include "volume.h"
 
 typedef struct stratus_ray_device stratus_ray_device;
@@ -77,6 +78,7 @@ struct stratus_ray_caster {
   bool in_several;                    /* this picture is one of several volumes: rules that go from cell to cell are out */
   bool shades, dependent; /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */
   stratus_ray_shading_tables shading_tables;
+  stratus_ray_transfer_2d transfer_2d;
   stratus_occupancy* occupancy;
   stratus_distance_map* map;
   stratus_distance_map* rough; /* which blocks rule local takes cell by cell; NULL: none, for it was not taken */
@@ -138,7 +140,8 @@ uint64_t stratus_ray_differing(const stratus_image* image, const float* rgba, co
 stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
 
-/* ray_frame.c: the arrays that a frame reads and writes. */
+/* ray_frame.c: the arrays that a frame reads and writes, and the table among them with its size. */
+const void* stratus_ray_table_of(const stratus_ray_caster* caster, size_t* bytes);
 stratus_ray_cast_frame stratus_ray_frame_of(
   const stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, bool with_map);
 

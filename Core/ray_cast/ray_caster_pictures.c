@@ -137,6 +137,12 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
     return STRATUS_INVALID_ARGUMENT;
   }
   options = options ? options : &defaults;
+  if (options->transfer_2d) {
+    TRY(stratus_volume_check(caster->context, volume));
+    TRY(stratus_ray_transfer_2d_check(caster->context, volume, options));
+  }
+  TRY(stratus_ray_transfer_2d_update(caster, options));
+  transfer = options->transfer_2d ? &caster->transfer_2d.shown : transfer;
   TRY(stratus_ray_check_input(caster->context, volume, transfer, options));
   TRY(stratus_image_check(caster->context, image));
   TRY((draws_parts(volume, options) ? draw_parts : stratus_ray_render_one)(caster, volume, transfer, camera, options, image, &mine));

@@ -13,6 +13,7 @@
 #include "ray_probe.h"
 #include "ray_shading_render.h"
 #include "ray_shading_table.h"
+#include "ray_slice_host.h"
 #include "ray_trial.h"
 
 #include <stdio.h>
@@ -43,11 +44,28 @@ static stratus_status check_crop(stratus_context* context, const stratus_ray_cas
   return STRATUS_OK;
 }
 
+/* What lies beyond a clip plane is known a voxel away, of one component. */
+static stratus_status check_clip_gradients(stratus_context* context, const stratus_volume* volume, const stratus_ray_cast_options* options)
+{
+  if (!options->clip_gradients || options->clip_plane_count == 0) {
+    return STRATUS_OK;
+  }
+  if (!isfinite(options->clipped_value)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "clipped value %g, must be finite", options->clipped_value);
+  }
+  if (volume->coordinates[0] || volume->coordinates[1] || volume->coordinates[2] || stratus_volume_components(volume) > 1) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "gradients that clip planes change, of %s: only grids of equal spacing and 1 component",
+      stratus_volume_components(volume) > 1 ? "several components" : "a grid with coordinates");
+  }
+  return STRATUS_OK;
+}
+
 static stratus_status check_options(stratus_context* context, const stratus_ray_cast_options* options)
 {
-  if ((unsigned)options->mode > STRATUS_MODE_ISOSURFACE || (unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
+  if ((unsigned)options->mode > STRATUS_MODE_SLICE || (unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d (0..%d) or normals %d (0..%d) are out of range", (int)options->mode,
-      STRATUS_MODE_ISOSURFACE, (int)options->normals, STRATUS_NORMALS_GRADIENT);
+      STRATUS_MODE_SLICE, (int)options->normals, STRATUS_NORMALS_GRADIENT);
   }
   if ((unsigned)options->structure > STRATUS_STRUCTURE_HYBRID || (unsigned)options->sampling > STRATUS_SAMPLING_CELLS ||
     (unsigned)options->interpolation > STRATUS_INTERPOLATION_NEAREST) {
@@ -89,6 +107,7 @@ stratus_status stratus_ray_check_input(
   TRY(stratus_transfer_check(context, transfer));
   TRY(stratus_ray_shading_check_volume(context, volume, transfer, options));
   TRY(check_options(context, options));
+  TRY(check_clip_gradients(context, volume, options));
   return stratus_ray_shading_check_materials(context, volume, options);
 }
 
@@ -223,6 +242,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     arguments.values.has_hidden = caster->hides;
     stratus_ray_modes_arguments(caster, options, &arguments);
     stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
+    stratus_ray_slice_arguments_of(volume, options, &arguments);
     stratus_ray_frame_structures(
       &caster->grid, caster->made.table, stratus_ray_tolerance(options), caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found && with_map && tries) {

@@ -256,7 +256,8 @@ static stratus_status automatic(stratus_ray_caster* caster, bool times, stratus_
   const int64_t* n = caster->occupancy->blocks;
   bool serves = true;
   *structure = STRATUS_STRUCTURE_NONE;
-  if (caster->occupancy->count == n[0] * n[1] * n[2] && caster->shown.mode == STRATUS_MODE_COMPOSITE) {
+  if (caster->shown.mode == STRATUS_MODE_SLICE ||
+    (caster->occupancy->count == n[0] * n[1] * n[2] && caster->shown.mode == STRATUS_MODE_COMPOSITE)) {
     return STRATUS_OK;
   }
   if (!times) {
@@ -353,9 +354,10 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
   if (wanted == STRATUS_STRUCTURE_AUTO) { /* stratus_ray_try() tells more, where it measures */
     TRY(automatic(caster, times, used));
     snprintf(why, capacity, "%s: %s", stratus_structure_name(*used),
-      *used == STRATUS_STRUCTURE_NONE ? "every block is occupied, nothing to skip"
-        : times                       ? "nothing was measured"
-                                      : "a picture of samples follows from no times");
+      caster->shown.mode == STRATUS_MODE_SLICE ? "a ray takes two samples at most"
+        : *used == STRATUS_STRUCTURE_NONE      ? "every block is occupied, nothing to skip"
+        : times                                ? "nothing was measured"
+                                               : "a picture of samples follows from no times");
     offered = *used == STRATUS_STRUCTURE_HYBRID;
   } else {
     if (wanted == STRATUS_STRUCTURE_HYBRID) {

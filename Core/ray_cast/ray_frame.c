@@ -20,6 +20,8 @@
 #define SMALLEST_SAMPLE_DISTANCE 1e-30
 #define LARGEST_SAMPLE_DISTANCE 1e30
 #define UNBOUNDED 1e30f
+/* Steeper gradients than to a value so large have the same direction, and fall beyond any function of magnitudes. */
+#define CLIPPED_MOST 1e30
 /* The error for which stratus_table.color_slope cuts segments: a twelfth of the change of colour that it allows in a piece, 1/48. */
 #define TABLE_COLOR_ERROR (1.0 / 576.0)
 /* A ray ends where so much of the tolerance is left of its transparency: what lies behind can change no channel by more. Floats tell no
@@ -281,6 +283,8 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
   a->termination =
     (float)(options->termination > 0.0 ? 1.0 - options->termination : stratus_ray_termination(stratus_ray_tolerance(options)));
   set_clip_planes(options, index_to_world, a);
+  a->crop.clipped = options->clip_gradients && options->clip_plane_count > 0;
+  a->crop.clipped_value = (float)fmax(fmin(options->clipped_value - caster->ranges->bias, CLIPPED_MOST), -CLIPPED_MOST);
   set_addressing(volume, a);
   a->grid = caster->grid.arguments;
   const double bias = stratus_volume_bias(volume);
@@ -363,17 +367,28 @@ void stratus_ray_frame_structures(const stratus_ray_grid* grid, const stratus_ta
   stratus_camera_window(eye, right, up, forward, a->camera.parallel, lo, hi, sides, a->camera.window);
 }
 
+const void* stratus_ray_table_of(const stratus_ray_caster* caster, size_t* bytes)
+{
+  const stratus_table* table = caster->made.table;
+  if (caster->transfer_2d.on) {
+    *bytes = caster->transfer_2d.bytes;
+    return caster->transfer_2d.table;
+  }
+  *bytes = caster->shades ? caster->shading_tables.bytes : stratus_table_words(table) * sizeof(float);
+  return caster->shades ? caster->shading_tables.memory : table->sums ? (const void*)table->sums : (const void*)table->rgba;
+}
+
 stratus_ray_cast_frame stratus_ray_frame_of(
   const stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, const stratus_image* image, bool with_map)
 {
-  const void* const table = caster->made.table->sums ? (const void*)caster->made.table->sums : (const void*)caster->made.table->rgba;
+  size_t bytes = 0;
   return (stratus_ray_cast_frame){ .arguments = arguments,
     .values = caster->traversed.values,
     .hidden = caster->hidden,
     .map = with_map ? caster->map->bytes : NULL,
     .grid = caster->grid.table,
     .rough = caster->choice.sampling == STRATUS_SAMPLING_LOCAL ? caster->rough->bytes : NULL,
-    .table = caster->shades ? caster->shading_tables.memory : table,
+    .table = stratus_ray_table_of(caster, &bytes),
     .opaque_depth = image->opaque_depth,
     .rgba = image->rgba,
     .depth = image->depth,

@@ -5,12 +5,13 @@
 #include "ray_cast_host.h"
 #include "ray_caster.h"
 #include "ray_sampling.h"
+#include "ray_slice_host.h"
 
 #include <string.h>
 
 const char* stratus_mode_name(stratus_mode mode)
 {
-  static const char* const names[] = { "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface" };
+  static const char* const names[] = { "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface", "slice" };
   return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
 }
 
@@ -55,6 +56,9 @@ stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_r
   if (options->mode == STRATUS_MODE_FIRST_HIT && (options->mask || (options->crop && options->crop_regions != STRATUS_CROP_INSIDE))) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "first hits with %s are not supported",
       options->mask ? "a mask" : "crop regions other than the inside");
+  }
+  if (options->mode == STRATUS_MODE_SLICE) {
+    return stratus_ray_slice_check(context, &options->slice);
   }
   return options->mode == STRATUS_MODE_ISOSURFACE ? check_contours(context, options) : STRATUS_OK;
 }
@@ -221,8 +225,8 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
     const double error = caster->choice.cell_error * changing_extent(caster->transfers, lo + ranges->bias, hi + ranges->bias);
     a->lattice.pieces_per_bend = error > 0.0 ? (float)fmin(1.0 / (8.0 * error), 1e30) : 0.0f;
   }
-  if (caster->choice.sampling == STRATUS_SAMPLING_CELLS) {
-    a->lattice.jitter = 0; /* rays pass from cell to cell, whatever their lattice */
+  if (caster->choice.sampling == STRATUS_SAMPLING_CELLS || options->mode == STRATUS_MODE_SLICE) {
+    a->lattice.jitter = 0; /* rays pass from cell to cell, or to a surface, whatever their lattice */
   }
   if (caster->choice.sampling == STRATUS_SAMPLING_LOCAL) {
     const stratus_distance_map* map = caster->rough;
@@ -250,8 +254,11 @@ stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
   if (caster->shades) {
     return caster->made.table->sums ? STRATUS_VARIANT_SHADING_PREINTEGRATED : STRATUS_VARIANT_SHADING_MIDPOINT;
   }
-  if (mode == STRATUS_MODE_ISOSURFACE) {
-    return STRATUS_VARIANT_ISOSURFACE;
+  if (caster->transfer_2d.on) {
+    return STRATUS_VARIANT_TRANSFER_2D;
+  }
+  if (mode == STRATUS_MODE_ISOSURFACE || mode == STRATUS_MODE_SLICE) {
+    return mode == STRATUS_MODE_SLICE ? STRATUS_VARIANT_SLICE : STRATUS_VARIANT_ISOSURFACE;
   }
   if (is_extreme(mode) || is_sum(mode)) {
     return is_sum(mode) ? STRATUS_VARIANT_SUMS : STRATUS_VARIANT_EXTREMES;

@@ -134,7 +134,7 @@ static int class_of(double changes)
 static int component_of(const stratus_ray_caster* caster, int m)
 {
   const int components = caster->shading_tables.components;
-  return components <= 1 ? 0 : caster->transfer_count == 1 ? components - 1 : m;
+  return components <= 1 || caster->transfer_2d.on ? 0 : caster->transfer_count == 1 ? components - 1 : m;
 }
 
 /* Returns the first index from `at` on whose byte is another than `value`, or `end`. */

@@ -31,7 +31,7 @@ static bool thins_opacity(const stratus_ray_caster* caster, const stratus_ray_ca
  * would read beyond one layer of ghosts. Cells are of one grid, and several volumes have several. */
 bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling)
 {
-  const bool one_medium = options->mode == STRATUS_MODE_COMPOSITE && !stratus_ray_shading_several(caster);
+  const bool one_medium = options->mode == STRATUS_MODE_COMPOSITE && !caster->transfer_2d.on && !stratus_ray_shading_several(caster);
   switch (sampling) {
     case STRATUS_SAMPLING_CELLS:
       return one_medium && !caster->in_several && !caster->shades && !options->mask;
@@ -54,7 +54,7 @@ double stratus_ray_tolerance(const stratus_ray_cast_options* options)
 
 void stratus_ray_choose(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_choice* choice)
 {
-  const bool surfaces = options->mode == STRATUS_MODE_ISOSURFACE;
+  const bool surfaces = options->mode == STRATUS_MODE_ISOSURFACE || options->mode == STRATUS_MODE_SLICE;
   const bool by_hand = options->sampling != STRATUS_SAMPLING_AUTO && stratus_ray_can_sample(caster, options, options->sampling);
   *choice = (stratus_ray_choice){ .sampling = by_hand ? options->sampling : STRATUS_SAMPLING_MIDPOINT,
     .cell_error = options->cell_error,

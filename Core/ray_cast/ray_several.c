@@ -84,6 +84,10 @@ static stratus_status check_supported(stratus_context* context, int n, const sev
     return stratus_fail(context, STRATUS_UNSUPPORTED,
       "volume %d of several has a gradient opacity over a length of %g, must be of optical depths, 0", n, options->gradient_distance);
   }
+  if (options->clip_gradients && options->clip_plane_count > 0) {
+    return stratus_fail(
+      context, STRATUS_UNSUPPORTED, "volume %d of several has gradients that clip planes change: one volume alone takes that", n);
+  }
   if (components > 1 || options->label_count > 0) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several has %d components and %d labels, must have 1 and 0", n,
       components, options->label_count);
@@ -130,6 +134,7 @@ static stratus_status update(several* s, several_input* in)
   const size_t rays = (size_t)s->image->width * (size_t)s->image->height;
   caster->in_several = true;
   caster->where[0] = '\0';
+  TRY(stratus_ray_transfer_2d_update(caster, &in->options)); /* it has none now */
   TRY(stratus_ray_update_tables(caster, in->of->volume, in->of->transfer, &in->options, rays, &in->report));
   if (!caster->owns_all) {
     return stratus_fail(s->context, STRATUS_UNSUPPORTED, "a volume of several has DUPLICATE ghosts: only whole volumes mix");
@@ -427,6 +432,10 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
     several_input* in = &s.inputs[n];
     in->of = &inputs[n];
     in->options = inputs[n].options ? *inputs[n].options : stratus_ray_cast_options_default();
+    if (in->options.transfer_2d) { /* in place of the function that is checked next */
+      return stratus_fail(
+        s.context, STRATUS_UNSUPPORTED, "volume %d of several has a two-dimensional function: one volume alone takes that", n);
+    }
     TRY(stratus_ray_check_input(s.context, inputs[n].volume, inputs[n].transfer, &in->options));
     TRY(check_supported(s.context, n, in));
     in->options.tolerance /= sqrt((double)count);

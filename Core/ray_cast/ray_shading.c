@@ -51,7 +51,7 @@ static stratus_material material_of(const stratus_ray_caster* caster, const stra
 bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const bool more = options->shade || transfer->gradient_count > 0 || stratus_volume_components(volume) > 1 || options->label_count > 0;
-  return options->mode == STRATUS_MODE_COMPOSITE && more;
+  return options->mode == STRATUS_MODE_COMPOSITE && more && !options->transfer_2d;
 }
 
 /* Samples in the way of gradient_distance, at most: products with the optical depth of opacity 1, 1e30, stay floats. */
@@ -97,7 +97,7 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
 {
   const double edge = stratus_ray_voxel_length(volume);
   double index_to_world[16], world_to_index[16];
-  if (!caster->shades && !options->shade) {
+  if (!caster->shades && !options->shade && !caster->transfer_2d.on) {
     return;
   }
   stratus_volume_index_to_world(volume, index_to_world);
@@ -117,6 +117,7 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
     a->media.gradient_length[axis] = (float)(mean / spacing[axis]);
   }
   set_tables(caster, options, a);
+  stratus_ray_transfer_2d_arguments(caster, a);
   for (int c = 0; c < 4; ++c) {
     const bool there = c == 0 || c < caster->shading_tables.components;
     const stratus_material material = material_of(caster, options, there ? c : 0);

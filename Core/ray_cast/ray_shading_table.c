@@ -26,7 +26,9 @@ stratus_volume stratus_volume_component(const stratus_volume* volume, int compon
 
 int stratus_ray_shading_media(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
-  return options->label_count > 0 ? 1 + options->label_count : options->dependent ? 1 : stratus_volume_components(volume);
+  return options->label_count > 0                ? 1 + options->label_count
+    : options->dependent || options->transfer_2d ? 1
+                                                 : stratus_volume_components(volume);
 }
 
 /* ---- checks */
@@ -50,7 +52,8 @@ stratus_status stratus_ray_shading_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const int components = stratus_volume_components(volume);
-  const bool surfaces = options->mode == STRATUS_MODE_FIRST_HIT || options->mode == STRATUS_MODE_ISOSURFACE;
+  const bool surfaces =
+    options->mode == STRATUS_MODE_FIRST_HIT || options->mode == STRATUS_MODE_ISOSURFACE || options->mode == STRATUS_MODE_SLICE;
   if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE && (surfaces || options->dependent)) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of a volume of %d %s components: %s", stratus_mode_name(options->mode),
       components, options->dependent ? "dependent" : "independent",
@@ -113,7 +116,7 @@ static bool has_labels(const stratus_ray_caster* caster)
 
 bool stratus_ray_shading_several(const stratus_ray_caster* caster)
 {
-  return caster->shading_tables.components > 1 || has_labels(caster);
+  return !caster->transfer_2d.on && (caster->shading_tables.components > 1 || has_labels(caster));
 }
 
 stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster)
@@ -352,7 +355,7 @@ bool stratus_ray_shading_show(const stratus_ray_caster* caster)
       return true;
     }
   }
-  if (shading->components <= 1) {
+  if (shading->components <= 1 || caster->transfer_2d.on) {
     return stratus_shown_meets(&caster->values, caster->ranges->whole_lo, caster->ranges->whole_hi);
   }
   for (int c = 0; c < shading->components; ++c) {

@@ -35,13 +35,15 @@ typedef enum stratus_mode {
   STRATUS_MODE_ADDITIVE, /* grey: the integral of opacity times value along the ray, with lengths in unit_distance */
   /* Surfaces where the field has a contour value, in that value's colour and opacity (not per length), one behind the other. Linear
    * interpolation only. The surfaces are exact: along a ray the field is a cubic in each cell, and all its roots are found. */
-  STRATUS_MODE_ISOSURFACE
+  STRATUS_MODE_ISOSURFACE,
+  /* The values on the surface `slice`, in their colour and opacity (not per length), one point of it behind the other. Exact, too. */
+  STRATUS_MODE_SLICE
 } stratus_mode;
 
 /* Average and additive take each value as a fraction of the whole volume's range of finite values, and limit the result to 1. They are
  * opaque: additive wherever a ray meets the volume's bounds, average wherever a value counts. */
 
-/* Returns "composite", "first-hit", "maximum", "minimum", "average", "additive" or "isosurface". */
+/* Returns "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface" or "slice". */
 STRATUS_API const char* stratus_mode_name(stratus_mode mode);
 
 typedef enum stratus_normals {
@@ -94,6 +96,31 @@ typedef struct stratus_shading {
   int one_sided;
 } stratus_shading;
 
+/* Colour and opacity as a function of two variables: the value, and the gradient's magnitude or, in volumes of 2 components, the value of
+ * the second. It is bilinear between its entries; with nearest interpolation of values, the nearest entry counts. Beyond the entries at its
+ * border, theirs hold. */
+typedef struct stratus_transfer_2d {
+  /* rows * columns entries of red, green, blue (not multiplied by opacity) and opacity, each 0..1: entry (i, j) is at rgba[4*(j*columns +
+   * i)], where i goes with the value. Borrowed during the render. */
+  const float* rgba;
+  int columns, rows; /* 1..4096 */
+  /* From the outer edge of the first column to that of the last, first < second: column i stands for the value (i + .5)/columns of the way.
+   */
+  double value_range[2];
+  /* Likewise of the rows: the gradient's magnitude in values per mean spacing of the grid, as of stratus_transfer.gradient, or values of
+   * the second component. */
+  double second_range[2];
+  double unit_distance; /* world length to which opacities refer, > 0. Opacity 1 is opaque. */
+  uint64_t revision;    /* the caller raises it when entries change under the same pointer */
+} stratus_transfer_2d;
+
+/* A surface of the world: all x where (with d = x - center) square[0] dx dx + square[1] dy dy + square[2] dz dz + square[3] dx dy +
+ * square[4] dy dz + square[5] dx dz + linear . d + constant = 0. A plane has linear, its normal, alone; a sphere square 1, 1, 1 and
+ * constant -radius^2. All finite; square and linear are not all 0. */
+typedef struct stratus_slice {
+  double center[3], square[6], linear[3], constant;
+} stratus_slice;
+
 #define STRATUS_CLIP_PLANES_MAX 6
 #define STRATUS_CONTOURS_MAX 16
 #define STRATUS_CROP_INSIDE 0x2000u
@@ -145,6 +172,17 @@ typedef struct stratus_ray_cast_options {
    * opaque. Greater than 0, finite: F multiplies the opacity A of a way of this world length, as VTK's mappers multiply the
    * opacity of a sample: such a way lets 1 - F A pass. Samples are never pre-integrated then. */
   double gradient_distance;
+  /* Composite, one component, or two of which the second is the function's second variable; NULL (default): none. It holds in place of the
+   * transfer function, which is not read and may be NULL. Samples follow the midpoint rule: other rules, labels and several volumes give
+   * STRATUS_UNSUPPORTED. An automatic step keeps the tolerance as measured: the function is sampled at both variables, so that there is no
+   * bound from the function alone. */
+  const stratus_transfer_2d* transfer_2d;
+  stratus_slice slice; /* mode slice. Default: no surface, which mode slice refuses. */
+  /* 1: gradients, of light, gradient opacity and functions of two variables, take clipped_value in place of the field a voxel before or
+   * behind a sample along an axis, where a clip plane hides that place. 0 (default): they are the whole field's. Grids of equal spacing
+   * only. */
+  int clip_gradients;
+  double clipped_value; /* finite. Default 0. */
   /* Average: the values that count, ends included, first <= last, infinities allowed. Default: all. */
   double average_range[2];
   int contour_count;                     /* isosurface: 1..16; other modes ignore it. Default 0. */

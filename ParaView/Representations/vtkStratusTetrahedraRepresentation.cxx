@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusTetrahedraRepresentation.h"
 
+#include "vtkStratusLODVolume.h"
 #include "vtkStratusScalarChoice.h"
 #include "vtkStratusTetrahedraMapper.h"
 
@@ -10,12 +11,10 @@
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLODProp3D.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
-#include "vtkPVLODVolume.h"
 #include "vtkPVRenderView.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkRenderer.h"
@@ -25,23 +24,6 @@
 #include <string>
 
 namespace {
-
-// ParaView's prop draws unstructured grids alone: it takes any other input for one without scalars. The mapper looks for these itself.
-class cell_volume : public vtkPVLODVolume
-{
-public:
-  static cell_volume* New();
-  vtkTypeMacro(cell_volume, vtkPVLODVolume);
-
-  int RenderVolumetricGeometry(vtkViewport* viewport) override
-  {
-    const int drawn = this->LODProp->RenderVolumetricGeometry(viewport);
-    this->EstimatedRenderTime = this->LODProp->GetEstimatedRenderTime();
-    return drawn;
-  }
-};
-
-vtkStandardNewMacro(cell_volume);
 
 void bounds_of(vtkDataObject* data, double bounds[6])
 {
@@ -58,7 +40,7 @@ vtkStandardNewMacro(vtkStratusTetrahedraRepresentation);
 
 vtkStratusTetrahedraRepresentation::vtkStratusTetrahedraRepresentation()
 {
-  this->Actor = vtkSmartPointer<cell_volume>::New();
+  this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
 }
@@ -193,6 +175,31 @@ void vtkStratusTetrahedraRepresentation::SetTermination(double opacity)
 void vtkStratusTetrahedraRepresentation::SetDevice(const char* device)
 {
   this->Mapper->SetDevice(device);
+}
+
+void vtkStratusTetrahedraRepresentation::SetShade(bool on)
+{
+  this->Property->SetShade(on);
+}
+
+void vtkStratusTetrahedraRepresentation::SetAmbient(double share)
+{
+  this->Property->SetAmbient(share);
+}
+
+void vtkStratusTetrahedraRepresentation::SetDiffuse(double share)
+{
+  this->Property->SetDiffuse(share);
+}
+
+void vtkStratusTetrahedraRepresentation::SetSpecular(double share)
+{
+  this->Property->SetSpecular(share);
+}
+
+void vtkStratusTetrahedraRepresentation::SetSpecularPower(double power)
+{
+  this->Property->SetSpecularPower(power);
 }
 
 void vtkStratusTetrahedraRepresentation::SetNumberOfIsosurfaces(int number)

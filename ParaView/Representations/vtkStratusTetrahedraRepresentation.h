@@ -42,6 +42,17 @@ public:
 
   //@{
   /**
+   * Forwarded to the property of component 0, as for volumes of uniform grids.
+   */
+  void SetShade(bool on);
+  void SetAmbient(double share);
+  void SetDiffuse(double share);
+  void SetSpecular(double share);
+  void SetSpecularPower(double power);
+  //@}
+
+  //@{
+  /**
    * Of the blend mode isosurface: its values.
    */
   void SetNumberOfIsosurfaces(int number);

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusVolumeRepresentation.h"
 
+#include "vtkStratusLODVolume.h"
+#include "vtkStratusMultiBlockVolumeMapper.h"
 #include "vtkStratusVolumeMapper.h"
 
 #include "vtkColorTransferFunction.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataSet.h"
+#include "vtkInformationVector.h"
+#include "vtkMath.h"
 #include "vtkObjectFactory.h"
-#include "vtkPVLODVolume.h"
+#include "vtkOutlineSource.h"
+#include "vtkPolyDataMapper.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -14,24 +22,49 @@ vtkStandardNewMacro(vtkStratusVolumeRepresentation);
 
 vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation()
 {
-  this->VolumeMapper.TakeReference(vtkStratusVolumeMapper::New());
+  this->VolumeMapper = vtkSmartPointer<vtkStratusMultiBlockVolumeMapper>::New();
+  this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
+  this->Actor->SetProperty(this->Property);
+  this->Actor->SetLODMapper(this->OutlineMapper);
 }
 
 vtkStratusVolumeRepresentation::~vtkStratusVolumeRepresentation() = default;
 
-// Returns nullptr where the superclass has set another mapper, as it does for composite data.
-vtkStratusVolumeMapper* vtkStratusVolumeRepresentation::GetStratusMapper()
+vtkStratusVolumeMapper* vtkStratusVolumeRepresentation::GetSettings()
 {
-  return vtkStratusVolumeMapper::SafeDownCast(this->VolumeMapper);
+  return vtkStratusMultiBlockVolumeMapper::SafeDownCast(this->VolumeMapper)->GetSettings();
+}
+
+// The superclass takes composite data for its own mapper alone.
+int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  vtkDataObjectTree* tree = input[0]->GetNumberOfInformationObjects() == 1 ? vtkDataObjectTree::GetData(input[0], 0) : nullptr;
+  if (!tree) {
+    return this->Superclass::RequestData(request, input, output);
+  }
+  vtkMath::UninitializeBounds(this->DataBounds);
+  this->Cache.TakeReference(tree->NewInstance());
+  this->Cache->ShallowCopy(tree);
+  auto* blocks = vtkDataObjectTree::SafeDownCast(this->Cache);
+  if (this->UseSeparateOpacityArray) {
+    for (vtkDataSet* block : vtkCompositeDataSet::GetDataSets(blocks)) {
+      this->AppendOpacityComponent(block);
+    }
+  }
+  this->Actor->SetEnableLOD(0);
+  blocks->GetBounds(this->DataBounds);
+  if (vtkMath::AreBoundsInitialized(this->DataBounds)) {
+    this->OutlineSource->SetBounds(this->DataBounds);
+    this->OutlineSource->Update();
+  }
+  this->DataSize = blocks->GetActualMemorySize();
+  return this->vtkVolumeRepresentation::RequestData(request, input, output);
 }
 
 void vtkStratusVolumeRepresentation::UpdateMapperParameters()
 {
   this->Superclass::UpdateMapperParameters();
-  vtkStratusVolumeMapper* mapper = this->GetStratusMapper();
-  if (!mapper) {
-    return;
-  }
+  vtkStratusVolumeMapper* mapper = this->GetSettings();
   this->Actor->SetVisibility(this->Actor->GetVisibility() && this->GetVisibility());
   // A colour map shows a vector's magnitude or one of its components; components that the property takes as colour and opacity are left
   // as they are.
@@ -68,65 +101,47 @@ void vtkStratusVolumeRepresentation::SetProjection(int mode)
 
 void vtkStratusVolumeRepresentation::SetRenderMode(int mode)
 {
-  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
-    mapper->SetRenderMode(mode);
-  }
+  this->GetSettings()->SetRenderMode(mode);
 }
 
 void vtkStratusVolumeRepresentation::SetNormals(int normals)
 {
-  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
-    mapper->SetNormals(normals);
-  }
+  this->GetSettings()->SetNormals(normals);
 }
 
 void vtkStratusVolumeRepresentation::SetStructure(int structure)
 {
-  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
-    mapper->SetStructure(structure);
-  }
+  this->GetSettings()->SetStructure(structure);
 }
 
 void vtkStratusVolumeRepresentation::SetSampling(int sampling)
 {
-  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
-    mapper->SetSampling(sampling);
-  }
+  this->GetSettings()->SetSampling(sampling);
 }
 
 void vtkStratusVolumeRepresentation::SetSampleDistance(double distance)
 {
-  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
-    mapper->SetSampleDistance(distance);
-  }
+  this->GetSettings()->SetSampleDistance(distance);
 }
 
 void vtkStratusVolumeRepresentation::SetCellError(double error)
 {
-  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
-    mapper->SetCellError(error);
-  }
+  this->GetSettings()->SetCellError(error);
 }
 
 void vtkStratusVolumeRepresentation::SetImageErrorTolerance(double tolerance)
 {
-  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
-    mapper->SetImageErrorTolerance(tolerance);
-  }
+  this->GetSettings()->SetImageErrorTolerance(tolerance);
 }
 
 void vtkStratusVolumeRepresentation::SetTermination(double opacity)
 {
-  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
-    mapper->SetTermination(opacity);
-  }
+  this->GetSettings()->SetTermination(opacity);
 }
 
 void vtkStratusVolumeRepresentation::SetDevice(const char* device)
 {
-  if (vtkStratusVolumeMapper* mapper = this->GetStratusMapper()) {
-    mapper->SetDevice(device);
-  }
+  this->GetSettings()->SetDevice(device);
 }
 
 void vtkStratusVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)

@@ -3,10 +3,11 @@
  * @class   vtkStratusVolumeRepresentation
  * @brief   ParaView's volume rendering of uniform and rectilinear grids by vtkStratusVolumeMapper
  *
+ * Composite data are drawn block by block, in exact order (vtkStratusMultiBlockVolumeMapper).
  * Supports everything of ParaView's own representation "Volume" that the mapper supports. The mapper refuses the rest by an error in
  * ParaView's messages. vtkStratusVolumeMapper documents the setters below.
  *
- * @sa vtkStratusVolumeMapper
+ * @sa vtkStratusVolumeMapper vtkStratusMultiBlockVolumeMapper
  */
 #ifndef vtkStratusVolumeRepresentation_h
 #define vtkStratusVolumeRepresentation_h
@@ -51,13 +52,14 @@ protected:
   vtkStratusVolumeRepresentation();
   ~vtkStratusVolumeRepresentation() override;
 
+  int RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
   void UpdateMapperParameters() override;
 
 private:
   vtkStratusVolumeRepresentation(const vtkStratusVolumeRepresentation&) = delete;
   void operator=(const vtkStratusVolumeRepresentation&) = delete;
 
-  vtkStratusVolumeMapper* GetStratusMapper();
+  vtkStratusVolumeMapper* GetSettings();
   void ApplyBlendMode();
 
   int BlendMode = 0;

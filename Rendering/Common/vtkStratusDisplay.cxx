@@ -400,6 +400,12 @@ bool vtkStratusDisplay::DrawPixels(vtkRenderer* renderer, const vtkStratusPictur
       this->Peeled.Size[a] = part.ToSize[a];
       this->Peeled.Viewport[a] = picture.Viewport[2 + a];
     }
+    this->Peeled.Cast = renderer->GetSelector() ? nullptr : pixels.Cast;
+    for (int a = 0; a < 2 && this->Peeled.Cast; ++a) { // parts are of the whole picture
+      this->Peeled.To[a] = picture.Rectangle[a];
+      this->Peeled.Size[a] = picture.Rectangle[2 + a];
+      this->Peeled.Rays[a] = picture.Size[a];
+    }
     this->Peeled.Scale = pixels.Scale;
     this->Peeled.Bias = pixels.Bias;
     drawn = this->DrawPeeled();

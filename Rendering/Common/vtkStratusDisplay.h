@@ -11,6 +11,7 @@
 
 #include "vtkNew.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -34,8 +35,10 @@ public:
     float Scale = 1.0f;
     float Bias = 0.0f;
     const std::vector<float>* Depth = nullptr; // along each ray, as the core gives it
-    bool WritesDepth = false;                  // into the window's depth buffer, where alpha is not 0
-    bool Alone = false;                        // nothing was drawn before, so that the bytes may replace the frame buffer's
+    // Casts rays of the picture up to window depths, one a ray; empty where a part of a ray has no colour of its own. Valid in this frame.
+    std::function<bool(const float* depths, std::vector<float>& rgba)> Cast;
+    bool WritesDepth = false; // into the window's depth buffer, where alpha is not 0
+    bool Alone = false;       // nothing was drawn before, so that the bytes may replace the frame buffer's
   };
 
   // Chooses how a picture is displayed with the final colour's window and level. `bytes`: of the picture, to be filled in if Pixels.Bytes

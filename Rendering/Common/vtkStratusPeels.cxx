@@ -17,13 +17,23 @@
 
 #include "vtk_glew.h"
 
+#include <algorithm>
+
 namespace {
 // The pass replaces //VTK::DepthPeeling::Dec and //VTK::CallWorker::Impl by code that calls initializeRayCast() and castRay().
 const char* const FragmentShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
 in vec2 texCoord;
+#ifdef PARTS
+uniform sampler2D first;
+uniform sampler2D second;
+int calls = 0;
+#elif defined(DEPTHS)
+vec4 ranges = vec4(-1.0);
+#else
 uniform sampler2D source;
 uniform sampler2D depths;
+#endif
 uniform vec2 scaleBias; // final colour window and level
 uniform vec2 in_inverseWindowSize;
 const float g_opacityThreshold = 1.0;
@@ -31,18 +41,31 @@ const float g_opacityThreshold = 1.0;
 void initializeRayCast() {}
 vec4 castRay(const float zStart, const float zEnd)
 {
+#ifdef DEPTHS
+  ranges = ranges.x < 0.0 ? vec4(zStart, zEnd, -1.0, -1.0) : vec4(ranges.xy, zStart, zEnd);
+  return vec4(0.0);
+#else
+#ifdef PARTS
+  vec4 color = calls == 0 ? texture(first, texCoord) : texture(second, texCoord);
+  ++calls;
+#else
   float z = min(texture(depths, texCoord).r, 0.9999999);
   if (z < zStart || z >= zEnd)
   {
     return vec4(0.0);
   }
   vec4 color = texture(source, texCoord);
+#endif
   color.rgb = clamp(color.rgb * scaleBias.x + color.a * scaleBias.y, 0.0, 1.0);
   return color;
+#endif
 }
 void main()
 {
 //VTK::CallWorker::Impl
+#ifdef DEPTHS
+  gl_FragData[0] = texCoord.x < -1.0 ? vec4(0.0) : ranges; // never: the quad wants its coordinates read
+#endif
 }
 )";
 // The uniforms that the pass declares are the only sign of its stage.
@@ -87,6 +110,10 @@ vtkStratusPeels::~vtkStratusPeels() = default;
 void vtkStratusPeels::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Front->ReleaseGraphicsResources(window);
+  this->Ranges->ReleaseGraphicsResources(window);
+  this->Parts[0]->ReleaseGraphicsResources(window);
+  this->Parts[1]->ReleaseGraphicsResources(window);
+  this->Buffer->ReleaseGraphicsResources(window);
   this->Quads.clear();
 }
 
@@ -138,20 +165,120 @@ bool vtkStratusPeels::CopyFront(vtkOpenGLRenderWindow* window, const int size[2]
   return true;
 }
 
-bool vtkStratusPeels::Render(vtkOpenGLRenderWindow* window, const Picture& picture)
+// Returns a quad whose program is ready and has the pass's parameters, or nullptr.
+vtkOpenGLQuadHelper* vtkStratusPeels::PrepareQuad(vtkOpenGLRenderWindow* window, Kind kind)
 {
-  std::unique_ptr<vtkOpenGLQuadHelper>& quad = this->Quads[this->Shader];
+  std::string shader = this->Shader;
+  if (kind != WHOLE) { // the #version replaces the first line, and a #define must follow it
+    shader.insert(shader.find('\n') + 1, kind == DEPTHS ? "#define DEPTHS\n" : "#define PARTS\n");
+  }
+  std::unique_ptr<vtkOpenGLQuadHelper>& quad = this->Quads[shader];
   if (!quad) {
-    quad.reset(new vtkOpenGLQuadHelper(window, nullptr, this->Shader.c_str(), ""));
+    quad.reset(new vtkOpenGLQuadHelper(window, nullptr, shader.c_str(), ""));
   } else {
     window->GetShaderCache()->ReadyShaderProgram(quad->Program);
   }
-  vtkShaderProgram* program = quad->Program;
-  const bool peels = Declares(this->Shader, FrontOfPeels);
-  if (!program || !program->GetCompiled() || !this->Pass->SetShaderParameters(program, this->Mapper, this->Prop) ||
-    (peels && !this->CopyFront(window, picture.Viewport))) {
+  const bool ready =
+    quad->Program && quad->Program->GetCompiled() && this->Pass->SetShaderParameters(quad->Program, this->Mapper, this->Prop);
+  return ready ? quad.get() : nullptr;
+}
+
+// Lets the pass's code tell between which depths it would cast rays, into a frame buffer of its own.
+bool vtkStratusPeels::FindDepths(vtkOpenGLRenderWindow* window, const Picture& picture)
+{
+  const unsigned int width = static_cast<unsigned int>(picture.Viewport[0]), height = static_cast<unsigned int>(picture.Viewport[1]);
+  this->Ranges->SetContext(window);
+  if (!this->Ranges->GetHandle() || this->Ranges->GetWidth() != width || this->Ranges->GetHeight() != height) {
+    if (!this->Ranges->Create2D(width, height, 4, VTK_FLOAT, false)) {
+      return false;
+    }
+  }
+  vtkOpenGLQuadHelper* quad = this->PrepareQuad(window, DEPTHS);
+  if (!quad) {
     return false;
   }
+  vtkOpenGLState* state = window->GetState();
+  vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
+  const float inverseSize[2] = { 1.0f / static_cast<float>(picture.Viewport[0]), 1.0f / static_cast<float>(picture.Viewport[1]) };
+  const float none[4] = { -1.0f, -1.0f, -1.0f, -1.0f };
+  state->PushFramebufferBindings();
+  this->Buffer->SetContext(window);
+  this->Buffer->Bind();
+  this->Buffer->AddColorAttachment(0, this->Ranges);
+  this->Buffer->ActivateDrawBuffer(0);
+  this->Buffer->ActivateReadBuffer(0);
+  state->vtkglDisable(GL_BLEND);
+  glClearBufferfv(GL_COLOR, 0, none);
+  quad->Program->SetUniform2f("in_inverseWindowSize", inverseSize);
+  quad->Render();
+  this->Pixels.resize(4 * static_cast<size_t>(picture.Size[0]) * static_cast<size_t>(picture.Size[1]));
+  state->vtkglPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(picture.To[0], picture.To[1], picture.Size[0], picture.Size[1], GL_RGBA, GL_FLOAT, this->Pixels.data());
+  state->PopFramebufferBindings();
+  return true;
+}
+
+// Finds the part of the rays between the depths of a call. Returns false where a cast fails.
+bool vtkStratusPeels::Cut(const Picture& picture, int call, std::vector<float>& part)
+{
+  const int *rays = picture.Rays, *size = picture.Size;
+  const size_t count = static_cast<size_t>(rays[0]) * static_cast<size_t>(rays[1]);
+  part.assign(4 * count, 0.0f);
+  for (int end = 1; end >= 0; --end) {
+    std::vector<float>& rgba = end ? this->Last : this->First;
+    bool any = false;
+    this->Depths.resize(count);
+    for (int j = 0; j < rays[1]; ++j) {
+      const size_t row = static_cast<size_t>((j + 0.5) * size[1] / rays[1]) * static_cast<size_t>(size[0]);
+      for (int i = 0; i < rays[0]; ++i) {
+        const float* range = &this->Pixels[4 * (row + static_cast<size_t>((i + 0.5) * size[0] / rays[0])) + 2 * static_cast<size_t>(call)];
+        const float depth = range[0] < range[1] ? std::min(std::max(range[end], 0.0f), 1.0f) : 0.0f;
+        this->Depths[static_cast<size_t>(j) * static_cast<size_t>(rays[0]) + static_cast<size_t>(i)] = depth;
+        any = any || depth > 0.0f;
+      }
+    }
+    if (!any) {
+      rgba.assign(4 * count, 0.0f);
+      if (end) {
+        return true;
+      }
+    } else if (!picture.Cast(this->Depths.data(), rgba)) {
+      return false;
+    }
+  }
+  for (size_t at = 0; at < 4 * count; at += 4) {
+    const float left = 1.0f - this->First[at + 3];
+    for (size_t c = 0; c < 4 && left > 0.0f; ++c) {
+      part[at + c] = std::min(std::max((this->Last[at + c] - this->First[at + c]) / left, 0.0f), 1.0f);
+    }
+  }
+  return true;
+}
+
+bool vtkStratusPeels::CastParts(vtkOpenGLRenderWindow* window, const Picture& picture)
+{
+  if (!this->FindDepths(window, picture)) {
+    return false;
+  }
+  std::vector<float> part;
+  for (int call = 0; call < 2; ++call) {
+    if (!this->Cut(picture, call, part)) {
+      return false;
+    }
+    vtkTextureObject* texture = this->Parts[call];
+    const unsigned int width = static_cast<unsigned int>(picture.Rays[0]), height = static_cast<unsigned int>(picture.Rays[1]);
+    texture->SetContext(window);
+    texture->SetMinificationFilter(vtkTextureObject::Nearest);
+    texture->SetMagnificationFilter(vtkTextureObject::Nearest);
+    if (!texture->Create2DFromRaw(width, height, 4, VTK_FLOAT, part.data())) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool vtkStratusPeels::Render(vtkOpenGLRenderWindow* window, const Picture& picture)
+{
   vtkOpenGLState* state = window->GetState();
   vtkOpenGLState::ScopedglViewport viewport(state);
   vtkOpenGLState::ScopedglEnableDisable cullFace(state, GL_CULL_FACE);
@@ -160,18 +287,28 @@ bool vtkStratusPeels::Render(vtkOpenGLRenderWindow* window, const Picture& pictu
   const Adding adding(state);
   state->vtkglViewport(picture.To[0], picture.To[1], picture.Size[0], picture.Size[1]);
   state->vtkglDisable(GL_CULL_FACE);
+  const bool parts = static_cast<bool>(picture.Cast);
+  const bool peels = Declares(this->Shader, FrontOfPeels);
+  if ((parts && !this->CastParts(window, picture)) || (peels && !this->CopyFront(window, picture.Viewport))) {
+    return false;
+  }
+  vtkOpenGLQuadHelper* quad = this->PrepareQuad(window, parts ? PARTS : WHOLE);
+  if (!quad) {
+    return false;
+  }
   state->vtkglEnable(GL_BLEND);
   state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   const float inverseSize[2] = { 1.0f / static_cast<float>(picture.Viewport[0]), 1.0f / static_cast<float>(picture.Viewport[1]) };
   const float scaleBias[2] = { picture.Scale, picture.Bias };
-  picture.Colors->Activate();
-  picture.Depths->Activate();
-  program->SetUniformi("source", picture.Colors->GetTextureUnit());
-  program->SetUniformi("depths", picture.Depths->GetTextureUnit());
-  program->SetUniform2f("scaleBias", scaleBias);
-  program->SetUniform2f("in_inverseWindowSize", inverseSize);
+  vtkTextureObject* const textures[2] = { parts ? this->Parts[0].Get() : picture.Colors, parts ? this->Parts[1].Get() : picture.Depths };
+  for (int n = 0; n < 2; ++n) {
+    textures[n]->Activate();
+    quad->Program->SetUniformi(n == 0 ? (parts ? "first" : "source") : (parts ? "second" : "depths"), textures[n]->GetTextureUnit());
+  }
+  quad->Program->SetUniform2f("scaleBias", scaleBias);
+  quad->Program->SetUniform2f("in_inverseWindowSize", inverseSize);
   if (peels) {
-    program->SetUniformi(FrontOfPeels, this->Front->GetTextureUnit());
+    quad->Program->SetUniformi(FrontOfPeels, this->Front->GetTextureUnit());
     glDisablei(GL_BLEND, 1); // the shader's second output already includes the colours in front
   }
   quad->Render();
@@ -179,7 +316,7 @@ bool vtkStratusPeels::Render(vtkOpenGLRenderWindow* window, const Picture& pictu
     glEnablei(GL_BLEND, 1);
     this->Front->Deactivate();
   }
-  picture.Depths->Deactivate();
-  picture.Colors->Deactivate();
+  textures[1]->Deactivate();
+  textures[0]->Deactivate();
   return true;
 }

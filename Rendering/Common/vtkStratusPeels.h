@@ -3,18 +3,26 @@
 //
 // vtkDualDepthPeelingPass draws volumes several times a frame into frame buffers of its own, each time between other surfaces: behind all
 // of them, in front of all of them, then from the outside in. It adds code to a volume's shader that finds the depths of two surfaces and
-// calls castRay() for the space between them. Here castRay() returns the whole picture's colour where the picture's depth lies between the
-// two, and nothing elsewhere. So each pixel is drawn once a frame, in front of or behind each surface by its depth.
+// calls castRay() for the space between them, once or twice.
+//
+// Where rays can be cut, the shader runs once to tell the depths: castRay() keeps them. Rays are then cast up to each of these, and what
+// lies between two is a difference: color = (last - first) / (1 - first's alpha). The shader runs again, and castRay() returns that.
+// Elsewhere (of a maximum, say, no part of a ray has a colour) castRay() returns the whole picture's colour where the picture's depth lies
+// between the two, and nothing elsewhere, so that each pixel is drawn once a frame.
 #ifndef vtkStratusPeels_h
 #define vtkStratusPeels_h
 
 #include "vtkStratusInput.h"
 
 #include "vtkNew.h"
+#include "vtkOpenGLFramebufferObject.h"
+#include "vtkTextureObject.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 class vtkAbstractMapper;
 class vtkOpenGLQuadHelper;
@@ -22,7 +30,6 @@ class vtkOpenGLRenderPass;
 class vtkOpenGLRenderWindow;
 class vtkOpenGLState;
 class vtkProp;
-class vtkTextureObject;
 class vtkWindow;
 
 class VTK_STRATUS_PRIVATE vtkStratusPeels
@@ -36,6 +43,9 @@ public:
     int Size[2] = { 0, 0 };
     int Viewport[2] = { 0, 0 }; // size of the viewport
     float Scale = 1.0f, Bias = 0.0f;
+    // Casts rays up to window depths, one a ray, and sets premultiplied colours. Empty: rays can't be cut. Else the textures are not read.
+    std::function<bool(const float* depths, std::vector<float>& rgba)> Cast;
+    int Rays[2] = { 0, 0 };
   };
 
   // Blending adds as long as this lives; its end brings the blend equation of before back. VTK 9.1's state has no such scope of its own.
@@ -82,14 +92,22 @@ public:
   void ReleaseGraphicsResources(vtkWindow* window);
 
 private:
+  enum Kind { WHOLE, DEPTHS, PARTS }; // what castRay() does
+  vtkOpenGLQuadHelper* PrepareQuad(vtkOpenGLRenderWindow* window, Kind kind);
   bool CopyFront(vtkOpenGLRenderWindow* window, const int size[2]);
+  bool FindDepths(vtkOpenGLRenderWindow* window, const Picture& picture);
+  bool CastParts(vtkOpenGLRenderWindow* window, const Picture& picture);
+  bool Cut(const Picture& picture, int call, std::vector<float>& part);
 
   vtkOpenGLRenderPass* Pass = nullptr; // Pass, Prop, Mapper and Shader are valid from Begin() to Render()
   vtkProp* Prop = nullptr;
   vtkAbstractMapper* Mapper = nullptr;
   std::string Shader;
-  std::map<std::string, std::unique_ptr<vtkOpenGLQuadHelper>> Quads; // one per shader, of which the pass has three
-  vtkNew<vtkTextureObject> Front;
+  std::map<std::string, std::unique_ptr<vtkOpenGLQuadHelper>> Quads; // one per shader, of which the pass has three, and kind
+  vtkNew<vtkTextureObject> Front, Ranges, Parts[2];
+  vtkNew<vtkOpenGLFramebufferObject> Buffer; // of Ranges
+  std::vector<float> Pixels;                 // of Ranges: begin and end of the first call, and of the second; -1 where there is none
+  std::vector<float> Depths, First, Last;
 };
 
 #endif

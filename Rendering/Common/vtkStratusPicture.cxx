@@ -286,6 +286,7 @@ vtkStratusPicture::Others vtkStratusPicture::FindOthers(
 
 const float* vtkStratusPicture::ReadOpaqueDepth(vtkRenderer* renderer, const Others& others)
 {
+  this->Ends = nullptr;
   const int* rectangle = this->Rectangle;
   int from[2], size[2];
   for (int a = 0; a < 2; ++a) {
@@ -308,7 +309,8 @@ const float* vtkStratusPicture::ReadOpaqueDepth(vtkRenderer* renderer, const Oth
     }
   }
   if (this->Size[0] == rectangle[2] && this->Size[1] == rectangle[3]) {
-    return this->WindowDepth.data();
+    this->Ends = this->WindowDepth.data();
+    return this->Ends;
   }
   this->OpaqueDepth.resize(static_cast<size_t>(this->Size[0]) * this->Size[1]);
   for (int j = 0; j < this->Size[1]; ++j) {
@@ -318,7 +320,19 @@ const float* vtkStratusPicture::ReadOpaqueDepth(vtkRenderer* renderer, const Oth
       this->OpaqueDepth[static_cast<size_t>(j) * this->Size[0] + i] = this->WindowDepth[row + column];
     }
   }
-  return this->OpaqueDepth.data();
+  this->Ends = this->OpaqueDepth.data();
+  return this->Ends;
+}
+
+bool vtkStratusPicture::IsWhole(const float* depths) const
+{
+  constexpr float rounding = 1e-7f; // of a depth buffer of 24 bits, read in two ways
+  const size_t count = static_cast<size_t>(this->Size[0]) * static_cast<size_t>(this->Size[1]);
+  size_t ray = 0;
+  while (ray < count && depths[ray] >= (this->Ends ? this->Ends[ray] : 1.0f) - rounding) {
+    ++ray;
+  }
+  return ray == count;
 }
 
 stratus_image vtkStratusPicture::MakeRoom(std::vector<float>& rgba, std::vector<float>& depth, const float* opaqueDepth,

@@ -49,6 +49,8 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   // Returns the opaque depth at each ray, valid until the next call; nullptr where nothing can have been drawn before. Reading it costs as
   // much as a simple scene, so only the part of the others is read.
   const float* ReadOpaqueDepth(vtkRenderer* renderer, const Others& others);
+  // Whether rays that end at these window depths, one a ray, make the picture of those that end where ReadOpaqueDepth() said last.
+  bool IsWhole(const float* depths) const;
   // Makes room for a picture of these rays, and tells the core where it is. The last two may be nullptr.
   stratus_image MakeRoom(std::vector<float>& rgba, std::vector<float>& depth, const float* opaqueDepth,
     std::vector<uint32_t>* samples = nullptr, std::vector<unsigned char>* bytes = nullptr) const;
@@ -64,6 +66,7 @@ private:
 
   double WorldToClip[16];
   std::vector<float> WindowDepth, OpaqueDepth, PartDepth;
+  const float* Ends = nullptr; // what ReadOpaqueDepth() returned last
 };
 
 // Converts a mapper's clipping planes to a x + b y + c z + d >= 0, in the world, of which there may be `most`. Returns false, with the

@@ -31,7 +31,8 @@
  * - gradient opacity in composite, in values per mean spacing: the edge of a cube that six tetrahedra of the mean volume fill. It
  * multiplies the optical depth, or the opacity (GradientOpacityDistance). Light and gradient opacity are marched;
  * - up to 6 clipping planes (of origin and normal) and a crop box. They cut rays exactly, cells are not left out;
- * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): the whole picture lies between them, at its first depth;
+ * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): in composite rays are cast up to each of them, so that the parts
+ * between lie in order; in other modes the whole picture lies between them, at its first depth;
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *

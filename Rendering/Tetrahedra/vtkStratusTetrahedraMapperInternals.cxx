@@ -230,6 +230,7 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(
   }
   this->Renderer = renderer;
   const auto draw = [&] {
+    this->Options = options;
     return stratus_tetra_caster_render(
       this->Caster, &this->Mesh.GetMesh(), this->Functions.data(), &this->Picture.Camera, &options, &image, &this->Report);
   };
@@ -282,6 +283,18 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   pixels.Window[1] = this->Picture.Size[0];
   pixels.Window[3] = this->Picture.Size[1];
   pixels.Depth = &this->Depth;
+  if (this->Options.mode == STRATUS_TETRA_COMPOSITE) {
+    pixels.Cast = [this](const float* depths, std::vector<float>& rgba) {
+      if (this->Picture.IsWhole(depths)) {
+        rgba = this->Rgba;
+        return true;
+      }
+      const stratus_image image = this->Picture.MakeRoom(rgba, this->PartDepth, depths);
+      stratus_tetra_report report;
+      return stratus_tetra_caster_render(this->Caster, &this->Mesh.GetMesh(), &this->Transfer.GetTransfer(), &this->Picture.Camera,
+               &this->Options, &image, &report) == STRATUS_OK;
+    };
+  }
   return this->Display.Draw(renderer, this->Picture, pixels, error);
 }
 

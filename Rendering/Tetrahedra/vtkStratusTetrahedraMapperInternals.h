@@ -71,7 +71,8 @@ private:
   vtkStratusBlocks Blocks;
   std::string LastLeftOut; // told already
   double Box[6] = { 0, 0, 0, 0, 0, 0 };
-  std::vector<float> Rgba, Depth;
+  std::vector<float> Rgba, Depth, PartDepth;
+  stratus_tetra_options Options; // of the last picture
   vtkSmartPointer<vtkImageData> LastImage;
 };
 

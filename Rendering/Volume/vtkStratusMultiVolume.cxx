@@ -54,7 +54,7 @@ private:
   bool HasPicture = false, HasSamples = false;
   double FullMilliseconds = 0.0; // estimated time of an exact picture, 0: unknown
   vtkMTimeType LearnedFor = 0;
-  std::vector<float> Rgba, Depth;
+  std::vector<float> Rgba, Depth, PartDepth;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples;
   vtkSmartPointer<vtkImageData> LastImage;
@@ -236,6 +236,15 @@ bool vtkStratusMultiVolume::Internals::Render(vtkRenderer* renderer, std::string
   pixels.Rgba = this->Rgba.data();
   std::copy_n(this->Whole.window, 4, pixels.Window);
   pixels.Depth = &this->Depth;
+  pixels.Cast = [this](const float* depths, std::vector<float>& rgba) {
+    if (this->Picture.IsWhole(depths)) {
+      rgba = this->Rgba;
+      return true;
+    }
+    const stratus_image image = this->Picture.MakeRoom(rgba, this->PartDepth, depths);
+    stratus_ray_cast_report reports[STRATUS_SEVERAL_MAX];
+    return stratus_ray_caster_render_several(this->Inputs, this->Count, &this->Picture.Camera, &image, reports) == STRATUS_OK;
+  };
   return this->Display.Draw(renderer, this->Picture, pixels, error);
 }
 

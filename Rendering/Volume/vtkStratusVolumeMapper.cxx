@@ -19,7 +19,10 @@ vtkStandardNewMacro(vtkStratusVolumeMapper);
 
 vtkStratusVolumeMapper::vtkStratusVolumeMapper() : Internal(new Internals(this)) {}
 
-vtkStratusVolumeMapper::~vtkStratusVolumeMapper() = default;
+vtkStratusVolumeMapper::~vtkStratusVolumeMapper()
+{
+  this->SetTransfer2DYAxisArray(nullptr);
+}
 
 int vtkStratusVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
 {
@@ -230,6 +233,7 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "VectorComponent: " << this->VectorComponent << "\n";
   os << indent << "RenderToImage: " << (this->RenderToImage ? "On" : "Off") << "\n";
   os << indent << "DepthImageScalarType: " << this->DepthImageScalarType << "\n";
+  os << indent << "Transfer2DYAxisArray: " << (this->Transfer2DYAxisArray ? this->Transfer2DYAxisArray : "(none)") << "\n";
   os << indent << "UseJittering: " << (this->UseJittering ? "On" : "Off") << "\n";
   os << indent << "JitterSeed: " << this->JitterSeed << "\n";
   os << indent << "CountSamples: " << (this->CountSamples ? "On" : "Off") << "\n";

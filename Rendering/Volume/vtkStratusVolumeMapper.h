@@ -11,9 +11,11 @@
  * - the image's extent, spacing, origin and direction, and the volume's matrix;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance;
  * - cropping to any of the 27 regions, up to six clipping planes, binary masks, jitter;
- * - the blend modes composite, maximum and minimum intensity, average intensity (AverageIPScalarRange), additive, and isosurface
- *   (vtkVolumeProperty::GetIsoSurfaceValues(), up to 16, linear interpolation, every root of the field in each cell);
- * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): the whole picture lies between them, at its first depth;
+ * - the blend modes composite, maximum and minimum intensity, average intensity (AverageIPScalarRange), additive, isosurface
+ *   (vtkVolumeProperty::GetIsoSurfaceValues(), up to 16, linear interpolation, every root of the field in each cell), and slice
+ *   (SliceFunction: a vtkPlane, vtkSphere, vtkCylinder, vtkCone or vtkQuadric without a transform, in the world);
+ * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): in composite rays are cast up to each of them, so that the parts
+ *   between lie in order; in other modes the whole picture lies between them, at its first depth;
  * - hardware picking, which finds the volume where it is visible;
  * - arrays of any number of components by one component or the magnitude (VectorMode);
  * - pictures as images, not in the window (RenderToImage).
@@ -26,13 +28,17 @@
  * - arrays of 2 to 4 components. Independent components are media that mix: their optical depths, times ComponentWeight, add up, or, as VTK
  *   means it, each counts by its share (ComponentMixing); each has a Shade and a material of its own. Dependent components are colour and
  * opacity (2), or red, green, blue and opacity (4 of unsigned char);
+ * - two-dimensional transfer functions (TF_2D): columns are over the range of the values, rows over gradient magnitudes from 0 to a quarter
+ *   of that range in a mean spacing, as VTK's mapper has them, or over the range of a second array (Transfer2DYAxisArray); opacities are
+ *   per ScalarOpacityUnitDistance. Sampled by the midpoint rule alone; with it the step keeps ImageErrorTolerance;
+ * - UseClippedVoxelIntensity: gradients at clipping planes take ClippedVoxelIntensity beyond them (vtkImageData, one component);
  * - label maps, with colours, opacities and gradient opacities of their own.
  *
  * Lights of all kinds shine, with attenuation and cones (vtkLight; a ConeAngle of 90 and more is none). Maximum, minimum, average and
  * additive draw each of 2 to 4 independent components by itself, and add their weighted colours, as VTK's mappers do.
  *
- * All else (blend mode slice, two-dimensional transfer functions, UseClippedVoxelIntensity, shaders of the prop's own, other data than
- * these two, first hits of a vtkRectilinearGrid) is refused by an error, and nothing is drawn. docs/vtk-parity.md has a table.
+ * All else (shaders of the prop's own, other data than these two, first hits of a vtkRectilinearGrid) is refused by an error, and nothing
+ * is drawn. docs/vtk-parity.md has a table.
  *
  * RenderModeToFirstHit draws voxels of opacity > 0 as solids in the light of the renderer, and writes their depth. The property's Shade,
  * Ambient, Diffuse, Specular and SpecularPower apply. A voxel of point data is a cube about its point, so that the mapper's bounds extend
@@ -257,6 +263,15 @@ public:
   vtkGetMacro(VectorMode, int);
   vtkSetClampMacro(VectorComponent, int, 0, VTK_INT_MAX);
   vtkGetMacro(VectorComponent, int);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the name of the array that is the second variable of a two-dimensional transfer function, as in vtkGPUVolumeRayCastMapper: one
+   * component, of the points or cells that the scalars are of. nullptr: the gradient's magnitude is. Default nullptr.
+   */
+  vtkSetStringMacro(Transfer2DYAxisArray);
+  vtkGetStringMacro(Transfer2DYAxisArray);
   //@}
 
   //@{
@@ -577,6 +592,7 @@ protected:
   int VectorComponent = 0;
   vtkTypeBool RenderToImage = 0;
   int DepthImageScalarType = VTK_FLOAT;
+  char* Transfer2DYAxisArray = nullptr;
   int RequestedRenderMode = DefaultRenderMode;
   vtkIdType MaxMemoryInBytes = 0;
   float MaxMemoryFraction = 0.75f;
@@ -598,6 +614,9 @@ protected:
 private:
   vtkStratusVolumeMapper(const vtkStratusVolumeMapper&) = delete;
   void operator=(const vtkStratusVolumeMapper&) = delete;
+
+  friend class vtkStratusMultiBlockVolumeMapper;
+  bool FollowsBlock = false; // another block of the prop is in the window already
 
   friend class vtkStratusMultiVolume; // draws what the mappers of its volumes describe
   class Internals;

@@ -72,8 +72,8 @@ bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
 {
   const vtkStratusVolumeMapper* mapper = this->Mapper;
   const int blend = mapper->BlendMode;
-  if (blend < vtkVolumeMapper::COMPOSITE_BLEND || blend > vtkVolumeMapper::ISOSURFACE_BLEND) {
-    error = "blend mode " + std::to_string(blend) + " is not supported, only composite (0) to isosurface (5) are";
+  if (blend < vtkVolumeMapper::COMPOSITE_BLEND || blend > vtkVolumeMapper::SLICE_BLEND) {
+    error = "blend mode " + std::to_string(blend) + " is not supported, only composite (0) to slice (6) are";
   } else if (this->IsFirstHit() && blend != vtkVolumeMapper::COMPOSITE_BLEND) {
     error = "blend mode " + std::to_string(blend) + " is not supported in first hits, only composite (0) is";
   } else if (this->HasLabels() && (this->IsFirstHit() || blend != vtkVolumeMapper::COMPOSITE_BLEND)) {
@@ -106,12 +106,10 @@ bool vtkStratusVolumeMapper::Internals::CheckProperty(vtkVolumeProperty* propert
   const bool light = blend == vtkVolumeMapper::COMPOSITE_BLEND || blend == vtkVolumeMapper::ISOSURFACE_BLEND;
   if (property->GetShade() && !light) {
     error = "shading is not supported in blend mode " + std::to_string(blend) + ", only composite (0) and isosurface (5) are lit";
-  } else if (property->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D) {
-    error = "two-dimensional transfer functions are not supported, only TF_1D is";
   } else if (property->GetNumberOfLabels() > 0 && !this->HasLabels()) {
     error = "there are functions of labels, but no MaskInput of type label map to tell where";
-  } else if (property->GetUseClippedVoxelIntensity()) {
-    error = "UseClippedVoxelIntensity is not supported, only off is";
+  } else if (HasTransfer2D(property)) {
+    return this->CheckTransfer2D(error);
   }
   return error.empty();
 }
@@ -139,10 +137,11 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
   const int labels = this->HasLabels() ? HighestLabel(property) : 0;
   this->Functions.resize(static_cast<size_t>(std::max(media, 1 + labels)));
   this->Transfers.resize(std::max(this->Functions.size(), this->Transfers.size())); // those not needed now keep their count
-  const bool surfaces = this->IsFirstHit() || this->Mapper->BlendMode == vtkVolumeMapper::ISOSURFACE_BLEND;
+  const bool surfaces = this->IsFirstHit() || this->Mapper->BlendMode >= vtkVolumeMapper::ISOSURFACE_BLEND; // or slices
   if (components > 1 && !composite && (surfaces || media == 1)) {
     error = "the array has " + std::to_string(components) +
-      " components: first hits and isosurfaces take 1, or one by VectorMode, and only " + "blend mode composite (0) takes dependent ones";
+      " components: first hits, isosurfaces and slices take 1, or one by VectorMode, and only " +
+      "blend mode composite (0) takes dependent ones";
     return false;
   }
   for (int c = 0; c < media; ++c) {
@@ -197,6 +196,9 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
   const bool own = component >= 0 && component < VTK_MAX_VRCOMP && prop->GetProperty()->GetIndependentComponents();
   this->FirstFunction = own ? component : 0;
   array = magnitude ? this->Magnitude(image, array, cells) : array;
+  if (HasTransfer2D(prop->GetProperty())) {
+    return this->PrepareTransfer2D(prop, image, array, cells, component, error);
+  }
   return this->Image.Set(image, array, cells, prop->GetMatrix(), error, STRATUS_COMPONENTS_MAX, component) &&
     this->SetTransfers(prop->GetProperty(), error);
 }
@@ -275,7 +277,7 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
 {
   const vtkStratusVolumeMapper* mapper = this->Mapper;
   static const stratus_mode blends[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
-    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE };
+    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE, STRATUS_MODE_SLICE };
   options = stratus_ray_cast_options_default();
   options.mode = this->IsFirstHit() ? STRATUS_MODE_FIRST_HIT : blends[mapper->BlendMode];
   options.normals = static_cast<stratus_normals>(mapper->Normals);
@@ -299,8 +301,12 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
       options.crop_bounds[b] = mapper->CroppingRegionPlanes[b] + this->Image.GetCropOffset()[b / 2];
     }
   }
+  options.transfer_2d = HasTransfer2D(property) ? &this->Transfer2D : nullptr;
+  options.clip_gradients = property->GetUseClippedVoxelIntensity() ? 1 : 0;
+  options.clipped_value = property->GetClippedVoxelIntensity();
   options.jitter = mapper->UseJittering ? 1 : 0;
   options.jitter_seed = mapper->JitterSeed;
   return this->SetMask(property, options, error) && this->SetContours(property, options, error) &&
+    this->SetSlice(property, options, error) &&
     vtkStratusClipPlanes(this->Mapper, STRATUS_CLIP_PLANES_MAX, options.clip_planes, options.clip_plane_count, error);
 }

@@ -81,9 +81,18 @@ private:
   void OfferTree();
 
   bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
+  // Functions of two variables and slices (vtkStratusVolumeMapperLookup.cxx).
+  static bool HasTransfer2D(vtkVolumeProperty* property);
+  bool CheckTransfer2D(std::string& error) const;
+  bool PrepareTransfer2D(vtkVolume* prop, vtkDataSet* image, vtkDataArray* array, bool cells, int component, std::string& error);
+  vtkDataArray* FindSecond(vtkDataSet* image, bool cells, std::string& error) const;
+  vtkDataArray* Pair(vtkDataArray* array, int component, vtkDataArray* second);
+  bool SetTransfer2D(vtkVolumeProperty* property, vtkDataArray* array, int component, vtkDataArray* second, std::string& error);
+  bool SetSlice(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   bool SetContours(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
+  bool CastTo(const stratus_ray_cast_options& options, const float* depths, std::vector<float>& rgba);
   bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error);
   vtkStratusPicture::Others FindOthers(vtkRenderer* renderer, vtkVolume* prop) const;
 
@@ -91,7 +100,7 @@ private:
   vtkStratusPicture Picture;
   bool HasPicture = false;
   bool HasSamples = false; // the picture was drawn with CountSamples
-  std::vector<float> Rgba, Depth;
+  std::vector<float> Rgba, Depth, PartDepth;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples;             // empty: not counted
   vtkSmartPointer<vtkAbstractArray> Offered; // the array of the tree that the caster was last given
@@ -105,6 +114,10 @@ private:
   std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{}; // of the picture's components
   vtkSmartPointer<vtkDataArray> MagnitudeOf, Magnitudes;            // an array, and its magnitudes as of MagnitudeTime
   vtkMTimeType MagnitudeTime = 0;
+  stratus_transfer_2d Transfer2D = stratus_transfer_2d(); // of this picture, if the property has one
+  vtkSmartPointer<vtkDataArray> PairOf[2], Pairs;         // the arrays of two variables, and both in one as of PairTime
+  vtkMTimeType PairTime = 0;
+  int PairComponent = 0;     // of PairOf[0]
   int FirstFunction = 0;     // the property's component whose functions component 0 of the volume takes
   vtkMTimeType WarnedOf = 0; // the property's time when it was last looked at for WarnOfGradientOpacity()
   bool Warned = false;

@@ -2,6 +2,7 @@
 // Draws one picture of vtkStratusVolumeMapper: chooses its coarseness, reads depths, casts rays and displays the result.
 #include "vtkStratusVolumeMapperInternals.h"
 
+#include "vtkStratusMultiBlockVolumeMapper.h"
 #include "vtkStratusMultiVolume.h"
 
 #include "vtkImageData.h"
@@ -54,7 +55,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   const double available = std::max(allotted - this->DrawMilliseconds, 0.1 * allotted);
   const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
   if (excess > 1.0) {
-    const bool steps = !this->IsFirstHit() && mapper->BlendMode != vtkVolumeMapper::ISOSURFACE_BLEND &&
+    const bool steps = !this->IsFirstHit() && mapper->BlendMode < vtkVolumeMapper::ISOSURFACE_BLEND && // nor have slices steps
       this->FullSampling != STRATUS_SAMPLING_CELLS &&
       this->FullSampling != STRATUS_SAMPLING_LOCAL; // cells have no step, local is not for asking
     coarseness.Step = !steps ? 1.0 : std::min(excess, mapper->MaximumSampleDistanceFactor);
@@ -80,15 +81,19 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
 
 vtkStratusPicture::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRenderer* renderer, vtkVolume* prop) const
 {
-  return this->Picture.FindOthers(renderer, prop, [](vtkProp* other) {
+  vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, prop, [](vtkProp* other) {
     vtkVolume* volume = vtkVolume::SafeDownCast(other);
     if (vtkStratusMultiVolume::SafeDownCast(other)) {
       return true;
     }
     // Other volumes of this class end no rays, except those that write depth.
     vtkStratusVolumeMapper* mapper = volume ? vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
+    auto* blocks = volume ? vtkStratusMultiBlockVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
+    mapper = blocks ? blocks->GetSettings() : mapper;
     return mapper && mapper->RenderMode == COMPOSITE_MODE;
   });
+  others.Any = others.Any || this->Mapper->FollowsBlock;
+  return others;
 }
 
 bool vtkStratusVolumeMapper::Internals::Cast(
@@ -106,6 +111,21 @@ bool vtkStratusVolumeMapper::Internals::Cast(
     error = stratus_context_message(this->Context.Get());
   }
   return status == STRATUS_OK;
+}
+
+// Casts the rays of the last picture up to window depths, in place of the opaque ones. Reports stay those of the picture.
+bool vtkStratusVolumeMapper::Internals::CastTo(const stratus_ray_cast_options& options, const float* depths, std::vector<float>& rgba)
+{
+  if (this->Picture.IsWhole(depths)) {
+    rgba = this->Rgba;
+    return true;
+  }
+  const stratus_image image = this->Picture.MakeRoom(rgba, this->PartDepth, depths);
+  stratus_ray_cast_options plain = options;
+  stratus_ray_cast_report report;
+  plain.audit = 0;
+  return stratus_ray_caster_render(
+           this->Caster, &this->Image.GetVolume(), this->Functions.data(), &this->Picture.Camera, &plain, &image, &report) == STRATUS_OK;
 }
 
 bool vtkStratusVolumeMapper::Internals::Describe(
@@ -171,6 +191,9 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   std::copy_n(this->Report.window, 4, pixels.Window);
   pixels.Depth = &this->Depth;
   pixels.WritesDepth = this->IsFirstHit();
+  if (!this->IsFirstHit() && this->Mapper->BlendMode == vtkVolumeMapper::COMPOSITE_BLEND) {
+    pixels.Cast = [this, options](const float* depths, std::vector<float>& rgba) { return this->CastTo(options, depths, rgba); };
+  }
   const bool drawn = this->Display.Draw(renderer, this->Picture, pixels, error);
   if (drawn) {
     this->DrawMilliseconds = Now() - cast + read - start;

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files of every kind of grid, in steps and in parts, as `stratus` reads them. Usage: test_files.py PATH-OF-STRATUS FOLDER
-[PATHS OF make-cumulus AND make-river, where libnetcdf was there to build with, AND OF write-vdb, where OpenVDB and NanoVDB were]"""
+[PATHS OF make-cumulus AND make-river, where libnetcdf was there to build with, OF write-vdb, where OpenVDB and NanoVDB were,
+AND OF write-vtkhdf]"""
 import math
 import os
 import re
@@ -156,10 +157,11 @@ def test_modes_of_grids():
         expect(0, f"mode +{words[0]}$", "render", "stretched.vts", "-o", "out.png", *LOOK, "--mode", *words)
         seen.add(open("out.png", "rb").read())
     seen.add(picture("stretched.vts", "--crop", "1,3,0,3,0,5"))
-    if len(seen) != 8:
-        fail(f"of 8 pictures in other modes and cropped, {len(seen)} differ")
+    seen.add(picture("stretched.vts", "--shade"))
+    if len(seen) != 9:
+        fail(f"of 9 pictures in other modes, cropped and lit, {len(seen)} differ")
     expect(2, "--mode first-hit is for images", "render", "stretched.vts", "-o", "no.png", "--mode", "first-hit")
-    for words in (("--shade",), ("--audit",), ("--nearest",), ("--crop", "1,3,0,3,0,5", "--crop-regions", "1")):
+    for words in (("--audit",), ("--nearest",), ("--crop", "1,3,0,3,0,5", "--crop-regions", "1")):
         expect(2, "are for images", "render", "stretched.vts", "-o", "no.png", *words)
 
 
@@ -249,8 +251,8 @@ def test_films():
         fail("a film with a broken step: " + done.stdout)
 
 
-def resident(steps):
-    collection("long.pvd", [(i, 0, f"big{i % 2}.vti") for i in range(steps)])
+def resident(steps, ending="vti"):
+    collection("long.pvd", [(i, 0, f"big{i % 2}.{ending}") for i in range(steps)])
     said = expect(0, "resident", "render", "long.pvd", "--frames", "long-%d.png", "--size", "16x16", "--device", "host",
                   "--opacity", "0:0,30:.6", "--threads", "2")
     return float(re.search(r"memory +([0-9.]+) MiB", said).group(1))
@@ -272,6 +274,22 @@ def test_memory():
     print(f"resident at most: {few} MiB in 20 steps, {many} MiB in 1,000")
     if many > few + 8:  # a step has 0.25 MiB of values: a leak of one array a step would be 250 MiB
         fail(f"memory grows: {few} MiB in 20 steps, {many} MiB in 1,000")
+    # meshes whose points stay, and whose points move: a step has 0.25 MiB of points and .1 of values, a listed one 4 MiB of cells
+    for ending, writer in (("vts", vtkXMLStructuredGridWriter), ("vtu", vtkXMLUnstructuredGridWriter)):
+        for step in range(2):
+            grid = curved(range(28), range(28), [z * (1 + .1 * step * (ending == "vtu")) for z in range(28)])
+            array = numpy_to_vtk((numpy.arange(28 ** 3, dtype=numpy.float32) % 31) + step, deep=True)
+            array.SetName("qc")
+            grid.GetPointData().AddArray(array)
+            xml = writer()
+            xml.SetInputData(unstructured(grid) if ending == "vtu" else grid)
+            xml.SetFileName(f"big{step}.{ending}")
+            xml.SetCompressorTypeToNone()
+            xml.Write()
+        few, many = resident(20, ending), resident(220, ending)
+        print(f"resident at most of .{ending}: {few} MiB in 20 steps, {many} MiB in 220")
+        if many > few + 12:  # of 200 more steps, .35 MiB each would be 70
+            fail(f"memory grows: {few} MiB in 20 steps of .{ending}, {many} MiB in 220")
 
 
 def pixels(name):
@@ -448,6 +466,60 @@ def test_vectors():
         if abs(drawn("wind.vts", *words) - single).max() > 1:
             fail(f"{name} of wind.vts is another picture than what it is a multiple of")
     expect(1, r"no array 'U\.w'; the arrays are: U$", "render", "wind.vts", "-o", "no.png", "--variable", "U.w")
+
+
+def test_vtkhdf():
+    if "write-vtkhdf" not in MAKERS:
+        print("no HDF5 to write with: .vtkhdf is not tested")
+        return
+    subprocess.run([MAKERS["write-vtkhdf"], "."], check=True)
+    expect(0, "kind +image of 5 x 4 x 6 points", "info", "image.hdf")
+    expect(0, "60 vtkHexahedron", "info", "stretched.vtkhdf")
+    if picture("image.hdf") != picture("image.vti"):
+        fail("image.hdf is another picture than image.vti")
+    if picture("stretched.vtkhdf") != picture("stretched.vtu"):
+        fail("stretched.vtkhdf is another picture than stretched.vtu")
+    expect(1, r"no array 'x'; the arrays are: qc \(0 \.\. 30\)$", "render", "image.hdf", "-o", "no.png", "--variable", "x")
+    for name in ("image.hdf", "stretched.vtkhdf"):
+        with open(name, "rb") as file:
+            text = file.read()
+        for part in (.01, .3, .9, .9999):
+            with open("cut-" + name, "wb") as file:
+                file.write(text[:int(len(text) * part)])
+            expect(1, f"^stratus: cannot read 'cut-{name}': .*cut short", "render", "cut-" + name, "-o", "no.png")
+
+
+def test_raw():
+    values().astype("<f4").tofile("values.raw")
+    look = ("--raw", "5x4x6:float32")
+    same = picture("image.vti")
+    if picture("values.raw", *look) != same:
+        fail("values.raw is another picture than image.vti")
+    of_raw = expect(0, "hits|why", "tree", "values.raw", *look, "--lower", "10", "--device", "host")
+    of_image = expect(0, "hits|why", "tree", "image.vti", "--lower", "10", "--device", "host")
+    count = lambda text: re.findall(r"^  (voxels|nodes) +(.*)$", text, re.MULTILINE)
+    if not count(of_raw) or count(of_raw) != count(of_image):
+        fail(f"the tree of values.raw is another than that of image.vti:\n{of_raw}{of_image}")
+    shown = numpy.zeros(120, dtype=numpy.uint8)
+    shown[60:] = 1
+    shown.tofile("mask.raw")
+    mask = vtkImageData()
+    mask.SetDimensions(*SIDE)
+    array = numpy_to_vtk(shown, deep=True)
+    array.SetName("mask")
+    mask.GetPointData().AddArray(array)
+    write(vtkXMLImageDataWriter, mask, "mask.vti")
+    masked = picture("image.vti", "--mask", "mask.vti")
+    if masked == same or picture("values.raw", *look, "--mask", "mask.raw", "--mask-raw", "5x4x6:uint8") != masked:
+        fail("a mask of bare bytes is another than the image of them")
+    twice = picture("image.vti", "image.vti")
+    if picture("values.raw", *look, "values.raw", *look) != twice or twice == same:
+        fail("two inputs of bare values are another picture than two images")
+    expect(2, "mask.raw' tells nothing of itself", "render", "image.vti", "-o", "no.png", "--mask", "mask.raw")
+    expect(2, "of which file", "render", "image.vti", "-o", "no.png", "--mask-raw", "5x4x6:uint8")
+    expect(1, "needs 240 bytes, the file has 120", "render", "image.vti", "-o", "no.png", "--mask", "mask.raw", "--mask-raw",
+           "5x4x6:int16")
+    expect(2, "values.raw' tells nothing of itself", "tree", "values.raw")
 
 
 def openfoam(cells=(2, 2, 2)):

@@ -56,23 +56,25 @@ READERS = {".vti": ("XMLImageDataReader", "UniformGridRepresentation"), ".vtr": 
            ".vtm": ("XMLMultiBlockDataReader", "UnstructuredGridRepresentation")}
 
 
-def draw(path, array, opacity, color, unit, least, width=500, height=400, component=None, judged=None, settings=None, options=()):
+def draw(path, array, opacity, color, unit, least, width=500, height=400, component=None, judged=None, settings=None, options=(),
+         judge=None, representation=None, headlight=False):
     """The same scene twice: `stratus render` in floats, ParaView in bytes. component: of a vector, by its name; `stratus render` then draws
     the array `judged`, which holds that component alone, or the magnitude. settings: properties of the representation, which `options` are
-    on the command line."""
+    on the command line. judge: a file of the same data that `stratus render` draws. representation: where the reader's is another.
+    headlight: in place of ParaView's kit of lights."""
     name = os.path.splitext(os.path.basename(path))[0] + (f"-{judged}" if judged else "")
     name += options[0][1:] if options else ""
     floats, bytes_ = (os.path.join(folder, name + end) for end in (".exr", ".png"))
-    command = [stratus, "render", path, "--array", judged or array, "-o", floats, "--size", f"{width}x{height}", "--unit-distance", str(unit),
+    command = [stratus, "render", judge or path, "--array", judged or array, "-o", floats, "--size", f"{width}x{height}", "--unit-distance", str(unit),
                "--opacity", ",".join(f"{v}:{a}" for v, a in opacity), "--color", ",".join(f"{v}:{r}:{g}:{b}" for v, r, g, b in color)]
     command += list(options)
     told = subprocess.run(command, capture_output=True, text=True)
     check(told.returncode == 0, told.stderr)
-    reader, representation = READERS[os.path.splitext(path)[1]]
+    reader, usual = READERS[os.path.splitext(path)[1]]
     source = getattr(simple, reader)(FileName=[path])
     source.UpdatePipeline()
     view = make_view(width, height)
-    shown = simple.Show(source, view, representation)
+    shown = simple.Show(source, view, representation or usual)
     simple.ColorBy(shown, ("POINTS", array, component) if component else ("POINTS", array))
     look, fade = simple.GetColorTransferFunction(array), simple.GetOpacityTransferFunction(array)
     look.ColorSpace, look.UseLogScale = "RGB", 0
@@ -80,6 +82,11 @@ def draw(path, array, opacity, color, unit, least, width=500, height=400, compon
     fade.Points = [number for value, alpha in opacity for number in (value, alpha, 0.5, 0.0)]
     shown.SetRepresentationType("Stratus Volume")
     shown.ScalarOpacityUnitDistance = unit
+    if headlight:
+        view.UseLight = 0
+        lamp = simple.AddLight(view=view)
+        lamp.Coords, lamp.Type, lamp.Intensity, lamp.ConeAngle = "Camera", "Positional", 1, 180
+        lamp.Position, lamp.FocalPoint = [0, 0, 1], [0, 0, 0]
     for key, value in (settings or {}).items():
         setattr(shown, key, value)
     shown.SetScalarBarVisibility(view, False)

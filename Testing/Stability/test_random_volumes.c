@@ -14,7 +14,7 @@ static void choose_options(picture_case* c, double base, double scale, uint32_t*
 {
   stratus_ray_cast_options* o = &c->options;
   const int64_t* n = c->volume.dimensions;
-  o->mode = case_random(random) % 5 < 2 ? STRATUS_MODE_COMPOSITE : (stratus_mode)(case_random(random) % (STRATUS_MODE_ISOSURFACE + 1));
+  o->mode = case_random(random) % 5 < 2 ? STRATUS_MODE_COMPOSITE : (stratus_mode)(int)case_uniform(random, 0.0, STRATUS_MODE_SLICE + 1.0);
   o->contour_count = 1 + (int)(case_random(random) % 3);
   for (int i = 0; i < o->contour_count; ++i) {
     o->contours[i] = base + scale * case_uniform(random, -0.6, 0.6);
@@ -22,6 +22,14 @@ static void choose_options(picture_case* c, double base, double scale, uint32_t*
   if (case_random(random) % 3 == 0) {
     o->average_range[0] = base - 0.3 * scale;
     o->average_range[1] = base + scale * case_uniform(random, -0.3, 0.9);
+  }
+  if (o->mode == STRATUS_MODE_SLICE) {
+    for (int a = 0; a < 3; ++a) { /* a plane or a quadric through the middle of an unturned volume */
+      const double* x = c->volume.coordinates[a];
+      o->slice.center[a] = x ? x[n[a] / 2] : c->volume.origin[a] + 0.5 * c->volume.spacing[a] * (double)n[a];
+      o->slice.linear[a] = case_uniform(random, -1.0, 1.0);
+      o->slice.square[a] = case_random(random) % 2 ? case_uniform(random, -0.2, 0.2) : 0.0;
+    }
   }
   o->normals = (stratus_normals)(case_random(random) % 2);
   o->shade = case_random(random) % 4 == 0;
@@ -100,7 +108,7 @@ static void judge(stratus_context* context, picture_case* c, uint32_t* random, u
 
 static void no_structure_changes_a_bit(void** state)
 {
-  int lit = 0, modes[STRATUS_MODE_ISOSURFACE + 1] = { 0 };
+  int lit = 0, modes[STRATUS_MODE_SLICE + 1] = { 0 };
   uint64_t skipped = 0;
   test_seeds seeds = test_seeds_of(TEST_SOME(ALL), ALL);
   while (test_next(&seeds)) {
@@ -137,7 +145,7 @@ static void no_structure_changes_a_bit(void** state)
   if (test_many(&seeds, 100)) {
     assert_true((uint32_t)lit > seeds.end / 2);
     assert_true(skipped > 0);
-    for (int mode = 0; mode <= STRATUS_MODE_ISOSURFACE; ++mode) {
+    for (int mode = 0; mode <= STRATUS_MODE_SLICE; ++mode) {
       assert_true(modes[mode] > 2);
     }
   }

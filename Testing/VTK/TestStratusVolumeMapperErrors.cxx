@@ -15,7 +15,8 @@ namespace {
 void Modes()
 {
   Refused(
-    "slice", "blend mode", [](Scene& s) { s.Mapper->SetBlendModeToSlice(); }, [](Scene& s) { s.Mapper->SetBlendModeToComposite(); });
+    "slice of nothing", "needs a SliceFunction", [](Scene& s) { s.Mapper->SetBlendModeToSlice(); },
+    [](Scene& s) { s.Mapper->SetBlendModeToComposite(); });
   Refused(
     "shading of a maximum", "shading",
     [](Scene& s) {
@@ -40,7 +41,8 @@ void Modes()
       s.Mapper->SetRenderModeToComposite();
     });
   Refused(
-    "2D transfer function", "TF_1D", [](Scene& s) { s.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_2D); },
+    "2D transfer function", "TransferFunction2D is not set",
+    [](Scene& s) { s.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_2D); },
     [](Scene& s) { s.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_1D); });
   vtkNew<vtkColorTransferFunction> label;
   label->AddRGBPoint(0, 1, 1, 1);

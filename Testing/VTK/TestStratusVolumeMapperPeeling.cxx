@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Translucent surfaces before, inside and behind a volume, with the renderer's flags of depth peeling: the window against the same layers
-// laid one over the other here. A volume is one layer, at the depth where it begins to show; without peels of volumes it lies over all
-// surfaces, and volumes over one another as they come.
+// laid one over the other here. The surfaces cut a volume into layers: what lies before a surface is the picture that ends at the same
+// surface drawn opaque, and an even fog's is known. First hits are one layer, at the depth where they begin; without peels of volumes a
+// volume lies over all surfaces, and volumes over one another as they come.
 #include "tetrahedra_scene.h"
 
 #include "vtkActor.h"
@@ -42,6 +43,7 @@ struct Layer {
 // One of the renderer's volumes, drawn apart: its picture, and how far away it begins.
 struct Drawn {
   std::vector<float> Rgba, Depth;
+  std::vector<std::vector<float>> Until; // the picture that ends at each sheet; none: it is not cut
 };
 
 Drawn Copy(vtkImageData* image)
@@ -79,8 +81,30 @@ bool Expect(const stratus_camera& camera, const int size[2], size_t pixel, const
   const double beginX = camera.eye[0] + (camera.parallel ? u * camera.right[0] + v * camera.up[0] : 0.0);
   std::vector<Layer> layers;
   std::vector<double> begins;
+  const auto crossing = [&](const Sheet& sheet) { return (sheet.Z - camera.eye[2]) / along[2]; };
+  std::vector<std::pair<double, size_t>> cuts; // of the sheets that the ray meets, nearest first
+  for (size_t n = 0; n < sheets.size(); ++n) {
+    const double k = crossing(*sheets[n]);
+    if (beginX + k * along[0] < sheets[n]->Edge && k < opaqueK) {
+      cuts.emplace_back(k, n);
+    }
+  }
+  std::sort(cuts.begin(), cuts.end());
   for (const Drawn& volume : volumes) {
     const float* rgba = &volume.Rgba[4 * pixel];
+    if (peeled && !volume.Until.empty()) {
+      double before[4] = { 0, 0, 0, 0 };
+      for (size_t n = 0; n <= cuts.size(); ++n) {
+        const float* now = n < cuts.size() ? &volume.Until[cuts[n].second][4 * pixel] : rgba;
+        Layer layer = { n < cuts.size() ? cuts[n].first - 1e-6 : HUGE_VAL, {} };
+        for (int c = 0; c < 4 && before[3] < 1.0; ++c) {
+          layer.Rgba[c] = (now[c] - before[c]) / (1.0 - before[3]);
+        }
+        layers.push_back(layer);
+        std::copy(now, now + 4, before);
+      }
+      continue;
+    }
     const double k = volume.Depth[pixel] / std::sqrt(square);
     if (rgba[3] > 0.0f) {
       begins.push_back(k);
@@ -88,7 +112,7 @@ bool Expect(const stratus_camera& camera, const int size[2], size_t pixel, const
     }
   }
   for (const auto& sheet : sheets) {
-    const double k = (sheet->Z - camera.eye[2]) / along[2];
+    const double k = crossing(*sheet);
     const double x = beginX + k * along[0];
     if (std::fabs(x - sheet->Edge) < 0.5) {
       return false;
@@ -173,9 +197,33 @@ Backdrop DrawBackdrop(Scene& scene, const Sheets& sheets, const std::vector<vtkV
   return backdrop;
 }
 
+// Draws the volumes up to each sheet, which is opaque and alone then.
+void DrawUntil(Scene& scene, const Sheets& sheets, std::vector<Drawn>& drawn, const std::function<std::vector<Drawn>()>& pictures)
+{
+  const int peeling = scene.Renderer->GetUseDepthPeeling();
+  scene.Renderer->SetUseDepthPeeling(0);
+  for (const auto& one : sheets) {
+    for (const auto& sheet : sheets) {
+      sheet->Actor->SetVisibility(sheet == one);
+    }
+    one->Actor->GetProperty()->SetOpacity(1);
+    scene.Render();
+    const std::vector<Drawn> until = pictures();
+    for (size_t n = 0; n < drawn.size(); ++n) {
+      drawn[n].Until.push_back(until[n].Rgba);
+    }
+    one->Actor->GetProperty()->SetOpacity(one->Color[3]);
+  }
+  for (const auto& sheet : sheets) {
+    sheet->Actor->VisibilityOn();
+  }
+  scene.Renderer->SetUseDepthPeeling(peeling);
+  scene.Render();
+}
+
 // Two frames of the scene against the layers. pictures: of the volumes, in the order in which they are drawn.
 void Judge(Scene& scene, const std::string& name, const Flags& flags, const Sheets& sheets, const std::vector<vtkVolume*>& volumes,
-  const std::function<std::vector<Drawn>()>& pictures, bool parallel = false)
+  const std::function<std::vector<Drawn>()>& pictures, bool parallel = false, bool cut = true)
 {
   scene.Renderer->SetBackground(Ground[0], Ground[1], Ground[2]);
   scene.Window->SetMultiSamples(flags.Samples);
@@ -189,7 +237,10 @@ void Judge(Scene& scene, const std::string& name, const Flags& flags, const Shee
   scene.Render();
   const std::vector<unsigned char> shown = scene.Bytes();
   CHECK(first == shown, "%s: two frames of one scene differ", name.c_str());
-  const std::vector<Drawn> drawn = pictures();
+  std::vector<Drawn> drawn = pictures();
+  if (cut) {
+    DrawUntil(scene, sheets, drawn, pictures);
+  }
   const stratus_camera camera = ReferenceCamera(scene.Renderer);
   const int* size = scene.Renderer->GetSize();
   const Sheets none;
@@ -213,7 +264,8 @@ void Judge(Scene& scene, const std::string& name, const Flags& flags, const Shee
     }
   }
   // Each layer is laid over another in bytes, and what lies behind all of them is one, too.
-  const double bar = 0.51 * static_cast<double>(sheets.size() + drawn.size() + 2);
+  const size_t layers = cut && peeled ? drawn.size() * (sheets.size() + 1) : drawn.size();
+  const double bar = 0.51 * static_cast<double>(sheets.size() + layers + 2);
   std::printf("%s, peeling %d, for volumes %d, %d samples, %s: %.2f of 255, bar %.2f, %zu pixels, %zu lit%s\n", name.c_str(), flags.Peeling,
     flags.ForVolumes, scene.Window->GetMultiSamples(), parallel ? "parallel" : "perspective", worst, bar, judged, lit,
     backdrop.Lost ? ", sheets lost by VTK" : "");
@@ -293,6 +345,7 @@ void TwoVolumes(bool shared)
           scene.Volume->SetMapper(mapper);
           scene.Render();
           drawn[0] = Copy(mapper->GetLastImage());
+          scene.Volume->SetMapper(scene.Mapper);
         }
         return drawn;
       };
@@ -310,16 +363,17 @@ void TwoVolumes(bool shared)
 void OtherPictures()
 {
   const Flags flags = { true, true, 0 };
-  const auto judge = [&](const char* name, const std::function<void(Scene&)>& change) {
+  const auto judge = [&](const char* name, bool cut, const std::function<void(Scene&)>& change) {
     Scene scene;
     change(scene);
     Sheets sheets;
     sheets.emplace_back(new Sheet(scene, 40, 12, 0.9, 0.1, 0.2, 0.4));
     sheets.emplace_back(new Sheet(scene, 12, 20, 0.1, 0.9, 0.2, 0.4));
-    Judge(scene, name, flags, sheets, { scene.Volume }, [&] { return std::vector<Drawn>{ Copy(scene.Mapper->GetLastImage()) }; });
+    Judge(
+      scene, name, flags, sheets, { scene.Volume }, [&] { return std::vector<Drawn>{ Copy(scene.Mapper->GetLastImage()) }; }, false, cut);
   };
-  judge("first hits", [](Scene& scene) { scene.Mapper->SetRenderModeToFirstHit(); });
-  judge("a part of the window", [](Scene& scene) { scene.Renderer->SetViewport(0.25, 0.125, 1, 0.875); });
+  judge("first hits", false, [](Scene& scene) { scene.Mapper->SetRenderModeToFirstHit(); });
+  judge("a part of the window", true, [](Scene& scene) { scene.Renderer->SetViewport(0.25, 0.125, 1, 0.875); });
 }
 
 void Tetrahedra()
@@ -334,6 +388,45 @@ void Tetrahedra()
       Judge(scene, "tetrahedra, a sheet at " + std::to_string(4 * z), flags, sheets, { scene.Volume },
         [&] { return std::vector<Drawn>{ Copy(scene.Tetrahedra->GetLastImage()) }; });
       CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
+    }
+  }
+}
+
+// An even fog before and behind a sheet, by the law of absorption.
+void Fog()
+{
+  for (const double z : { 2.0, 7.0, 12.5 }) {
+    Scene scene;
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(15, 15, 15); // 0..28 along x and y, 0..14 along z
+    image->SetSpacing(2, 2, 1);
+    image->AllocateScalars(VTK_FLOAT, 1);
+    image->GetPointData()->GetScalars()->FillComponent(0, 1.0);
+    scene.Mapper->SetInputData(image);
+    vtkVolumeProperty* look = scene.Volume->GetProperty();
+    look->SetScalarOpacityUnitDistance(1);
+    look->GetScalarOpacity()->RemoveAllPoints();
+    look->GetScalarOpacity()->AddPoint(0, 0.1);
+    look->GetScalarOpacity()->AddPoint(2, 0.1);
+    look->GetRGBTransferFunction()->RemoveAllPoints();
+    look->GetRGBTransferFunction()->AddRGBPoint(0, 0.2, 0.4, 1);
+    Sheets sheets;
+    sheets.emplace_back(new Sheet(scene, z, 1000, 0.9, 0.1, 0.2, 0.5));
+    scene.Renderer->SetBackground(0, 0, 0);
+    scene.Window->SetMultiSamples(0);
+    scene.Renderer->SetUseDepthPeeling(1);
+    scene.Renderer->SetUseDepthPeelingForVolumes(true);
+    Look(scene, true);
+    scene.Render();
+    const std::vector<unsigned char> shown = scene.Bytes();
+    const int* size = scene.Renderer->GetSize();
+    const size_t middle = 4 * (static_cast<size_t>(size[1] / 2) * static_cast<size_t>(size[0]) + static_cast<size_t>(size[0] / 2));
+    const double fog[3] = { 0.2, 0.4, 1 }, sheet[3] = { 0.9, 0.1, 0.2 };
+    const double before = 1 - std::pow(0.9, 14 - z), behind = 1 - std::pow(0.9, z);
+    for (size_t c = 0; c < 3; ++c) {
+      const double right = fog[c] * before + (1 - before) * (0.5 * sheet[c] + 0.5 * fog[c] * behind);
+      CHECK(std::fabs(255 * right - shown[middle + c]) < 2.1, "fog cut at %g: channel %zu is %d, not %.1f", z, c, shown[middle + c],
+        255 * right);
     }
   }
 }
@@ -372,6 +465,7 @@ int main()
   TwoVolumes(true);
   OtherPictures();
   Tetrahedra();
+  Fog();
   Errors();
   return Failures == 0 ? 0 : 1;
 }

@@ -15,9 +15,6 @@
 namespace {
 void Shading()
 {
-  Refused(
-    "intensity of what is clipped", "UseClippedVoxelIntensity", [](Scene& s) { s.Volume->GetProperty()->UseClippedVoxelIntensityOn(); },
-    [](Scene& s) { s.Volume->GetProperty()->UseClippedVoxelIntensityOff(); });
   vtkNew<vtkPiecewiseFunction> gradient;
   gradient->AddPoint(0, 0);
   gradient->AddPoint(1, 1);

@@ -366,9 +366,11 @@ void KeptCalls()
   const std::vector<float> plain = scene.Picture();
   CHECK(mapper->IsRenderSupported(scene.Window, scene.Volume->GetProperty()) == 1, "the property is supported");
   CHECK(mapper->IsRenderSupported(scene.Window, nullptr) == 0, "no property is not");
-  scene.Volume->GetProperty()->SetUseClippedVoxelIntensity(1);
+  mapper->SetBlendModeToMaximumIntensity();
+  scene.Volume->GetProperty()->ShadeOn();
   CHECK(mapper->IsRenderSupported(scene.Window, scene.Volume->GetProperty()) == 0, "what is refused is not supported");
-  scene.Volume->GetProperty()->SetUseClippedVoxelIntensity(0);
+  scene.Volume->GetProperty()->ShadeOff();
+  mapper->SetBlendModeToComposite();
   CHECK(mapper->GetRequestedRenderMode() == vtkStratusVolumeMapper::DefaultRenderMode, "mode %d", mapper->GetRequestedRenderMode());
   mapper->SetRequestedRenderModeToGPU();
   CHECK(mapper->GetRequestedRenderMode() == vtkStratusVolumeMapper::GPURenderMode, "mode %d", mapper->GetRequestedRenderMode());

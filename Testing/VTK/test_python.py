@@ -61,7 +61,7 @@ check(numpy.isfinite(vtk_to_numpy(last.GetPointData().GetArray("Depth")).reshape
 
 errors = []
 mapper.AddObserver("ErrorEvent", lambda *_: errors.append(1))
-mapper.SetBlendModeToSlice()
+mapper.SetBlendModeToSlice()  # without a SliceFunction
 window.Render()
 check(len(errors) == 1, "what is not supported is refused by one error")
 

@@ -300,7 +300,10 @@ static inline reference_scene case_scene(const picture_case* c)
     .interpolation = c->options.interpolation,
     .opaque_depth = c->opaque_depth,
     .crop = c->options.crop,
-    .clip_plane_count = c->options.clip_plane_count };
+    .clip_plane_count = c->options.clip_plane_count,
+    .transfer_2d = c->options.transfer_2d,
+    .clip_gradients = c->options.clip_gradients,
+    .clipped_value = c->options.clipped_value };
   memcpy(scene.crop_bounds, c->options.crop_bounds, sizeof scene.crop_bounds);
   memcpy(scene.clip_planes, c->options.clip_planes, sizeof scene.clip_planes);
   return scene;

@@ -114,6 +114,7 @@ static double look(const reference_scene* scene, const reference_field* parts, c
   for (int a = 0; a < 3; ++a) {
     place.spot[a] = reference_axis_find(f->volume, a, p[a]);
     place.world[a] = r->origin[a] + s * r->direction[a];
+    place.at[a] = p[a];
   }
   for (int i = 0; i < reference_components(scene->volume); ++i) {
     values[i] = reference_field_sample(parts + i, p, &c[i]);

@@ -28,6 +28,9 @@ typedef struct reference_scene {
   int dependent;                     /* as in stratus_ray_cast_options, as the next two */
   int mean_components;
   double gradient_distance;
+  const stratus_transfer_2d* transfer_2d; /* as in stratus_ray_cast_options; `transfer` then stays unread, but for its unit_distance */
+  int clip_gradients;                     /* as in stratus_ray_cast_options, as the next */
+  double clipped_value;
   const uint8_t* labels; /* the mask as in stratus_ray_cast_options, if there are labels */
   int label_count;
   int tile; /* n > 1: only one pixel of each n x n is drawn, see reference_picks(); the others stay transparent */

@@ -180,6 +180,10 @@ int reference_field_create(const reference_scene* scene, reference_field* f)
   }
   memset(f->shown, 0, (size_t)(f->blocks[0] * f->blocks[1] * f->blocks[2]));
   const int components = reference_components(v);
+  if (scene->transfer_2d) { /* any block may show */
+    memset(f->shown, 1, (size_t)(f->blocks[0] * f->blocks[1] * f->blocks[2]));
+    return 0;
+  }
   for (int c = scene->dependent ? components - 1 : 0; c < components; ++c) {
     const stratus_volume view = reference_component(v, c);
     find_shown_blocks(f, &view, scene->dependent ? scene->transfer : scene->transfer + c);

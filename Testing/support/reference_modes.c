@@ -399,6 +399,57 @@ static void draw_surfaces(const scene* s, const line* l, float rgba[4], float* d
   rgba[3] = (float)(1.0 - left);
 }
 
+/* ---- slices */
+
+/* Returns the function whose zeros are the slice, where the line is at t. */
+static double slice_at(const scene* s, const line* l, double t)
+{
+  const stratus_slice* slice = &s->options->slice;
+  double p[3], d[3], sum = slice->constant;
+  point_on(l, t, p);
+  for (int r = 0; r < 3; ++r) {
+    d[r] = s->to_world[r][3] - slice->center[r];
+    for (int c = 0; c < 3; ++c) {
+      d[r] += s->to_world[r][c] * p[c];
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    sum += d[i] * (slice->square[i] * d[i] + slice->square[3 + i] * d[(i + 1) % 3] + slice->linear[i]);
+  }
+  return sum;
+}
+
+/* Finds the surface by bisection in small parts of the ray, and shows the values there. */
+static void draw_slice(const scene* s, const line* l, float rgba[4], float* depth)
+{
+  enum { SLICE_PARTS = 4000 };
+  double left = 1.0, before = slice_at(s, l, l->begin);
+  for (int part = 0; part < SLICE_PARTS; ++part) {
+    double lo = l->begin + (l->end - l->begin) * part / SLICE_PARTS, hi = l->begin + (l->end - l->begin) * (part + 1) / SLICE_PARTS;
+    const double first = before;
+    before = slice_at(s, l, hi);
+    if ((first < 0.0) == (before < 0.0)) {
+      continue;
+    }
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (lo + hi);
+      *((slice_at(s, l, middle) < 0.0) == (first < 0.0) ? &lo : &hi) = middle;
+    }
+    const double value = field_on(s, l, lo);
+    double color[4];
+    if (isnan(value)) {
+      continue;
+    }
+    color_at(s->transfer, value, color);
+    for (int c = 0; c < 3; ++c) {
+      rgba[c] += (float)(left * color[3] * color[c]);
+    }
+    left *= 1.0 - color[3];
+    *depth = color[3] > 0.0 && isinf(*depth) ? (float)lo : *depth;
+  }
+  rgba[3] = (float)(1.0 - left);
+}
+
 void reference_modes_render(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
   const stratus_ray_cast_options* options, int width, int height, double step, float* rgba, float* depth)
 {
@@ -424,6 +475,8 @@ void reference_modes_render(const stratus_volume* volume, const stratus_transfer
     }
     if (options->mode == STRATUS_MODE_ISOSURFACE) {
       draw_surfaces(&s, &l, to, far);
+    } else if (options->mode == STRATUS_MODE_SLICE) {
+      draw_slice(&s, &l, to, far);
     } else if (options->mode == STRATUS_MODE_MAXIMUM || options->mode == STRATUS_MODE_MINIMUM) {
       draw_extreme(&s, &l, step, to, far);
     } else if (options->mode == STRATUS_MODE_COMPOSITE) {

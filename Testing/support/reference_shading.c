@@ -17,8 +17,8 @@ int reference_components(const stratus_volume* volume)
 
 int reference_has_shading(const reference_scene* scene)
 {
-  return scene->shading || scene->materials || scene->transfer->gradient_count > 0 || reference_components(scene->volume) > 1 ||
-    scene->label_count > 0;
+  return scene->transfer_2d || scene->shading || scene->materials || scene->transfer->gradient_count > 0 ||
+    reference_components(scene->volume) > 1 || scene->label_count > 0;
 }
 
 /* Returns the transfer function of the nearest value's label. */
@@ -127,18 +127,116 @@ static void gradient_at(const stratus_volume* volume, const reference_spot p[3],
   }
 }
 
-static double gradient_factor(const stratus_volume* volume, const stratus_transfer* transfer, const double g[3])
+/* Returns whether a clip plane hides a position, given by places, of which a volume without coordinates has one a value. */
+static bool is_clipped(const reference_scene* scene, const double p[3])
+{
+  const stratus_volume* v = scene->volume;
+  bool hidden = false;
+  for (int i = 0; i < scene->clip_plane_count; ++i) {
+    double height = scene->clip_planes[i][3];
+    for (int r = 0; r < 3; ++r) {
+      double world = v->matrix[4 * r + 3];
+      for (int m = 0; m < 3; ++m) {
+        double local = v->origin[m];
+        for (int a = 0; a < 3; ++a) {
+          local += v->direction[3 * m + a] * v->spacing[a] * (p[a] + (v->cell_centered ? 0.5 : 0.0));
+        }
+        world += v->matrix[4 * r + m] * local;
+      }
+      height += scene->clip_planes[i][r] * world;
+    }
+    hidden = hidden || height < 0.0;
+  }
+  return hidden;
+}
+
+/* Returns the field at a place, NAN where there is none. */
+static double field_near(const reference_scene* scene, const stratus_volume* view, const double p[3])
+{
+  double sum = 0.0;
+  int64_t at[3], nearest[3];
+  double t[3];
+  for (int a = 0; a < 3; ++a) {
+    const reference_spot spot = reference_axis_find(view, a, p[a]);
+    if (p[a] < 0.0 || p[a] > (double)(view->dimensions[a] - 1)) {
+      return (double)NAN;
+    }
+    at[a] = spot.cell;
+    nearest[a] = spot.nearest;
+    t[a] = spot.fraction;
+  }
+  if (scene->interpolation == STRATUS_INTERPOLATION_NEAREST) {
+    return reference_value(view, nearest[0], nearest[1], nearest[2]);
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1.0;
+    int64_t c[3];
+    for (int a = 0; a < 3; ++a) {
+      const int up = corner >> a & 1;
+      weight *= up ? t[a] : 1.0 - t[a];
+      c[a] = at[a] + up < view->dimensions[a] ? at[a] + up : at[a];
+    }
+    sum += weight * reference_value(view, c[0], c[1], c[2]);
+  }
+  return sum;
+}
+
+/* Takes the gradient anew along axes with a neighbour that clip planes hide. */
+static void clip_gradient(const reference_scene* scene, const stratus_volume* view, const reference_place* place, double g[3])
+{
+  double here[3];
+  for (int a = 0; a < 3; ++a) {
+    here[a] = fmin(fmax(place->at[a], 0.0), (double)(view->dimensions[a] - 1));
+  }
+  for (int a = 0; a < 3; ++a) {
+    double value[2], from = 0.0, to = 0.0;
+    bool any = false;
+    for (int side = 0; side < 2; ++side) {
+      double p[3] = { place->at[0], place->at[1], place->at[2] };
+      p[a] += side ? 1.0 : -1.0;
+      const bool hidden = is_clipped(scene, p);
+      for (int b = 0; b < 3; ++b) {
+        p[b] = b == a ? p[b] : here[b];
+      }
+      value[side] = hidden ? scene->clipped_value : field_near(scene, view, p);
+      any = any || hidden;
+      from = side == 0 && isfinite(value[0]) ? -1.0 : from;
+      to = side == 1 && isfinite(value[1]) ? 1.0 : to;
+    }
+    if (any) {
+      const double middle = field_near(scene, view, here);
+      g[a] = ((to > 0.0 ? value[1] : middle) - (from < 0.0 ? value[0] : middle)) / (to - from);
+    }
+  }
+}
+
+static void gradient_of(
+  const reference_scene* scene, const stratus_volume* view, const reference_place* place, reference_gradients* kept, double g[3])
+{
+  gradient_at(view, place->spot, scene->interpolation == STRATUS_INTERPOLATION_LINEAR, kept, g);
+  if (scene->clip_gradients) {
+    clip_gradient(scene, view, place, g);
+  }
+}
+
+/* Returns a gradient's length in values per mean spacing. */
+static double magnitude_of(const stratus_volume* volume, const double g[3])
 {
   double v[3];
   const double mean = (reference_axis_mean(volume, 0) + reference_axis_mean(volume, 1) + reference_axis_mean(volume, 2)) / 3.0;
-  if (transfer->gradient_count == 0) {
-    return 1.0;
-  }
   for (int a = 0; a < 3; ++a) {
     v[a] = g[a] / reference_axis_unit(volume, a) * mean;
   }
+  return length_of(v);
+}
+
+static double gradient_factor(const stratus_volume* volume, const stratus_transfer* transfer, const double g[3])
+{
+  if (transfer->gradient_count == 0) {
+    return 1.0;
+  }
   const stratus_transfer function = { .opacity = transfer->gradient, .opacity_count = transfer->gradient_count, .clamp = 1 };
-  return reference_opacity(&function, length_of(v));
+  return reference_opacity(&function, magnitude_of(volume, g));
 }
 
 /* ---- light */
@@ -236,7 +334,7 @@ static void add_medium(const reference_scene* scene, const reference_place* plac
           : (stratus_material){ 0 };
   if (material.shade || thinning->gradient_count > 0) {
     const stratus_volume view = reference_component(scene->volume, shown);
-    gradient_at(&view, place->spot, scene->interpolation == STRATUS_INTERPOLATION_LINEAR, place->gradients + shown, g);
+    gradient_of(scene, &view, place, place->gradients + shown, g);
   }
   const double factor = gradient_factor(scene->volume, thinning, g);
   const double depth = weight * thinned(scene, transfer, factor, depth_of(opacity)) / transfer->unit_distance;
@@ -250,12 +348,40 @@ static void add_medium(const reference_scene* scene, const reference_place* plac
   }
 }
 
+/* Shades by a function of two variables, whose second is the gradient's magnitude or the second component's value. */
+static void shade_by_two(const reference_scene* scene, const reference_place* place, const double* values, double* tau, double glow[3])
+{
+  const stratus_transfer_2d* of = scene->transfer_2d;
+  const stratus_volume view = reference_component(scene->volume, 0);
+  const bool two = reference_components(scene->volume) > 1;
+  double g[3], rgba[4];
+  if (isnan(values[0]) || (two && isnan(values[1]))) {
+    return;
+  }
+  gradient_of(scene, &view, place, place->gradients, g);
+  reference_transfer_2d(
+    of, scene->interpolation == STRATUS_INTERPOLATION_NEAREST, values[0], two ? values[1] : magnitude_of(&view, g), rgba);
+  *tau = depth_of(rgba[3]) / of->unit_distance;
+  if (scene->shading) {
+    const stratus_material material = { 1, scene->shading->ambient, scene->shading->diffuse, scene->shading->specular,
+      scene->shading->specular_power };
+    illuminate(scene, &material, place, g, rgba);
+  }
+  for (int a = 0; a < 3; ++a) {
+    glow[a] = *tau * rgba[a];
+  }
+}
+
 void reference_shade(const reference_scene* scene, const reference_place* place, const double* values, double* tau, double glow[3])
 {
   const int components = reference_components(scene->volume), last = components - 1;
   double rgb[3], squares = 0.0;
   bool whole = true;
   *tau = glow[0] = glow[1] = glow[2] = 0.0;
+  if (scene->transfer_2d) {
+    shade_by_two(scene, place, values, tau, glow);
+    return;
+  }
   for (int c = 0; c < components; ++c) {
     whole = whole && !isnan(values[c]);
   }

@@ -7,6 +7,8 @@
 #include "reference.h"
 #include "reference_axis.h"
 
+#include <stdbool.h>
+
 #define REFERENCE_COMPONENTS_MAX 4
 
 /* The gradients at the corners of the cell that was asked last, in values per unit of place: a ray takes many samples in each cell. */
@@ -19,6 +21,7 @@ typedef struct reference_gradients {
 typedef struct reference_place {
   reference_spot spot[3];         /* among the values */
   double world[3];                /* world position */
+  double at[3];                   /* the same among places */
   double direction[3];            /* of the ray, in the world, of length 1 */
   double to_index[3][3];          /* world vectors to those of places (reference_axis.h) */
   reference_gradients* gradients; /* one for each component, which the ray keeps */
@@ -33,6 +36,9 @@ stratus_volume reference_component(const stratus_volume* volume, int c);
 /* Shades a sample. values: one per component, NAN where it is hidden. *tau: optical depth per unit distance. glow: emitted light per unit
  * distance. */
 void reference_shade(const reference_scene* scene, const reference_place* place, const double* values, double* tau, double glow[3]);
+
+/* reference_transfer_2d.c: colour (not multiplied by opacity) and opacity of a value and a second number. */
+void reference_transfer_2d(const stratus_transfer_2d* of, bool nearest, double value, double second, double rgba[4]);
 
 /* reference_field.c */
 double reference_opacity(const stratus_transfer* transfer, double value);

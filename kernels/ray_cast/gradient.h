@@ -37,6 +37,18 @@ INLINE vfloat gradient_stretched(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
 }
 
 INLINE vfloat bilinear(const vfloat v[4], vfloat f, vfloat g) { return v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g); }
+
+/* The lanes whose positions clip planes hide. */
+INLINE vmask clipped_off(CONSTANT stratus_ray_cast_arguments* a, const vfloat x[3])
+{
+  vmask off = m_none();
+  for (int plane = 0; plane < a->crop.clip_count; ++plane) {
+    CONSTANT stratus_pair* n = a->crop.clip[plane];
+    const vfloat height = v_fma(v_set(n[0].hi), x[0], v_fma(v_set(n[1].hi), x[1], v_fma(v_set(n[2].hi), x[2], v_set(n[3].hi))));
+    off = off | v_lt(height, v_set(0.0f));
+  }
+  return off;
+}
 #endif
 
 /* The values i and i+1 of row (j, k). At the volume's end both are the last value. */
@@ -99,8 +111,8 @@ INLINE vfloat RAY_NAME(gradient_along)(CONSTANT stratus_ray_cast_arguments* a, G
   return g;
 }
 
-/* g: change of the value per voxel (mean voxel) along each axis, at the position x. Lanes outside `mask` get any number. */
-INLINE void RAY_NAME(ray_gradient)(
+/* The gradient of the whole field, as ray_gradient(). */
+INLINE void RAY_NAME(field_gradient)(
   CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* grid, const vfloat x[3], vmask mask, vfloat g[3])
 {
   if (RAY_RARE(RAY_NEAREST, a->values.nearest)) {
@@ -160,4 +172,65 @@ INLINE void RAY_NAME(ray_gradient)(
   g[0] = bilinear(line[0], t[1], t[2]);
   g[1] = bilinear(line[1], t[0], t[2]);
   g[2] = bilinear(line[2], t[0], t[1]);
+}
+
+/* The field at x, whatever hides it; at its end beyond. Grids of equal spacing only. */
+INLINE vfloat RAY_NAME(field_at)(CONSTANT stratus_ray_cast_arguments* a, value_source values, const vfloat x[3], vmask mask)
+{
+  vint at[3];
+  vfloat t[3], v[8];
+  for (int axis = 0; axis < 3; ++axis) {
+    const vfloat place = v_clamp(x[axis], 0.0f, a->values.last[axis]);
+    at[axis] = v_to_int(place + v_set(RAY_RARE(RAY_NEAREST, a->values.nearest) ? 0.5f : 0.0f));
+    t[axis] = place - v_from_int(at[axis]);
+  }
+  if (RAY_RARE(RAY_NEAREST, a->values.nearest)) {
+    return RAY_NAME(fetch_nearest)(a, values, at[0], at[1], at[2], mask);
+  }
+  RAY_NAME(fetch_cell)(a, values, at[0], at[1], at[2], mask, v);
+  return v_lerp(v_lerp(v_lerp(v[0], v[1], t[0]), v_lerp(v[2], v[3], t[0]), t[1]),
+    v_lerp(v_lerp(v[4], v[5], t[0]), v_lerp(v[6], v[7], t[0]), t[1]), t[2]);
+}
+
+/* Takes the gradient anew along the axes along which a clip plane hides a neighbour, a voxel before or behind x: with clipped_value in its
+ * place. A neighbour that the volume does not have, or whose value is not finite, gives way to the field at x. Not inlined: few frames ask
+ * for it. */
+GRID_OUTLINE void RAY_NAME(clip_gradient)(
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, const vfloat x[3], vmask mask, vfloat g[3])
+{
+  const vfloat hidden = v_set(a->crop.clipped_value), half_one = v_set(0.5f), one = v_set(1.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    vfloat y[2][3], value[2];
+    vmask off[2], there[2];
+    for (int side = 0; side < 2; ++side) {
+      for (int i = 0; i < 3; ++i) {
+        y[side][i] = x[i];
+      }
+      y[side][axis] = x[axis] + v_set(side ? 1.0f : -1.0f);
+      off[side] = mask & clipped_off(a, y[side]);
+      there[side] = v_le(v_set(0.0f), y[side][axis]) & v_le(y[side][axis], v_set((float)(a->values.dimensions[axis] - 1)));
+    }
+    const vmask any = off[0] | off[1];
+    if (!m_any(any)) {
+      continue;
+    }
+    for (int side = 0; side < 2; ++side) {
+      value[side] = RAY_NAME(field_at)(a, values, y[side], any);
+      there[side] = (there[side] & v_finite(value[side])) | off[side];
+      value[side] = v_select(off[side], hidden, value[side]);
+    }
+    const vfloat here = RAY_NAME(field_at)(a, values, x, any);
+    const vfloat rise = v_select(there[1], value[1], here) - v_select(there[0], value[0], here);
+    g[axis] = v_select(any, rise * v_select(there[0] & there[1], half_one, one), g[axis]);
+  }
+}
+
+/* g: change of the value per voxel (mean voxel) along each axis, at the position x. Lanes outside `mask` get any number. */
+INLINE void RAY_NAME(ray_gradient)(
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* grid, const vfloat x[3], vmask mask, vfloat g[3])
+{
+  RAY_NAME(field_gradient)(a, values, grid, x, mask, g);
+  if (RAY_RARE(RAY_CLIP, a->crop.clipped)) {
+    RAY_NAME(clip_gradient)(a, values, x, mask, g);
+  }
 }

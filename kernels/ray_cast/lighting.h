@@ -96,19 +96,23 @@ INLINE vfloat gradient_opacity(
   return v_lerp(low, high, place - v_from_int(entry));
 }
 
+/* The optical depth of an opacity, of which `passes` is 1 less it. Near 1 the logarithm loses what that has rounded, so that a series takes
+ * opacities from 0 to 1/8. */
+INLINE vfloat depth_of_opacity(vfloat opacity, vfloat passes)
+{
+  vfloat thin = v_set(1.0f / 8.0f);
+  for (int n = 7; n > 0; --n) {
+    thin = v_fma(thin, opacity, v_set(1.0f / (float)n));
+  }
+  return v_select(v_lt(opacity, v_set(0.125f)), thin * opacity, v_set(0.0f) - v_logarithm(v_clamp(passes, 1e-35f, 1.0f)));
+}
+
 /* What multiplies the optical depth of a sample, `depth` over a whole one, where `factor`, 0..1, multiplies the opacity of the way that
  * factor_reach tells. 1 - F A lets pass what a depth of -ln(1 - F A) does. */
 INLINE vfloat factor_of_opacity(CONSTANT stratus_ray_cast_arguments* a, vfloat factor, vfloat depth)
 {
-  const vfloat zero = v_set(0.0f), one = v_set(1.0f), way = depth * v_set(a->media.factor_reach), opacity = v_absorbed(way);
-  const vfloat y = factor * opacity;
-  /* Near 1 the logarithm loses what 1 - y has rounded, so that a series takes y from 0 to 1/8. */
-  vfloat thin = v_set(1.0f / 8.0f);
-  for (int n = 7; n > 0; --n) {
-    thin = v_fma(thin, y, v_set(1.0f / (float)n));
-  }
-  const vfloat passes = v_clamp((one - factor) + factor * (one - opacity), 1e-35f, 1.0f);
-  const vfloat effective = v_select(v_lt(y, v_set(0.125f)), thin * y, zero - v_logarithm(passes));
+  const vfloat one = v_set(1.0f), way = depth * v_set(a->media.factor_reach), opacity = v_absorbed(way);
+  const vfloat effective = depth_of_opacity(factor * opacity, (one - factor) + factor * (one - opacity));
   return v_select(v_lt(factor, one), effective * v_reciprocal(v_max(way, v_set(1e-30f))), one);
 }
 

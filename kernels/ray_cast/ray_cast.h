@@ -148,9 +148,12 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 }
 
 /* These stand here and not where they are used, for a device is sent each header once, in only one of the branches below. */
-#if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE
+#if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE || STRATUS_RAY_MODE == STRATUS_RAY_TRANSFER_2D
 #include "gradient.h"
 #include "lighting.h"
+#endif
+#if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_TRANSFER_2D
+#include "component.h"
 #endif
 #if RAY_BY_CELLS
 #include "cell_cubic.h"
@@ -160,6 +163,10 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #include "ray_shading.h"
 #elif STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE
 #include "ray_isosurface.h"
+#elif STRATUS_RAY_MODE == STRATUS_RAY_TRANSFER_2D
+#include "ray_transfer_2d.h"
+#elif STRATUS_RAY_MODE == STRATUS_RAY_SLICE
+#include "ray_slice.h"
 #elif STRATUS_RAY_MODE == STRATUS_RAY_CELLS || STRATUS_RAY_MODE == STRATUS_RAY_LOCAL
 #include "ray_cells.h"
 #elif STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
@@ -186,7 +193,7 @@ INLINE void RAY_NAME(ray_shade)(
 }
 #endif
 
-#if STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS
+#if STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS && STRATUS_RAY_MODE != STRATUS_RAY_SLICE
 /* Asks the structure once enough rays need it. Returns 0 if no ray is left. */
 INLINE int RAY_NAME(ray_leap)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
 {
@@ -203,7 +210,7 @@ INLINE int RAY_NAME(ray_leap)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
 
 #if STRATUS_RAY_MODE == STRATUS_RAY_LOCAL
 #include "ray_local.h"
-#elif STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS
+#elif STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS && STRATUS_RAY_MODE != STRATUS_RAY_SLICE
 INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
@@ -229,7 +236,7 @@ INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, valu
 #endif
 #endif
 
-#if RAY_BY_CELLS
+#if RAY_BY_CELLS || STRATUS_RAY_MODE == STRATUS_RAY_SLICE
 #if PACKETS_TOGETHER == 2
 INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
@@ -261,6 +268,9 @@ INLINE void RAY_NAME(ray_load)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
   if (RAY_RARE(RAY_REGIONS, a->crop.regions)) {
     crop_begin(a, &rays, k, crop);
   }
+#if STRATUS_RAY_MODE == STRATUS_RAY_SLICE
+  slice_begin(a, x, y, &rays, k);
+#endif
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
   k->front = v_set(-LARGEST_FLOAT);
 #endif

@@ -60,8 +60,10 @@
 /* Composite, too, but a sample is more than its value's colour and opacity: lit, thinned by the gradient, of several components, or
  * labelled. */
 #define STRATUS_RAY_SHADING 4
-#define STRATUS_RAY_CELLS 5 /* light behind light, cell by cell */
-#define STRATUS_RAY_LOCAL 6 /* light behind light, cell by cell in rough blocks, from sample to sample elsewhere */
+#define STRATUS_RAY_CELLS 5       /* light behind light, cell by cell */
+#define STRATUS_RAY_LOCAL 6       /* light behind light, cell by cell in rough blocks, from sample to sample elsewhere */
+#define STRATUS_RAY_TRANSFER_2D 7 /* light behind light, by a function of the value and of a second number */
+#define STRATUS_RAY_SLICE 8       /* the values on a surface of the world, light behind light */
 
 /* The rays: ray k (forward + u right + v up) from eye; parallel: from eye + u right + v up along forward. */
 typedef struct stratus_ray_camera {
@@ -91,6 +93,8 @@ typedef struct stratus_ray_crop {
   stratus_pair clip[STRATUS_CLIP_MAX][4];
   stratus_pair plane[3][2];
   int clip_count, has_piece;
+  int clipped;         /* 1: gradients take clipped_value in place of values that clip planes hide */
+  float clipped_value; /* relative to the bias, as rays see values */
   int regions; /* the regions between the planes that are shown: bit x + 3 y + 9 z, each 0..2; 0: there are none, and the box is all */
 } stratus_ray_crop;
 
@@ -181,6 +185,22 @@ typedef struct stratus_ray_media {
   int label_factors; /* some label has a gradient opacity */
 } stratus_ray_media;
 
+/* A function of two variables, in entries of red, green, blue and opacity, a row of columns after the other. Values have columns, and
+ * gradient magnitudes or values of the second component have rows. Behind the entries stands each column's largest opacity. */
+typedef struct stratus_ray_function_2d {
+  int second;                       /* 1: rows are of the second component's values, 0: of the gradient's magnitude */
+  int columns, rows;                /* each at least 2 */
+  float base[2], scale[2], last[2]; /* the place among columns, rows: clamp((number - base) * scale - 1/2, 0, last) */
+  int opacity_at;                   /* where the columns' largest opacities begin */
+  float reach;                      /* a sample's length in the lengths that opacities are of */
+} stratus_ray_function_2d;
+
+/* A surface where a function of second degree is 0. With d = x - center, in index coordinates, the function is the sum of square[0..2]
+ * times dx dx, dy dy, dz dz, of square[3..5] times dx dy, dy dz, dx dz, of linear times d, and of level. */
+typedef struct stratus_ray_surface {
+  stratus_pair center[3], square[6], linear[3], level;
+} stratus_ray_surface;
+
 typedef struct stratus_ray_cast_arguments {
   stratus_picture_arguments picture;
   stratus_ray_camera camera;
@@ -195,6 +215,8 @@ typedef struct stratus_ray_cast_arguments {
   stratus_ray_mode mode;
   stratus_ray_lights light;
   stratus_ray_media media;
+  stratus_ray_function_2d transfer_2d;
+  stratus_ray_surface slice;
 } stratus_ray_cast_arguments;
 
 #endif

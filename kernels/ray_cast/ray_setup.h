@@ -62,15 +62,13 @@ INLINE float ray_jitter(int x, int y, int seed)
   return (float)(int)(h >> 8) * 0x1p-24f;
 }
 
-/* Sets up REAL_WIDTH rays of the packet, from ray number `part` on. x, y: their pixels (whole numbers); z: their opaque depths; w: their
- * jitter. */
-INLINE void ray_setup_part(
-  CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, const float* w, int part, stratus_rays* rays)
+/* REAL_WIDTH rays of the pixels x, y (whole numbers): index origins, directions by k. Returns the samples that a unit of k is, in *per_k,
+ * and its reciprocal. */
+INLINE real ray_line(CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, real origin[3], real direction[3], real* per_k)
 {
-  const real zero = r_number(0.0f), half_one = r_number(0.5f), one = r_number(1.0f), two = r_number(2.0f);
+  const real half_one = r_number(0.5f), one = r_number(1.0f), two = r_number(2.0f);
   const real u = r_sub(r_mul(r_mul(r_add(r_load(x), half_one), two), r_of(a->camera.pixel[0])), one);
   const real v = r_sub(r_mul(r_mul(r_add(r_load(y), half_one), two), r_of(a->camera.pixel[1])), one);
-  real origin[3], direction[3];
   real length = r_of(a->camera.metric[0]);
   for (int axis = 0; axis < 3; ++axis) {
     const real offset = r_add(r_mul(u, r_of(a->camera.right[axis])), r_mul(v, r_of(a->camera.up[axis])));
@@ -83,7 +81,18 @@ INLINE void ray_setup_part(
     length = r_add(length, r_mul(v, r_add(r_of(a->camera.metric[2]), r_mul(v, r_of(a->camera.metric[5])))));
   }
   length = r_sqrt(length);
-  const real samples_per_k = r_mul(length, r_of(a->lattice.per_step)), k_per_sample = r_div(one, samples_per_k);
+  *per_k = r_mul(length, r_of(a->lattice.per_step));
+  return r_div(one, *per_k);
+}
+
+/* Sets up REAL_WIDTH rays of the packet, from ray number `part` on. x, y: their pixels (whole numbers); z: their opaque depths; w: their
+ * jitter. */
+INLINE void ray_setup_part(
+  CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, const float* w, int part, stratus_rays* rays)
+{
+  const real zero = r_number(0.0f), one = r_number(1.0f);
+  real origin[3], direction[3], samples_per_k;
+  const real k_per_sample = ray_line(a, x, y, origin, direction, &samples_per_k);
 
   real begin = r_mul(r_of(a->camera.near_k), samples_per_k), end = r_of(a->lattice.reach);
   if (a->camera.has_far) {

@@ -5,24 +5,6 @@
  * Light and gradient are computed only where something shows, and they only thin or colour that. So a segment that the structure leaves
  * out would have added exactly zero here, too. */
 
-/* Not inlined: few samples come this far, and the code is long. */
-#ifdef STRATUS_DEVICE
-#define OUTLINE static
-#else
-#define OUTLINE static __attribute__((noinline))
-#endif
-
-#if RAY_IN_PAGES
-INLINE value_source component_values(value_source values, int c)
-{
-  values.component = c;
-  return values;
-}
-#define COMPONENT_VALUES(a, values, c) component_values(values, c)
-#else
-#define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->media.component_bytes)
-#endif
-
 /* How light and gradient, that of component c, change samples at s on their rays, in the lanes of `mask`. depth: the samples' optical depth
  * over a whole sample; read only where media.factor_reach is not 0. factor_first, factor_scale: of each lane's gradient opacity;
  * factor_first is negative where a lane has none. */
@@ -87,15 +69,6 @@ OUTLINE void RAY_NAME(ray_add_medium)(CONSTANT stratus_ray_cast_arguments* a, GL
     }
     sum[4] = v_select(shows, v_fma(depth, depth, sum[4]), sum[4]); /* 1e18 is opaque, and its square a float */
   }
-}
-
-/* The value of component c at the sample. */
-OUTLINE vfloat RAY_NAME(component_value)(
-  CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const stratus_sample* sample, int c, vmask mask)
-{
-  const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo);
-  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
-  return RAY_NAME(ray_value)(a, COMPONENT_VALUES(a, sample->values, c), sample->hidden, k->grid, x, mask);
 }
 
 /* Independent components: each is a medium, and both their optical depths and their light add up. */
@@ -282,9 +255,6 @@ OUTLINE void RAY_NAME(ray_shade)(
 #endif
   k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
 }
-
-#undef OUTLINE
-#undef COMPONENT_VALUES
 
 INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
 {

@@ -292,7 +292,7 @@ static void what_makes_no_sense_is_refused(void** state)
   c.options = fine;                                                                                                                        \
   change;                                                                                                                                  \
   refuse(context, &c, word)
-  REFUSE(c.options.mode = (stratus_mode)(STRATUS_MODE_ISOSURFACE + 1), "mode");
+  REFUSE(c.options.mode = (stratus_mode)(STRATUS_MODE_SLICE + 1), "mode");
   REFUSE(c.options.mode = (stratus_mode)-1, "mode");
   REFUSE(c.options.normals = (stratus_normals)2, "normals");
   REFUSE(c.options.shading.ambient = -0.1, "ambient");
@@ -310,7 +310,7 @@ static void what_makes_no_sense_is_refused(void** state)
   refuse(context, &c, "near");
   assert_string_equal(stratus_mode_name(STRATUS_MODE_COMPOSITE), "composite");
   assert_string_equal(stratus_mode_name(STRATUS_MODE_FIRST_HIT), "first-hit");
-  assert_string_equal(stratus_mode_name((stratus_mode)7), "unknown");
+  assert_string_equal(stratus_mode_name((stratus_mode)8), "unknown");
   case_destroy(&c);
   stratus_context_destroy(context);
 }

@@ -569,8 +569,8 @@ static void what_it_cannot_show_is_refused(void** state)
   assert_int_equal(draw_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "gradient"));
   m.transfers[3].gradient_count = 0;
-  for (int mode = STRATUS_MODE_FIRST_HIT; mode <= STRATUS_MODE_ISOSURFACE; ++mode) {
-    const bool surfaces = mode == STRATUS_MODE_FIRST_HIT || mode == STRATUS_MODE_ISOSURFACE;
+  for (int mode = STRATUS_MODE_FIRST_HIT; mode <= STRATUS_MODE_SLICE; ++mode) {
+    const bool surfaces = mode == STRATUS_MODE_FIRST_HIT || mode >= STRATUS_MODE_ISOSURFACE;
     m.c.options.mode = (stratus_mode)mode;
     m.c.options.dependent = !surfaces;
     m.c.options.contour_count = 1;

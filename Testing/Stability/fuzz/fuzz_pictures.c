@@ -54,12 +54,44 @@ static void choose_mask(fuzz* f, stratus_ray_cast_options* o, const picture_case
   free(mask);
 }
 
+/* A surface through the volume, and a function of two variables of as many entries as its numbers tell. */
+static void choose_surface_and_function(fuzz* f, stratus_ray_cast_options* o, const picture_case* c)
+{
+  const fuzz_field* field = &c->field;
+  const bool coordinates = field->view.coordinates[0] || field->view.coordinates[1] || field->view.coordinates[2];
+  for (int axis = 0; axis < 3; ++axis) {
+    o->slice.center[axis] = fuzz_real(f, field->bounds[2 * axis], field->bounds[2 * axis + 1]);
+    o->slice.linear[axis] = fuzz_real(f, -1.0, 1.0);
+    o->slice.square[axis] = fuzz_chance(f, 0.5) ? 0.0 : fuzz_real(f, -1.0, 1.0);
+    o->slice.square[3 + axis] = fuzz_chance(f, 0.5) ? 0.0 : fuzz_real(f, -1.0, 1.0);
+  }
+  o->slice.constant = fuzz_chance(f, 0.5) ? 0.0 : fuzz_real(f, -field->shortest, field->shortest);
+  if (fuzz_odd(f) || (c->components <= 1 && !coordinates && fuzz_chance(f, 0.2))) {
+    o->clip_gradients = fuzz_flag(f);
+    o->clipped_value = fuzz_real(f, field->low, field->high);
+  }
+  if (fuzz_odd(f) || (o->mode == STRATUS_MODE_COMPOSITE && c->components <= 2 && o->label_count == 0 && fuzz_chance(f, 0.2))) {
+    float rgba[4 * 9 * 9];
+    stratus_transfer_2d of = { .columns = 1 + (int)fuzz_below(f, 9), .rows = 1 + (int)fuzz_below(f, 9), .revision = fuzz_next(f) };
+    for (int i = 0; i < 4 * of.columns * of.rows; ++i) {
+      rgba[i] = fuzz_chance(f, 0.3) ? 0.0f : (float)fuzz_real(f, 0.0, 1.0);
+    }
+    of.rgba = fuzz_input(f, rgba, 4 * (size_t)(of.columns * of.rows) * sizeof *rgba);
+    of.value_range[0] = of.second_range[0] = field->low;
+    of.value_range[1] = of.second_range[1] = field->high > field->low ? field->high : field->low + fmax(1.0, fabs(field->low));
+    of.second_range[0] = fuzz_odd(f) ? fuzz_odd_real(f) : of.second_range[0];
+    of.unit_distance = fuzz_real(f, 0.1 * field->shortest, 10.0 * field->shortest);
+    o->transfer_2d = FUZZ_INPUT(f, of);
+    o->sampling = fuzz_odd(f) ? o->sampling : fuzz_chance(f, 0.5) ? STRATUS_SAMPLING_AUTO : STRATUS_SAMPLING_MIDPOINT;
+  }
+}
+
 static stratus_ray_cast_options choose_options(fuzz* f, const picture_case* c)
 {
   stratus_ray_cast_options o = stratus_ray_cast_options_default();
   static const int sizes[] = { 0, 2, 4, 8, 16, 32 };
   const fuzz_field* field = &c->field;
-  o.mode = (stratus_mode)(c->components > 1 && !fuzz_odd(f) ? 0 : fuzz_chance(f, 0.4) ? 0 : fuzz_choice(f, STRATUS_MODE_ISOSURFACE + 1));
+  o.mode = (stratus_mode)(c->components > 1 && !fuzz_odd(f) ? 0 : fuzz_chance(f, 0.4) ? 0 : fuzz_choice(f, STRATUS_MODE_SLICE + 1));
   o.structure = (stratus_structure)fuzz_choice(f, STRATUS_STRUCTURE_HYBRID + 1);
   o.sampling = (stratus_sampling)fuzz_choice(f, STRATUS_SAMPLING_CELLS + 1);
   o.interpolation = (stratus_interpolation)(o.mode == STRATUS_MODE_ISOSURFACE && !fuzz_odd(f) ? 0 : fuzz_choice(f, 2));
@@ -86,6 +118,7 @@ static stratus_ray_cast_options choose_options(fuzz* f, const picture_case* c)
     choose_mask(f, &o, c);
   }
   o.label_count = fuzz_odd(f) ? (fuzz_chance(f, 0.5) ? -1 : 256) : o.label_count;
+  choose_surface_and_function(f, &o, c);
   o.jitter = fuzz_chance(f, 0.2) ? fuzz_flag(f) : 0;
   o.jitter_seed = (uint32_t)fuzz_next(f);
   return o;

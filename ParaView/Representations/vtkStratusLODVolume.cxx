@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusLODVolume.h"
+
+#include "vtkObjectFactory.h"
+
+vtkStandardNewMacro(vtkStratusLODVolume);

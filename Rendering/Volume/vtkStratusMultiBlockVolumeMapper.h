@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkStratusMultiBlockVolumeMapper
+ * @brief   draws blocks of images and rectilinear grids, one behind the other, by a vtkStratusVolumeMapper each
+ *
+ * Replaces vtkMultiBlockVolumeMapper. The input is a vtkImageData, a vtkRectilinearGrid, or composite data of them at any depth
+ * (vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection). Blocks that a plane across an axis of the data parts are
+ * drawn in exact order, however uneven their sizes. Blocks that overlap are each drawn whole, the farther middle first, with a warning: use
+ * vtkStratusMultiVolume for media that mix. Blocks that lack the array, and kinds of data that are no grid of these, are left out with a
+ * warning. Each block chooses its own structure and sampling, and its gradients are one-sided at its border unless it has ghost cells.
+ *
+ * What vtkVolumeMapper has (scalars, blend mode, cropping, clipping planes) is set at this mapper, the rest at GetSettings(); both hold for
+ * all blocks. Blocks are blended in the frame buffer, which rounds to its own precision after each. That draws the blend modes composite
+ * and isosurface, and first hits; more than one block in another mode is refused by an error, and nothing is drawn.
+ *
+ * @sa vtkStratusVolumeMapper vtkStratusMultiVolume
+ */
+#ifndef vtkStratusMultiBlockVolumeMapper_h
+#define vtkStratusMultiBlockVolumeMapper_h
+
+#include "StratusRenderingVolumeModule.h" // For export macro
+#include "vtkVolumeMapper.h"
+
+#include <memory> // For std::unique_ptr
+
+class vtkStratusVolumeMapper;
+
+class STRATUSRENDERINGVOLUME_EXPORT vtkStratusMultiBlockVolumeMapper : public vtkVolumeMapper
+{
+public:
+  static vtkStratusMultiBlockVolumeMapper* New();
+  vtkTypeMacro(vtkStratusMultiBlockVolumeMapper, vtkVolumeMapper);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * Get the mapper whose settings each block's mapper takes. It draws nothing itself.
+   */
+  vtkStratusVolumeMapper* GetSettings();
+
+  /**
+   * Get the number of blocks of the last picture.
+   */
+  int GetNumberOfBlocks();
+
+  /**
+   * Get the mapper of a block in the last picture, 0..GetNumberOfBlocks()-1, in the input's order; nullptr beyond. It tells of statistics.
+   */
+  vtkStratusVolumeMapper* GetBlockMapper(int block);
+
+  /**
+   * Get why the last picture was refused, whole or in part; empty if it was not.
+   */
+  const char* GetLastError();
+
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  using Superclass::GetBounds;
+  vtkMTimeType GetMTime() override;
+
+  /**
+   * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
+   */
+  void Render(vtkRenderer* renderer, vtkVolume* volume) override;
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkStratusMultiBlockVolumeMapper();
+  ~vtkStratusMultiBlockVolumeMapper() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+
+private:
+  vtkStratusMultiBlockVolumeMapper(const vtkStratusMultiBlockVolumeMapper&) = delete;
+  void operator=(const vtkStratusMultiBlockVolumeMapper&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif

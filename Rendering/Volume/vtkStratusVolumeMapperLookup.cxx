@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Functions of two variables and slices of vtkStratusVolumeMapper: finds them in the property, and takes them to the core's terms.
+#include "vtkStratusVolumeMapperInternals.h"
+
+#include "vtkCellData.h"
+#include "vtkCone.h"
+#include "vtkCylinder.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkImageData.h"
+#include "vtkMath.h"
+#include "vtkPlane.h"
+#include "vtkPointData.h"
+#include "vtkQuadric.h"
+#include "vtkSphere.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cmath>
+
+// ---------------------------------------------------------------- functions of two variables
+
+bool vtkStratusVolumeMapper::Internals::HasTransfer2D(vtkVolumeProperty* property)
+{
+  return property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D;
+}
+
+bool vtkStratusVolumeMapper::Internals::CheckTransfer2D(std::string& error) const
+{
+  const int blend = this->Mapper->BlendMode;
+  if (this->IsFirstHit() || blend != vtkVolumeMapper::COMPOSITE_BLEND) {
+    error = "two-dimensional transfer functions are supported in blend mode composite (0) only, and not in first hits; it is " +
+      std::to_string(blend);
+  }
+  return error.empty();
+}
+
+// Finds the array of the function's second variable, which is of the same points or cells as the scalars.
+vtkDataArray* vtkStratusVolumeMapper::Internals::FindSecond(vtkDataSet* image, bool cells, std::string& error) const
+{
+  const char* name = this->Mapper->Transfer2DYAxisArray;
+  vtkDataSetAttributes* all = cells ? static_cast<vtkDataSetAttributes*>(image->GetCellData()) : image->GetPointData();
+  vtkDataArray* second = all->GetArray(name);
+  const vtkIdType wanted = cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
+  if (!second) {
+    error = std::string("there is no array '") + name + "' of " + (cells ? "cells" : "points") +
+      ", which Transfer2DYAxisArray names: " + vtkStratusArrayNames(image);
+  } else if (second->GetNumberOfComponents() != 1 || second->GetNumberOfTuples() < wanted) {
+    error = std::string("Transfer2DYAxisArray '") + name + "' has " + std::to_string(second->GetNumberOfTuples()) + " values of " +
+      std::to_string(second->GetNumberOfComponents()) + " components, the image needs " + std::to_string(wanted) + " of 1";
+  }
+  return error.empty() ? second : nullptr;
+}
+
+// Returns an array whose tuples are a component of `array` and a value of `second`, as the core takes two variables. Arrays of two types
+// become floats.
+vtkDataArray* vtkStratusVolumeMapper::Internals::Pair(vtkDataArray* array, int component, vtkDataArray* second)
+{
+  const vtkMTimeType time = std::max(array->GetMTime(), second->GetMTime());
+  if (this->PairOf[0] != array || this->PairOf[1] != second || this->PairTime != time || this->PairComponent != component) {
+    const bool same = array->GetDataType() == second->GetDataType();
+    this->Pairs.TakeReference(vtkDataArray::CreateDataArray(same ? array->GetDataType() : VTK_FLOAT));
+    this->Pairs->SetNumberOfComponents(2);
+    this->Pairs->SetNumberOfTuples(std::min(array->GetNumberOfTuples(), second->GetNumberOfTuples()));
+    this->Pairs->CopyComponent(0, array, component);
+    this->Pairs->CopyComponent(1, second, 0);
+    this->PairOf[0] = array;
+    this->PairOf[1] = second;
+    this->PairTime = time;
+    this->PairComponent = component;
+  }
+  return this->Pairs;
+}
+
+// Sets the function of this picture. Columns cover the range of the values, as VTK's mapper has it; rows that of the second array, or
+// magnitudes from 0 to a quarter of the range of values.
+bool vtkStratusVolumeMapper::Internals::SetTransfer2D(
+  vtkVolumeProperty* property, vtkDataArray* array, int component, vtkDataArray* second, std::string& error)
+{
+  vtkImageData* image = property->GetTransferFunction2D(this->FirstFunction);
+  vtkDataArray* entries = image ? image->GetPointData()->GetScalars() : nullptr;
+  int size[3] = { 0, 0, 0 };
+  if (image) {
+    image->GetDimensions(size);
+  }
+  if (!entries || entries->GetDataType() != VTK_FLOAT || entries->GetNumberOfComponents() != 4 || size[2] != 1 || size[0] < 1 ||
+    size[1] < 1 || entries->GetNumberOfTuples() < static_cast<vtkIdType>(size[0]) * size[1]) {
+    error = std::string("TransferFunctionMode is TF_2D, and TransferFunction2D ") +
+      (image ? "has " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]) + " points"
+             : "is not set") +
+      ": a vtkImageData of one layer with point scalars of 4 floats is needed";
+    return false;
+  }
+  double range[2], other[2];
+  array->GetFiniteRange(range, component);
+  const double extent = range[1] > range[0] ? range[1] - range[0] : 1.0; // a volume of one value, or of none, has the first column
+  other[0] = 0.0;
+  other[1] = 0.25 * extent;
+  if (second) {
+    second->GetFiniteRange(other, 0);
+    other[1] = other[1] > other[0] ? other[1] : other[0] + 1.0;
+  }
+  const bool any = range[0] <= range[1];
+  this->Transfer2D = stratus_transfer_2d();
+  this->Transfer2D.rgba = static_cast<const float*>(entries->GetVoidPointer(0));
+  this->Transfer2D.columns = size[0];
+  this->Transfer2D.rows = size[1];
+  this->Transfer2D.value_range[0] = any ? range[0] : 0.0;
+  this->Transfer2D.value_range[1] = this->Transfer2D.value_range[0] + extent;
+  std::copy_n(other, 2, this->Transfer2D.second_range);
+  this->Transfer2D.unit_distance = property->GetScalarOpacityUnitDistance(this->FirstFunction);
+  this->Transfer2D.revision = std::max(image->GetMTime(), entries->GetMTime());
+  return true;
+}
+
+// Sets image, functions and function of two variables by an array, of which `component` is drawn (-1: it has one).
+bool vtkStratusVolumeMapper::Internals::PrepareTransfer2D(
+  vtkVolume* prop, vtkDataSet* image, vtkDataArray* array, bool cells, int component, std::string& error)
+{
+  const int drawn = std::max(component, 0), components = array->GetNumberOfComponents();
+  vtkDataArray* second = nullptr;
+  if (drawn >= components || (component < 0 && components > 1)) {
+    error = "TransferFunctionMode is TF_2D, and the array has " + std::to_string(components) +
+      " components: " + (component < 0 ? "one is needed, by VectorMode" : "there is no component " + std::to_string(component));
+    return false;
+  }
+  if (this->Mapper->Transfer2DYAxisArray) {
+    second = this->FindSecond(image, cells, error);
+    if (!second) {
+      return false;
+    }
+  }
+  this->Functions.assign(1, stratus_transfer_default()); // not read
+  return this->SetTransfer2D(prop->GetProperty(), array, drawn, second, error) &&
+    this->Image.Set(image, second ? this->Pair(array, drawn, second) : array, cells, prop->GetMatrix(), error, 2, second ? -1 : component);
+}
+
+// ---------------------------------------------------------------- slices
+
+// Sets the surface of blend mode slice.
+bool vtkStratusVolumeMapper::Internals::SetSlice(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
+{
+  vtkImplicitFunction* function = property->GetSliceFunction();
+  stratus_slice& slice = options.slice;
+  if (options.mode != STRATUS_MODE_SLICE) {
+    return true;
+  }
+  if (!function || function->GetTransform()) {
+    error = function ? "a SliceFunction with a transform is not supported" : "blend mode slice (6) needs a SliceFunction";
+  } else if (vtkPlane* plane = vtkPlane::SafeDownCast(function)) {
+    plane->GetOrigin(slice.center);
+    plane->GetNormal(slice.linear);
+  } else if (vtkSphere* sphere = vtkSphere::SafeDownCast(function)) {
+    sphere->GetCenter(slice.center);
+    std::fill_n(slice.square, 3, 1.0);
+    slice.constant = -sphere->GetRadius() * sphere->GetRadius();
+  } else if (vtkCylinder* cylinder = vtkCylinder::SafeDownCast(function)) {
+    double axis[3];
+    cylinder->GetCenter(slice.center);
+    cylinder->GetAxis(axis);
+    vtkMath::Normalize(axis);
+    for (int i = 0; i < 3; ++i) {
+      slice.square[i] = 1.0 - axis[i] * axis[i];
+      slice.square[3 + i] = -2.0 * axis[i] * axis[(i + 1) % 3];
+    }
+    slice.constant = -cylinder->GetRadius() * cylinder->GetRadius();
+  } else if (vtkCone* cone = vtkCone::SafeDownCast(function)) {
+    const double slope = std::tan(vtkMath::RadiansFromDegrees(cone->GetAngle()));
+    slice.square[0] = -slope * slope;
+    slice.square[1] = slice.square[2] = 1.0;
+  } else if (vtkQuadric* quadric = vtkQuadric::SafeDownCast(function)) {
+    const double* coefficients = quadric->GetCoefficients();
+    std::copy_n(coefficients, 6, slice.square);
+    std::copy_n(coefficients + 6, 3, slice.linear);
+    slice.constant = coefficients[9];
+  } else {
+    error = std::string("a SliceFunction of class ") + function->GetClassName() +
+      " is not supported, only vtkPlane, vtkSphere, vtkCylinder, vtkCone and vtkQuadric are";
+  }
+  return error.empty();
+}

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One smooth field on each kind of grid, for the plugin's tests: point arrays `hill`, `wind` (three components), `wind_alone` (its
+magnitude) and `wind_third` (its third component)."""
+import os
+
+import numpy
+from paraview.vtk import vtkIOXML, vtkCommonCore, vtkCommonDataModel, vtkFiltersCore, vtkFiltersExtraction
+from paraview.vtk.util.numpy_support import numpy_to_vtk
+
+COUNTS = (40, 36, 30)
+COLORS = [(0, 0.3, 0.4, 0.7), (0.5, 0.9, 0.9, 0.9), (1.4, 1, 0.9, 0.7)]
+OPACITY = [(0.05, 0), (1.4, 0.4)]
+
+
+def axes():
+    """Even in x, finer towards one end in y, growing by a factor in z."""
+    x = numpy.linspace(100, 139, COUNTS[0])
+    y = -20 + 45 * numpy.linspace(0, 1, COUNTS[1]) ** 1.5
+    z = 5 + numpy.cumsum(0.4 * 1.05 ** numpy.arange(COUNTS[2]))
+    return x, y, z
+
+
+def points():
+    x, y, z = axes()
+    return numpy.stack(numpy.meshgrid(x, y, z, indexing="ij"), axis=-1)  # [i, j, k, xyz]
+
+
+def vectors(p):
+    """Three smooth components, the first at least 0; their magnitude is below 1.4."""
+    u = (p - [120, 0, 15]) / [18, 20, 12]
+    hill = numpy.clip(1 - (u**2).sum(axis=-1), 0, None)
+    return numpy.stack([hill, 0.6 * hill * numpy.sin(3 * u[..., 0]), 0.5 * hill * numpy.cos(2 * u[..., 1])], axis=-1)
+
+
+def add(grid, name, values):
+    tuples = values.reshape(values.shape[0] * values.shape[1] * values.shape[2], -1, order="F")
+    array = numpy_to_vtk(numpy.ascontiguousarray(tuples), deep=True)
+    array.SetName(name)
+    grid.GetPointData().AddArray(array)
+
+
+def fill(grid):
+    values = vectors(points())
+    add(grid, "hill", values[..., 0])
+    add(grid, "wind", values)
+    add(grid, "wind_alone", numpy.sqrt((values**2).sum(axis=-1)))
+    add(grid, "wind_third", values[..., 2])
+    return grid
+
+
+def write(grid, writer, folder, name):
+    path = os.path.join(folder, name)
+    writer.SetInputData(grid)
+    writer.SetFileName(path)
+    if writer.Write() != 1:
+        raise OSError(f"{path} is not written")
+    return path
+
+
+def rectilinear():
+    grid = vtkCommonDataModel.vtkRectilinearGrid()
+    grid.SetDimensions(*COUNTS)
+    for coordinates, set_coordinates in zip(axes(), (grid.SetXCoordinates, grid.SetYCoordinates, grid.SetZCoordinates)):
+        set_coordinates(numpy_to_vtk(coordinates, deep=True))
+    return fill(grid)
+
+
+def structured():
+    """Layers over hills."""
+    p = points()
+    p[..., 2] += 3 * numpy.sin(p[..., 0] / 6) * numpy.cos(p[..., 1] / 8)
+    grid = vtkCommonDataModel.vtkStructuredGrid()
+    grid.SetDimensions(*COUNTS)
+    places = vtkCommonCore.vtkPoints()
+    places.SetData(numpy_to_vtk(numpy.ascontiguousarray(p.reshape(-1, 3, order="F")), deep=True))
+    grid.SetPoints(places)
+    return fill(grid)
+
+
+def blocks():
+    """The rectilinear grid in three uneven blocks within blocks."""
+    whole = rectilinear()
+    inner, outer = vtkCommonDataModel.vtkMultiBlockDataSet(), vtkCommonDataModel.vtkMultiBlockDataSet()
+    nx, ny, nz = (count - 1 for count in COUNTS)
+    for number, extent in enumerate(((0, 9, 0, ny, 0, nz), (9, nx, 0, 25, 0, nz), (9, nx, 25, ny, 0, nz))):
+        crop = vtkFiltersExtraction.vtkExtractRectilinearGrid()
+        crop.SetInputData(whole)
+        crop.SetVOI(*extent)
+        crop.Update()
+        inner.SetBlock(number, crop.GetOutput())
+    outer.SetBlock(0, inner)
+    return outer
+
+
+def unstructured(grid):
+    join = vtkFiltersCore.vtkAppendFilter()
+    join.AddInputData(grid)
+    join.Update()
+    return join.GetOutput()
+
+
+def write_all(folder):
+    """Returns the names of four files: levels.vtr, hills.vts, cells.vtu (the cells of hills.vts) and parts.vtm (blocks of levels.vtr)."""
+    return (write(rectilinear(), vtkIOXML.vtkXMLRectilinearGridWriter(), folder, "levels.vtr"),
+            write(structured(), vtkIOXML.vtkXMLStructuredGridWriter(), folder, "hills.vts"),
+            write(unstructured(structured()), vtkIOXML.vtkXMLUnstructuredGridWriter(), folder, "cells.vtu"),
+            write(blocks(), vtkIOXML.vtkXMLMultiBlockDataWriter(), folder, "parts.vtm"))
