@@ -291,8 +291,8 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
       }
       const stratus_image image = this->Picture.MakeRoom(rgba, this->PartDepth, depths);
       stratus_tetra_report report;
-      return stratus_tetra_caster_render(this->Caster, &this->Mesh.GetMesh(), &this->Transfer.GetTransfer(), &this->Picture.Camera,
-               &this->Options, &image, &report) == STRATUS_OK;
+      return stratus_tetra_caster_render(this->Caster, &this->Mesh.GetMesh(), this->Functions.data(), &this->Picture.Camera, &this->Options,
+               &image, &report) == STRATUS_OK;
     };
   }
   return this->Display.Draw(renderer, this->Picture, pixels, error);
