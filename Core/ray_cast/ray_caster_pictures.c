@@ -139,7 +139,7 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
   options = options ? options : &defaults;
   if (options->transfer_2d) {
     TRY(stratus_volume_check(caster->context, volume));
-    TRY(stratus_ray_transfer_2d_check(caster->context, volume, options));
+    TRY(stratus_ray_transfer_2d_check(caster, volume, options));
   }
   TRY(stratus_ray_transfer_2d_update(caster, options));
   transfer = options->transfer_2d ? &caster->transfer_2d.shown : transfer;

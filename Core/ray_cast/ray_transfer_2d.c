@@ -13,6 +13,13 @@
 /* Stands for the opacity of transparent columns that have visible ones on both sides. */
 #define BARELY 1e-6
 
+static bool same_function(const stratus_transfer_2d* a, const stratus_transfer_2d* b)
+{
+  return a->rgba == b->rgba && a->columns == b->columns && a->rows == b->rows && a->revision == b->revision &&
+    a->unit_distance == b->unit_distance && memcmp(a->value_range, b->value_range, sizeof a->value_range) == 0 &&
+    memcmp(a->second_range, b->second_range, sizeof a->second_range) == 0;
+}
+
 /* ---- checks */
 
 static stratus_status check_range(stratus_context* context, const char* what, const double range[2])
@@ -48,9 +55,11 @@ static stratus_status check_function(stratus_context* context, const stratus_tra
 }
 
 stratus_status stratus_ray_transfer_2d_check(
-  stratus_context* context, const stratus_volume* volume, const stratus_ray_cast_options* options)
+  const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
+  stratus_context* context = caster->context;
   const stratus_transfer_2d* of = options->transfer_2d;
+  const bool known = caster->transfer_2d.table && same_function(&caster->transfer_2d.of, of); /* and checked */
   const int components = stratus_volume_components(volume);
   if (options->mode != STRATUS_MODE_COMPOSITE) {
     return stratus_fail(
@@ -69,7 +78,7 @@ stratus_status stratus_ray_transfer_2d_check(
     return stratus_fail(context, STRATUS_UNSUPPORTED,
       "a two-dimensional function of a volume of %d components: must be 1 (and the gradient) or 2 (and the second)", components);
   }
-  return check_function(context, of);
+  return known ? STRATUS_OK : check_function(context, of);
 }
 
 /* ---- the caster's copy */
@@ -130,13 +139,6 @@ static void fill_shown(stratus_ray_transfer_2d* t)
   t->shown.color = color;
   t->shown.opacity_count = t->shown.color_count = (size_t)of->columns;
   t->shown.unit_distance = of->unit_distance;
-}
-
-static bool same_function(const stratus_transfer_2d* a, const stratus_transfer_2d* b)
-{
-  return a->rgba == b->rgba && a->columns == b->columns && a->rows == b->rows && a->revision == b->revision &&
-    a->unit_distance == b->unit_distance && memcmp(a->value_range, b->value_range, sizeof a->value_range) == 0 &&
-    memcmp(a->second_range, b->second_range, sizeof a->second_range) == 0;
 }
 
 void stratus_ray_transfer_2d_release(stratus_ray_caster* caster)

@@ -17,9 +17,9 @@ typedef struct stratus_ray_transfer_2d {
   stratus_transfer shown; /* for each value the largest opacity in its rows */
 } stratus_ray_transfer_2d;
 
-/* Checks the function and what it cannot be combined with. */
+/* Checks the function, where the caster does not have it yet, and what it cannot be combined with. */
 stratus_status stratus_ray_transfer_2d_check(
-  stratus_context* context, const stratus_volume* volume, const stratus_ray_cast_options* options);
+  const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options);
 /* Keeps the function of the options, if there is one. Drops what follows from another one. */
 stratus_status stratus_ray_transfer_2d_update(stratus_ray_caster* caster, const stratus_ray_cast_options* options);
 void stratus_ray_transfer_2d_release(stratus_ray_caster* caster);
