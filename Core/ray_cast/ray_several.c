@@ -121,8 +121,12 @@ static stratus_status check_supported(stratus_context* context, int n, const sev
   return STRATUS_OK;
 }
 
-static stratus_status check_mesh(stratus_context* context, int n, const stratus_transfer* transfer, const stratus_tetra_options* options)
+static stratus_status check_mesh(
+  stratus_context* context, int n, const stratus_mesh* mesh, const stratus_transfer* transfer, const stratus_tetra_options* options)
 {
+  if (mesh && mesh->components > 1) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has %d components, must have 1", n, mesh->components);
+  }
   if (options->mode != STRATUS_TETRA_COMPOSITE) {
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "mesh %d of several has mode %s: only composite mixes", n, stratus_tetra_mode_name(options->mode));
@@ -586,7 +590,7 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
     in->report = (stratus_ray_cast_report){ .expected_error = NAN, .tolerance_met = 1 };
     if (inputs[n].tetra) {
       in->tetra_options = inputs[n].tetra_options ? *inputs[n].tetra_options : stratus_tetra_options_default();
-      TRY(check_mesh(s.context, n, inputs[n].transfer, &in->tetra_options));
+      TRY(check_mesh(s.context, n, inputs[n].mesh, inputs[n].transfer, &in->tetra_options));
       in->tetra_options.tolerance /= sqrt((double)count);
       in->tetra_options.method = STRATUS_TETRA_METHOD_MARCH;
       continue;
