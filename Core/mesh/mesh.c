@@ -12,7 +12,7 @@
 stratus_mesh stratus_mesh_default(void)
 {
   static const double identity[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
-  stratus_mesh mesh = { .type = STRATUS_FLOAT32, .value_stride = 1 };
+  stratus_mesh mesh = { .type = STRATUS_FLOAT32, .value_stride = 1, .components = 1 };
   memcpy(mesh.matrix, identity, sizeof identity);
   return mesh;
 }
@@ -85,8 +85,15 @@ static stratus_status check_values(stratus_context* context, const stratus_mesh*
   if (size == 0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh type %d outside %d..%d", (int)mesh->type, STRATUS_INT8, STRATUS_FLOAT64);
   }
+  if (mesh->components < 0 || mesh->components > 4) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh components %d outside 1..4", mesh->components);
+  }
   if (mesh->value_stride < 1) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh value_stride %lld, must be at least 1", (long long)mesh->value_stride);
+  }
+  if (mesh->value_stride < mesh->components) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh value_stride %lld, must be at least its %d components",
+      (long long)mesh->value_stride, mesh->components);
   }
   if (mesh->cell_values != 0 && mesh->cell_values != 1) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh cell_values %d, must be 0 or 1", mesh->cell_values);

@@ -17,8 +17,11 @@ typedef struct stratus_mesh {
   int64_t cell_count;      /* 0..2^30-1 */
   const void* values;      /* one value for each point or each cell, value_stride apart; NULL where only geometry matters */
   stratus_type type;
-  int64_t value_stride; /* in values, >= 1. Default 1. */
-  int cell_values;      /* 1: a value belongs to a cell, and is constant in it. Default 0: to a point. */
+  int64_t value_stride; /* in values, >= components. Default 1. */
+  /* 1..4, default 1 (0 counts as 1). Component c of value v is values[v*value_stride + c]. Casters draw several; everything else reads the
+   * first. */
+  int components;
+  int cell_values; /* 1: a value belongs to a cell, and is constant in it. Default 0: to a point. */
   /* One flag for each cell: not 0 makes it transparent. NULL: none. A value that is not finite also hides its cells. */
   const uint8_t* hidden;
   double matrix[16]; /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */

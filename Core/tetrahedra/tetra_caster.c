@@ -54,6 +54,7 @@ static void drop_mesh(stratus_tetra_caster* caster)
 {
   drop_table(caster); /* the table spans the mesh's values */
   stratus_tetra_light_drop(caster);
+  stratus_tetra_components_drop(caster);
   stratus_tetra_device_destroy(caster->context, caster->device); /* the device may read the mesh in place */
   caster->device = NULL;
   stratus_tetra_projector_destroy(caster->projector);
@@ -105,8 +106,8 @@ static bool same_mesh(const stratus_mesh* a, const stratus_mesh* b)
 {
   return a->points == b->points && a->point_count == b->point_count && a->vertices == b->vertices && a->cell_count == b->cell_count &&
     a->float_points == b->float_points && memcmp(a->lattice, b->lattice, sizeof a->lattice) == 0 && a->values == b->values &&
-    a->type == b->type && a->value_stride == b->value_stride && a->cell_values == b->cell_values && a->hidden == b->hidden &&
-    a->revision == b->revision;
+    a->type == b->type && a->value_stride == b->value_stride && a->components == b->components && a->cell_values == b->cell_values &&
+    a->hidden == b->hidden && a->revision == b->revision;
 }
 
 /* Takes other values of the same points and cells; neighbours, and the order of cells, stay. *taken false: it is another mesh, or other
@@ -274,7 +275,7 @@ static stratus_status update_table(
 static stratus_tetra_device_source device_source(const stratus_tetra_caster* caster)
 {
   return (stratus_tetra_device_source){ caster->mesh_builds, caster->value_builds, caster->table_builds, caster->view.cell_count,
-    caster->view.point_count, caster->mesh->cell_ints, caster->mesh->value_count, caster->gradient_builds };
+    caster->view.point_count, caster->mesh->cell_ints, caster->mesh->value_count, caster->gradient_builds, caster->component_builds };
 }
 
 /* Marches on the device if there is one and it can, else on the host. */
@@ -337,7 +338,8 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
   stratus_tetra_frame frame;
   const double start = stratus_now_ms();
   const bool adds = options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE; /* black where nothing shows */
-  if ((caster->table->shown == 0 && !adds && options->mode != STRATUS_TETRA_ISOSURFACE) || caster->mesh->face_count == 0) {
+  const bool shows = caster->components.count > 0 ? caster->components.shown : caster->table->shown > 0;
+  if ((!shows && !adds && options->mode != STRATUS_TETRA_ISOSURFACE) || caster->mesh->face_count == 0) {
     report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
     snprintf(report->why, sizeof report->why, "nothing to draw: no cell, or none that shows");
     stratus_image_clear(image);
@@ -352,6 +354,7 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
   stratus_tetra_frame_contours(&frame, caster->mesh, caster->transfer, options);
   stratus_tetra_frame_clip(&frame, mesh, options);
   stratus_tetra_frame_light(&frame, caster, mesh, transfer, options);
+  stratus_tetra_frame_components(&frame, caster, options);
   report->transform_ms = stratus_now_ms() - start;
   return marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report);
 }
@@ -403,10 +406,12 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   const stratus_mesh* drawn = NULL;
   TRY(stratus_tetra_modes_check(caster->context, options, mesh));
   TRY(stratus_tetra_light_check(caster->context, transfer, options));
+  TRY(stratus_tetra_components_check(caster->context, mesh, transfer, options));
   TRY(update(caster, mesh, options, &drawn, &mine.build_ms));
   memcpy(caster->view.matrix, mesh->matrix, sizeof mesh->matrix);
   TRY(update_table(caster, transfer, options, &mine.table_ms));
   TRY(stratus_tetra_light_update(caster, drawn, transfer, options, &mine.build_ms));
+  TRY(stratus_tetra_components_update(caster, drawn, transfer, options, &mine.build_ms));
   TRY(draw(caster, drawn, transfer, camera, options, image, &mine));
   fill_report(caster, &mine);
   if (report) {

@@ -45,6 +45,21 @@ typedef struct stratus_tetra_gradients {
   size_t bytes;
 } stratus_tetra_gradients;
 
+/* Values of several components as rays read them. */
+typedef struct stratus_tetra_components {
+  int count;     /* 0: there is nothing here */
+  float* places; /* of each value, in the order of stratus_tetra_mesh's values by name: four floats, places in tables */
+  int32_t* sums; /* of all tables, each as stratus_tetra_sums() */
+  size_t value_count, sum_count;
+  int sums_at[4];
+  float last[4], depth_scale[4];
+  bool has_opaque[4], shown;
+  bool dependent;              /* what this was made from, as the next */
+  stratus_transfer* transfers; /* copies */
+  int transfer_count;
+  uint64_t values; /* the caster's value_builds */
+} stratus_tetra_components;
+
 typedef struct stratus_tetra_costs stratus_tetra_costs; /* tetra_costs.h */
 typedef struct stratus_tetra_list stratus_tetra_list;   /* tetra_lattice.h */
 
@@ -65,7 +80,8 @@ struct stratus_tetra_caster {
   stratus_tetra_gradients gradients;
   float* factors; /* the gradient opacity of `transfer`, STRATUS_SHADING_FACTORS + 2; NULL: none */
   float factor_scale;
-  uint64_t mesh_builds, value_builds, table_builds, gradient_builds;
+  stratus_tetra_components components;
+  uint64_t mesh_builds, value_builds, table_builds, gradient_builds, component_builds;
   const stratus_tetra_costs* costs; /* taken instead of what was measured, for tests; NULL: none */
 };
 
@@ -128,6 +144,16 @@ void stratus_tetra_light_drop_factors(stratus_tetra_caster* caster);
 /* Sets the arguments of a frame that stratus_tetra_frame_prepare() has prepared. */
 void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_tetra_options* options);
+/* tetra_components.c: values of several components. */
+int stratus_tetra_component_count(const stratus_mesh* mesh);
+stratus_status stratus_tetra_components_check(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
+stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfers,
+  const stratus_tetra_options* options, double* ms);
+void stratus_tetra_components_drop(stratus_tetra_caster* caster);
+void stratus_tetra_frame_components(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_tetra_options* options);
+/* Fetches the first component of a value; NAN where another component is not finite, so that its cells do not show. */
+float stratus_tetra_fetch(const stratus_mesh* mesh, const stratus_volume* volume, double bias, size_t value);
 /* tetra_method.c: sets the report's method, march or project, and the reason. */
 stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);

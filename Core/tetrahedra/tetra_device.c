@@ -37,6 +37,15 @@ void stratus_tetra_device_drop_gradients(stratus_tetra_device* device)
   }
 }
 
+void stratus_tetra_device_drop_components(stratus_tetra_device* device)
+{
+  if (device) {
+    stratus_slot_drop(&device->slots[TETRA_COMPONENT_PLACES]);
+    stratus_slot_drop(&device->slots[TETRA_COMPONENT_SUMS]);
+    device->components = 0;
+  }
+}
+
 void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device* device)
 {
   if (device) {

@@ -14,10 +14,12 @@ typedef enum stratus_tetra_slot {
   TETRA_VERTICES,
   TETRA_MESH_VALUES,
   TETRA_GRADIENTS,
+  TETRA_COMPONENT_PLACES,
   /* of the table */
   TETRA_SUMS,
   TETRA_COLORS,
   TETRA_FACTORS,
+  TETRA_COMPONENT_SUMS,
   /* of a frame */
   TETRA_ARGUMENTS,
   TETRA_POINTS,
@@ -42,7 +44,7 @@ typedef enum stratus_tetra_slot {
 
 typedef struct stratus_tetra_device {
   stratus_device_slot slots[TETRA_SLOTS];
-  uint64_t march_mesh, march_values, project_mesh, project_values, table, gradients; /* build numbers of what the slots hold */
+  uint64_t march_mesh, march_values, project_mesh, project_values, table, gradients, components; /* build numbers of what the slots hold */
 } stratus_tetra_device;
 
 /* Identifies the mesh, its values and the table of a frame by build numbers > 0 that rise, so that the device copies them only once. A
@@ -51,8 +53,8 @@ typedef struct stratus_tetra_device {
 typedef struct stratus_tetra_device_source {
   uint64_t mesh, values, table;
   int64_t cell_count, point_count;
-  size_t cell_ints, value_count; /* of the cells that rays march through, and of values, be it of cells or points */
-  uint64_t gradients;            /* build number, read only of frames that are lit */
+  size_t cell_ints, value_count;  /* of the cells that rays march through, and of values, be it of cells or points */
+  uint64_t gradients, components; /* build numbers, read only of frames that are lit */
 } stratus_tetra_device_source;
 
 /* stratus_tetra_march() on the device. Makes *device if that is NULL. *drawn false: the device cannot draw this mesh; a warning says why.
@@ -66,6 +68,7 @@ stratus_status stratus_tetra_project_device(stratus_context* context, stratus_te
 void stratus_tetra_device_drop_table(stratus_tetra_device* device);                        /* takes NULL */
 void stratus_tetra_device_drop_values(stratus_tetra_device* device);                       /* takes NULL */
 void stratus_tetra_device_drop_gradients(stratus_tetra_device* device);                    /* takes NULL */
+void stratus_tetra_device_drop_components(stratus_tetra_device* device);                   /* takes NULL */
 void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device* device); /* takes NULL */
 
 /* ---- steps of both */

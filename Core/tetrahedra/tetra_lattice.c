@@ -110,7 +110,7 @@ static stratus_status fetch_values(const lattice_build* b, double bias, float** 
     lattice_place at = place_of(mesh, WORD * word);
     for (int bit = 0; bit < WORD && at.point < mesh->point_count; ++bit, next_place(mesh, &at)) {
       const int64_t from = mesh->cell_values ? hexahedron_at(mesh, &at) : at.point;
-      values[at.point] = from < 0 ? 0.0f : stratus_volume_fetch(&b->volume, bias, (size_t)from);
+      values[at.point] = from < 0 ? 0.0f : stratus_tetra_fetch(mesh, &b->volume, bias, (size_t)from);
     }
   }
   *out = values;

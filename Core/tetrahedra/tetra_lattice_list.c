@@ -40,7 +40,8 @@ static bool is_finite(const list_build* b, const stratus_volume* values, double 
 {
   bool finite = true;
   for (int i = 0; i < (b->lattice->cell_values ? 1 : 8); ++i) {
-    finite = finite && isfinite(stratus_volume_fetch(values, bias, (size_t)(b->lattice->cell_values ? cell : first + b->corner[i])));
+    finite =
+      finite && isfinite(stratus_tetra_fetch(b->lattice, values, bias, (size_t)(b->lattice->cell_values ? cell : first + b->corner[i])));
   }
   return finite;
 }
@@ -48,7 +49,7 @@ static bool is_finite(const list_build* b, const stratus_volume* values, double 
 static void list_cell(const list_build* b, const stratus_volume* values, double bias, int64_t first, int64_t cell)
 {
   const stratus_mesh* lattice = b->lattice;
-  const size_t size = stratus_type_size(lattice->type);
+  const size_t components = (size_t)stratus_tetra_component_count(lattice), size = components * stratus_type_size(lattice->type);
   const bool shows = stratus_lattice_shows(lattice, b->corner, first, cell) && is_finite(b, values, bias, first, cell);
   for (int way = 0; way < 6; ++way) {
     const size_t part = 6 * (size_t)cell + (size_t)way;
@@ -59,7 +60,8 @@ static void list_cell(const list_build* b, const stratus_volume* values, double 
     }
     ((uint8_t*)b->list->hidden)[part] = shows ? 0 : 1;
     if (lattice->cell_values) {
-      memcpy((char*)b->list->values + size * part, (const char*)lattice->values + size * (size_t)(lattice->value_stride * cell), size);
+      memcpy((char*)b->list->values + size * part,
+        (const char*)lattice->values + stratus_type_size(lattice->type) * (size_t)(lattice->value_stride * cell), size);
     }
   }
 }
@@ -76,9 +78,10 @@ static stratus_status fill(list_build* b)
   TRY(stratus_allocate(list->context, parts, 4 * sizeof(int32_t), &list->vertices));
   TRY(stratus_allocate(list->context, parts, 1, &list->hidden));
   if (lattice->cell_values) {
-    TRY(stratus_allocate(list->context, parts, stratus_type_size(lattice->type), &list->values));
+    const int components = stratus_tetra_component_count(lattice);
+    TRY(stratus_allocate(list->context, parts, (size_t)components * stratus_type_size(lattice->type), &list->values));
     list->mesh.values = list->values;
-    list->mesh.value_stride = 1;
+    list->mesh.value_stride = components;
   }
 #pragma omp parallel for num_threads(list->context->threads)
   for (int64_t row = 0; row < (int64_t)(n[1] - 1) * (n[2] - 1); ++row) {

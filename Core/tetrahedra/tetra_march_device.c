@@ -36,10 +36,16 @@ static stratus_status send(device_march* m, const stratus_tetra_device_source* s
     TRY(stratus_slot_keep(m->context, m->slots + TETRA_CELL_VALUES, frame->cell_values, source->value_count * sizeof(float)));
     d->march_values = source->values;
   }
-  if (frame->lit && d->gradients != source->gradients) {
+  if (frame->lit && (!m->slots[TETRA_GRADIENTS].memory || (frame->gradients && d->gradients != source->gradients))) {
     TRY(stratus_slot_keep(
       m->context, m->slots + TETRA_GRADIENTS, frame->gradients, (size_t)source->point_count * 4 * sizeof *frame->gradients));
-    d->gradients = source->gradients;
+    d->gradients = frame->gradients ? source->gradients : 0;
+  }
+  if (frame->lit && (!m->slots[TETRA_COMPONENT_SUMS].memory || (frame->components && d->components != source->components))) {
+    TRY(stratus_slot_keep(
+      m->context, m->slots + TETRA_COMPONENT_PLACES, frame->components, source->value_count * 4 * sizeof *frame->components));
+    TRY(stratus_slot_keep(m->context, m->slots + TETRA_COMPONENT_SUMS, frame->media, frame->media_count * sizeof *frame->media));
+    d->components = frame->components ? source->components : 0;
   }
   if (frame->lit) {
     const size_t factors = frame->factors ? STRATUS_SHADING_FACTORS + 2 : 0;
@@ -79,14 +85,15 @@ static stratus_status march(device_march* m, size_t entries, uint32_t* sums)
 {
   static const stratus_tetra_slot order[] = { TETRA_ARGUMENTS, TETRA_CELLS, TETRA_CELL_VALUES, TETRA_SUMS, TETRA_COLORS, TETRA_POINTS,
     TETRA_LINES, TETRA_ENDS, TETRA_FACES, TETRA_BIN_BEGIN, TETRA_BINS, TETRA_FIRST, TETRA_ENTRIES, TETRA_FOUND, TETRA_RGBA, TETRA_RGBA8,
-    TETRA_DEPTH, TETRA_SAMPLES, TETRA_COUNTS, TETRA_GRADIENTS, TETRA_FACTORS }; /* the last two of a lit frame alone */
+    TETRA_DEPTH, TETRA_SAMPLES, TETRA_COUNTS, TETRA_GRADIENTS, TETRA_FACTORS, TETRA_COMPONENT_PLACES,
+    TETRA_COMPONENT_SUMS }; /* the last four of a lit frame alone */
   const stratus_image* image = &m->frame->image;
   const size_t sums_bytes = m->tiles * 4 * sizeof *sums;
   TRY(stratus_slot_reserve(m->context, m->slots + TETRA_ENTRIES, CL_MEM_READ_WRITE, 2 * sizeof(int32_t) * (entries > 0 ? entries : 1)));
   TRY(stratus_slot_reserve(m->context, m->slots + TETRA_FOUND, CL_MEM_READ_WRITE, m->pixels * sizeof(uint32_t)));
   TRY(stratus_tetra_device_lend_picture(m->context, m->device, image));
   TRY(stratus_slot_send(m->context, m->slots + TETRA_COUNTS, CL_MEM_READ_WRITE, sums, sums_bytes));
-  TRY(launch(m, "tetra_march", m->frame->lit, order, COUNT_OF(order) - (m->frame->lit ? 0 : 2)));
+  TRY(launch(m, "tetra_march", m->frame->lit, order, COUNT_OF(order) - (m->frame->lit ? 0 : 4)));
   TRY(stratus_tetra_device_receive_picture(m->context, m->device, image));
   return stratus_slot_receive(m->context, m->slots + TETRA_COUNTS, sums, sums_bytes);
 }

@@ -53,9 +53,12 @@ typedef struct stratus_tetra_frame {
   const float* ends;         /* z of opaque geometry in each pixel; NULL: none */
   const int32_t* march_sums; /* stratus_tetra_sums() */
   const stratus_table* table;
-  bool lit;               /* light and opacity depend on the gradient */
-  const float* gradients; /* stratus_tetra_gradients.vectors; NULL unless lit */
-  const float* factors;   /* the gradient opacity; NULL: there is none */
+  bool lit;                /* light and opacity depend on the gradient */
+  const float* gradients;  /* stratus_tetra_gradients.vectors; NULL unless lit */
+  const float* factors;    /* the gradient opacity; NULL: there is none */
+  const float* components; /* stratus_tetra_components.places; NULL: values have one component */
+  const int32_t* media;    /* their sums */
+  size_t media_count;
   stratus_camera camera;
   double basis[3][3];            /* what a unit of a, b and z of the rays' coordinates is in the world */
   double middle, per_z, lean[2]; /* k = middle + per_z*z - lean[0]*u - lean[1]*v */

@@ -14,8 +14,8 @@
 
 static stratus_tetra_view view_of(const stratus_tetra_frame* frame)
 {
-  return (
-    stratus_tetra_view){ .scene = { frame->cells, frame->places, frame->march_sums, frame->cell_values, frame->gradients, frame->factors },
+  return (stratus_tetra_view){ .scene = { frame->cells, frame->places, frame->march_sums, frame->cell_values, frame->gradients,
+                                 frame->factors, frame->components, frame->media },
     .lines = frame->us,
     .ends = frame->ends,
     .faces = (const int32_t*)frame->faces,

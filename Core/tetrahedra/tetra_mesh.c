@@ -15,7 +15,7 @@ bool stratus_tetra_shows(
 {
   const int32_t* v = mesh->vertices + 4 * cell;
   bool shows = !(mesh->hidden && mesh->hidden[cell]) && !stratus_names_a_point_twice(v);
-  range[0] = range[1] = point_values ? point_values[v[0]] : stratus_volume_fetch(volume, bias, (size_t)cell);
+  range[0] = range[1] = point_values ? point_values[v[0]] : stratus_tetra_fetch(mesh, volume, bias, (size_t)cell);
   shows = shows && isfinite(range[0]);
   for (int i = 1; i < 4 && point_values; ++i) {
     const float value = point_values[v[i]];
@@ -238,7 +238,7 @@ static stratus_status fetch_values(
   float* out = memory;
 #pragma omp parallel for num_threads(context->threads)
   for (int64_t i = 0; i < count; ++i) {
-    out[i] = stratus_volume_fetch(volume, bias, mesh->cell_values ? (size_t)at[i] : (size_t)i);
+    out[i] = stratus_tetra_fetch(mesh, volume, bias, mesh->cell_values ? (size_t)at[i] : (size_t)i);
   }
   *values = out;
   return STRATUS_OK;

@@ -34,6 +34,10 @@ stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const st
     snprintf(report->why, sizeof report->why, "march: light and gradient opacity cannot be projected");
     return STRATUS_OK;
   }
+  if (stratus_tetra_component_count(mesh) > 1) {
+    snprintf(report->why, sizeof report->why, "march: several components cannot be projected");
+    return STRATUS_OK;
+  }
   if (!caster->mesh->names) {
     snprintf(report->why, sizeof report->why, "march: the cells of a lattice are not listed, and so need no memory");
     return STRATUS_OK;

@@ -102,7 +102,8 @@ void vtkStratusMeshView::Divide(vtkUnstructuredGrid* grid, vtkMTimeType time)
   this->HasLeaves = this->Accepted && this->Tetrahedra.CellByCell && this->Leaves.Set(grid);
 }
 
-bool vtkStratusMeshView::Set(vtkDataSet* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error)
+bool vtkStratusMeshView::Set(
+  vtkDataSet* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents)
 {
   if (!this->SetGeometry(grid, error)) {
     return false;
@@ -120,7 +121,7 @@ bool vtkStratusMeshView::Set(vtkDataSet* grid, vtkDataArray* array, bool cells, 
   if (this->Carrier->GetNumberOfPoints() != count) {
     this->Carrier->SetDimensions(static_cast<int>(count), 1, 1);
   }
-  if (!this->Values.Set(this->Carrier, values_of, false, nullptr, error)) {
+  if (!this->Values.Set(this->Carrier, values_of, false, nullptr, error, mostComponents)) {
     return false;
   }
   const stratus_volume& values = this->Values.GetVolume();
@@ -128,6 +129,7 @@ bool vtkStratusMeshView::Set(vtkDataSet* grid, vtkDataArray* array, bool cells, 
   this->Mesh.values = values.values;
   this->Mesh.type = values.type;
   this->Mesh.value_stride = values.value_stride;
+  this->Mesh.components = values.components;
   this->Mesh.cell_values = cells ? 1 : 0;
   this->Mesh.hidden = hidden.empty() ? nullptr : hidden.data();
   const vtkMTimeType geometry = this->IsLattice ? this->Time : this->ContentTime;
@@ -212,7 +214,9 @@ void vtkStratusMeshView::HideNotFinite()
 {
   std::vector<uint8_t> bad(static_cast<size_t>(this->Divided->GetNumberOfTuples()));
   for (size_t i = 0; i < bad.size(); ++i) {
-    bad[i] = std::isfinite(this->Divided->GetComponent(static_cast<vtkIdType>(i), 0)) ? 0 : 1;
+    for (int c = 0; c < this->Divided->GetNumberOfComponents(); ++c) {
+      bad[i] |= std::isfinite(this->Divided->GetComponent(static_cast<vtkIdType>(i), c)) ? 0 : 1;
+    }
   }
   if (std::find(bad.begin(), bad.end(), 1) == bad.end()) {
     return;

@@ -28,7 +28,8 @@ public:
   // Returns false, with the reason in `error`, where the core cannot take the grid or the array. `matrix` is the prop's, or nullptr for the
   // identity. Copies are made only where the input's content has changed.
   // The grid is unstructured or structured.
-  bool Set(vtkDataSet* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error);
+  // Of an array up to `mostComponents` are taken; more are refused.
+  bool Set(vtkDataSet* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1);
   // Reads a grid's points and cells alone; bounds are known after that. Returns false where the core cannot take them.
   bool SetGeometry(vtkDataSet* grid, std::string& error);
   const double* GetBounds() const { return this->Bounds; }

@@ -73,6 +73,8 @@ void vtkStratusVolumeRepresentation::UpdateMapperParameters()
   mapper->SetVectorMode(!this->Property->GetIndependentComponents() ? vtkStratusVolumeMapper::DISABLED
       : magnitude                                                   ? vtkStratusVolumeMapper::MAGNITUDE
                                                                     : vtkStratusVolumeMapper::COMPONENT);
+  mapper->SetTransfer2DYAxisArray(
+    this->UseTransfer2D && !this->UseGradientForTransfer2D && !this->ColorArray2Name.empty() ? this->ColorArray2Name.c_str() : nullptr);
   const int component = std::max(colors->GetVectorComponent(), 0);
   mapper->SetVectorComponent(component);
   if (!magnitude && component > 0 && component < VTK_MAX_VRCOMP) { // ParaView edits the first component's functions, whichever shows

@@ -221,6 +221,7 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   const stratus_tetra_report& report = this->Internal->Report;
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
+  os << indent << "ComponentMixing: " << this->ComponentMixing << "\n";
   os << indent << "GradientOpacityDistance: " << this->GradientOpacityDistance << "\n";
   os << indent << "AverageIPScalarRange: " << this->AverageIPScalarRange[0] << " " << this->AverageIPScalarRange[1] << "\n";
   os << indent << "Cropping: " << (this->Cropping ? "On" : "Off") << "\n";

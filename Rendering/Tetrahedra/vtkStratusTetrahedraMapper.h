@@ -18,7 +18,9 @@
  * - composite data sets of such grids, of rectilinear ones and of images, at any depth (vtkMultiBlockDataSet, vtkPartitionedDataSet,
  *   vtkPartitionedDataSetCollection), as one volume: points of the same coordinates and values become one, so that blocks meet in whole
  *   faces. Blocks without the array or without a volume are left out with a warning. A block alone is drawn as it is;
- * - point and cell scalars of one component and any numeric type but bits;
+ * - point and cell scalars of any numeric type but bits; in composite also of 2 to 4 independent components, each with functions of its own
+ *   (ComponentMixing), and of dependent ones: 2 (colour by the first, opacity by the second) and 4 unsigned bytes (red, green, blue, and
+ * the opacity's value). They are marched, without light and gradient opacity;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
  * - the blend modes composite, maximum and minimum intensity (the largest or smallest value on a ray, at the opacity of one unit distance),
  *   average and additive intensity, and isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
@@ -34,8 +36,8 @@
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
- * All else (more components, two-dimensional transfer functions, label maps, slices) is refused by an error, and
- * nothing is drawn.
+ * All else (more components, several in other blend modes, two-dimensional transfer functions, label maps, slices) is refused by an error,
+ * and nothing is drawn.
  *
  * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.
  *
@@ -118,6 +120,19 @@ public:
    */
   vtkSetMacro(GradientOpacityDistance, double);
   vtkGetMacro(GradientOpacityDistance, double);
+  //@}
+
+  enum ComponentMixingType { ADD_COMPONENTS, MEAN_COMPONENTS };
+  //@{
+  /**
+   * Set/Get how independent components mix where several show, as in vtkStratusVolumeMapper. ADD_COMPONENTS: their optical depths add up.
+   * MEAN_COMPONENTS: each counts by its share, (sum of d^2) / (sum of d) of optical depths d, while their light adds up. Default
+   * ADD_COMPONENTS.
+   */
+  vtkSetClampMacro(ComponentMixing, int, ADD_COMPONENTS, MEAN_COMPONENTS);
+  vtkGetMacro(ComponentMixing, int);
+  void SetComponentMixingToAdd() { this->SetComponentMixing(ADD_COMPONENTS); }
+  void SetComponentMixingToMean() { this->SetComponentMixing(MEAN_COMPONENTS); }
   //@}
 
   //@{
@@ -257,6 +272,7 @@ protected:
   double ImageErrorTolerance = 0.001;
   double Termination = 0.0;
   double GradientOpacityDistance = 0.0;
+  int ComponentMixing = ADD_COMPONENTS;
   int Method = AUTO_METHOD;
   int NumberOfThreads = 0;
   double AverageIPScalarRange[2] = { VTK_FLOAT_MIN, VTK_FLOAT_MAX };

@@ -75,7 +75,9 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
   vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
 {
   options.gradient_distance = this->Mapper->GradientOpacityDistance;
-  if (this->Transfer.GetTransfer().gradient_count > 0 && options.mode != STRATUS_TETRA_COMPOSITE) {
+  options.dependent = property->GetIndependentComponents() ? 0 : 1;
+  options.mean_components = this->Mapper->ComponentMixing == MEAN_COMPONENTS ? 1 : 0;
+  if (this->Functions[0].gradient_count > 0 && options.mode != STRATUS_TETRA_COMPOSITE) {
     error = "gradient opacity is supported in blend mode composite (0) only, elsewhere only a function that is 1 everywhere, or "
             "DisableGradientOpacityOn";
     return false;
@@ -154,6 +156,28 @@ const double* vtkStratusTetrahedraMapper::Internals::FindBounds()
   return nullptr;
 }
 
+// Sets one transfer function, or one for each independent component.
+bool vtkStratusTetrahedraMapper::Internals::SetTransfers(vtkVolumeProperty* property, std::string& error)
+{
+  const int media = property->GetIndependentComponents() ? std::max(this->Mesh.GetMesh().components, 1) : 1;
+  for (int c = 0; c < media; ++c) {
+    if (!this->Transfers[c].Set(property, c, error)) {
+      return false;
+    }
+    this->Functions[c] = this->Transfers[c].GetTransfer();
+  }
+  return true;
+}
+
+vtkTypeUInt64 vtkStratusTetrahedraMapper::Internals::GetFunctionBuilds() const
+{
+  vtkTypeUInt64 builds = 0;
+  for (const vtkStratusTransferView& view : this->Transfers) {
+    builds += view.GetBuilds();
+  }
+  return builds;
+}
+
 bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& empty, std::string& error)
 {
   Drawn drawn;
@@ -173,7 +197,8 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& 
     vtkWarningWithObjectMacro(this->Mapper, << left << (left.find(" blocks ") == std::string::npos ? " is" : " are") << " not drawn");
   }
   this->LastLeftOut = left;
-  return this->Mesh.Set(drawn.Grid, drawn.Scalars, drawn.Cells, prop->GetMatrix(), error) && this->Transfer.Set(prop->GetProperty(), error);
+  return this->Mesh.Set(drawn.Grid, drawn.Scalars, drawn.Cells, prop->GetMatrix(), error, STRATUS_COMPONENTS_MAX) &&
+    this->SetTransfers(prop->GetProperty(), error);
 }
 
 bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)
@@ -207,7 +232,7 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(
   const auto draw = [&] {
     this->Options = options;
     return stratus_tetra_caster_render(
-      this->Caster, &this->Mesh.GetMesh(), &this->Transfer.GetTransfer(), &this->Picture.Camera, &options, &image, &this->Report);
+      this->Caster, &this->Mesh.GetMesh(), this->Functions.data(), &this->Picture.Camera, &options, &image, &this->Report);
   };
   stratus_context_start_build_report(this->Context.Get());
   stratus_status status = draw();
@@ -266,8 +291,8 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
       }
       const stratus_image image = this->Picture.MakeRoom(rgba, this->PartDepth, depths);
       stratus_tetra_report report;
-      return stratus_tetra_caster_render(this->Caster, &this->Mesh.GetMesh(), &this->Transfer.GetTransfer(), &this->Picture.Camera,
-               &this->Options, &image, &report) == STRATUS_OK;
+      return stratus_tetra_caster_render(this->Caster, &this->Mesh.GetMesh(), this->Functions.data(), &this->Picture.Camera, &this->Options,
+               &image, &report) == STRATUS_OK;
     };
   }
   return this->Display.Draw(renderer, this->Picture, pixels, error);

@@ -15,6 +15,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkTable.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,7 @@ public:
   // Of what a structured grid or the blocks of a composite data set show; nullptr for other input.
   const double* FindBounds();
   vtkImageData* GetLastImage();
-  vtkTypeUInt64 GetFunctionBuilds() const { return this->Transfer.GetBuilds(); }
+  vtkTypeUInt64 GetFunctionBuilds() const;
   vtkIdType GetNumberOfIgnoredCells() const { return this->Mesh.GetLeftOut(); }
 
   vtkStratusTetrahedraMapper* Mapper;
@@ -55,6 +56,7 @@ private:
   };
   bool FindDrawn(Drawn& drawn, std::string& error);
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
+  bool SetTransfers(vtkVolumeProperty* property, std::string& error);
   bool SetClipPlanes(stratus_tetra_options& options, std::string& error) const;
   bool SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
   bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
@@ -62,7 +64,8 @@ private:
 
   vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusMeshView Mesh;
-  vtkStratusTransferView Transfer;
+  std::array<vtkStratusTransferView, STRATUS_COMPONENTS_MAX> Transfers; // of each independent component
+  std::array<stratus_transfer, STRATUS_COMPONENTS_MAX> Functions;
   vtkStratusPicture Picture;
   bool HasPicture = false;
   vtkStratusBlocks Blocks;

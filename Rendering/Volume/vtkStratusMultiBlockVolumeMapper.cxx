@@ -197,6 +197,7 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   to->SetComponentMixing(settings->GetComponentMixing());
   to->SetVectorMode(settings->GetVectorMode());
   to->SetVectorComponent(settings->GetVectorComponent());
+  to->SetTransfer2DYAxisArray(settings->GetTransfer2DYAxisArray());
   to->SetUseJittering(settings->GetUseJittering());
   to->SetJitterSeed(settings->GetJitterSeed());
   to->SetImageErrorTolerance(settings->GetImageErrorTolerance());
@@ -214,10 +215,10 @@ void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* 
   std::string error, warning;
   const std::vector<Block> blocks = this->Internal->Find(this->GetInputDataObject(0, 0), this, warning);
   auto& mappers = this->Internal->Mappers;
-  const bool blends = this->GetBlendMode() == COMPOSITE_BLEND || this->GetBlendMode() == ISOSURFACE_BLEND;
+  const int mode = this->GetBlendMode();
+  const bool blends = mode == COMPOSITE_BLEND || mode == ISOSURFACE_BLEND || mode == SLICE_BLEND;
   if (blocks.size() > 1 && !blends) {
-    error =
-      "blend mode " + std::to_string(this->GetBlendMode()) + " is not supported for more than one block; composite and isosurface are";
+    error = "blend mode " + std::to_string(mode) + " is not supported for more than one block; composite, isosurface and slice are";
   } else {
     mappers.resize(blocks.size());
     for (size_t i = 0; i < blocks.size(); ++i) {

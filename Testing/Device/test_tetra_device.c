@@ -120,6 +120,44 @@ static void device_and_host_draw_the_same(void** state)
   stratus_context_destroy(host);
 }
 
+/* Values of several components, each with a function of its own or all with one. */
+static void components_draw_the_same(void** state)
+{
+  stratus_context *host = open_context("host", *state), *device = open_context("0", *state);
+  assert_non_null(device);
+  for (uint32_t seed = 0; seed < 3; ++seed) {
+    tetra_case c;
+    tetra_create(&c, edge, 0.2, 0.0, seed);
+    tetra_camera(host, &c, edge, (int)seed, seed & 1);
+    const stratus_transfer transfers[2] = { c.transfer, c.transfer };
+    c.mesh.point_count /= 2; /* every two values become one of two components; cells name half of the points */
+    c.mesh.components = 2;
+    c.mesh.value_stride = 2;
+    for (int64_t cell = 0; cell < 4 * c.mesh.cell_count; ++cell) {
+      c.mesh.cell_count = c.vertices[cell] >= (int32_t)c.mesh.point_count ? cell / 4 : c.mesh.cell_count;
+    }
+    c.options.dependent = seed == 1;
+    c.options.mean_components = seed == 2;
+    for (int where = 0; where < 2; ++where) {
+      stratus_context* context = where ? device : host;
+      tetra_picture* p = where ? &ours : &theirs;
+      stratus_tetra_caster* caster = NULL;
+      memset(p, 0x5a, sizeof *p);
+      const stratus_image image = {
+        .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = p->rgba, .depth = p->depth, .rgba8 = p->rgba8, .samples = p->samples
+      };
+      assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
+      assert_int_equal(stratus_tetra_caster_render(caster, &c.mesh, transfers, &c.camera, &c.options, &image, &p->report), STRATUS_OK);
+      stratus_tetra_caster_destroy(caster);
+    }
+    assert_true(theirs.report.segments > 0);
+    assert_same();
+    tetra_destroy(&c);
+  }
+  stratus_context_destroy(device);
+  stratus_context_destroy(host);
+}
+
 /* Pixels whose pieces come out of order, with more of them than are sorted at once. */
 static void overlaps_are_drawn_again(void** state)
 {
@@ -292,6 +330,8 @@ int test_tetra_device(void)
     cmocka_unit_test_prestate(test, &project_gpu)
   const struct CMUnitTest all[] = {
     EACH(device_and_host_draw_the_same),
+    cmocka_unit_test_prestate(components_draw_the_same, &march_cpu),
+    cmocka_unit_test_prestate(components_draw_the_same, &march_gpu),
     cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_cpu),
     cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_gpu),
     cmocka_unit_test_prestate(auto_goes_by_the_costs_of_the_host, &march_cpu),

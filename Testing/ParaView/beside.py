@@ -63,7 +63,7 @@ def draw(path, array, opacity, color, unit, least, width=500, height=400, compon
     on the command line. judge: a file of the same data that `stratus render` draws. representation: where the reader's is another.
     headlight: in place of ParaView's kit of lights."""
     name = os.path.splitext(os.path.basename(path))[0] + (f"-{judged}" if judged else "")
-    name += options[0][1:] if options else ""
+    name += options[0][1:] + options[1][:5] if len(options) > 1 else "".join(options)[1:]
     floats, bytes_ = (os.path.join(folder, name + end) for end in (".exr", ".png"))
     command = [stratus, "render", judge or path, "--array", judged or array, "-o", floats, "--size", f"{width}x{height}", "--unit-distance", str(unit),
                "--opacity", ",".join(f"{v}:{a}" for v, a in opacity), "--color", ",".join(f"{v}:{r}:{g}:{b}" for v, r, g, b in color)]
@@ -88,7 +88,11 @@ def draw(path, array, opacity, color, unit, least, width=500, height=400, compon
         lamp.Coords, lamp.Type, lamp.Intensity, lamp.ConeAngle = "Camera", "Positional", 1, 180
         lamp.Position, lamp.FocalPoint = [0, 0, 1], [0, 0, 0]
     for key, value in (settings or {}).items():
-        setattr(shown, key, value)
+        if isinstance(value, dict):  # of a proxy that is the property's value
+            for inner, given in value.items():
+                setattr(getattr(shown, key), inner, given)
+        else:
+            setattr(shown, key, value)
     shown.SetScalarBarVisibility(view, False)
     look_like(view, told.stdout)
     simple.SaveScreenshot(bytes_, view, ImageResolution=[width, height], TransparentBackground=0)

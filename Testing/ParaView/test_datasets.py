@@ -22,6 +22,10 @@ for path in levels, hills, cells:
     draw(path, "hill", OPACITY, COLORS, 1.0, 55, settings={projection: "Maximum Intensity"}, options=("--mode", "maximum"))
 for path, shade in (levels, "StratusShade"), (hills, "StratusCellsShade"), (cells, "StratusCellsShade"):
     draw(path, "hill", OPACITY, COLORS, 1.0, 55, settings={shade: 1, **MATERIAL}, options=("--shade",), headlight=True)
+for path in levels, parts:
+    draw(path, "hill", OPACITY, COLORS, 1.0, 53, judge=levels, representation="UniformGridRepresentation",
+         settings={"BlendMode": "Slice", "StratusSliceFunction": {"Origin": [121, 3, 16], "Normal": [1, 0.5, 0.3]}},
+         options=("--mode", "slice", "--slice", "121,3,16,1,0.5,0.3"))
 draw(levels, "hill", OPACITY, COLORS, 1.0, 55, settings={"UseCropping": 1, "CroppingScale": [1, 1, 0.5]},
      options=("--crop", ",".join(str(edge) for axis, scale in zip(axes(), (1, 1, 0.5)) for edge in (axis[0] * scale, axis[-1] * scale))))
 leave()

@@ -15,6 +15,7 @@
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <functional>
+#include <sys/resource.h>
 
 namespace {
 
@@ -234,6 +235,28 @@ void test_memory(const std::string& folder)
   check(r.errors->heard.empty() && data->GetPointData()->GetScalars()->GetRange()[1] == 2, "within the limit: " + r.errors->heard);
 }
 
+long resident_most()
+{
+  struct rusage used;
+  return getrusage(RUSAGE_SELF, &used) == 0 ? used.ru_maxrss / 1024 : -1;
+}
+
+// Pages of an image that hold background 0 alone are never written: 512 MiB with two voxels take what the voxels take.
+void test_pages(const std::string& folder)
+{
+  const auto grid = openvdb::FloatGrid::create(0.0F);
+  grid->tree().setValue(openvdb::Coord(0, 0, 0), 1);
+  grid->tree().setValue(openvdb::Coord(509, 509, 509), 2);
+  vdb::write_vdb(folder + "/pages.vdb", { grid });
+  const long before = resident_most();
+  reader r(folder + "/pages.vdb", nullptr);
+  vtkDataSet* data = r.read();
+  const long after = resident_most();
+  check(r.errors->heard.empty() && data->GetNumberOfPoints() == 512LL * 512 * 512, "512 voxels a side: " + r.errors->heard);
+  check(before > 0 && after - before < 64, "two voxels take " + std::to_string(after - before) + " MiB");
+  check(data->GetPointData()->GetArray(0)->GetRange()[1] == 2, "the far voxel is lost");
+}
+
 void test_wrong(const std::string& folder)
 {
   const auto grid = vdb::make_grid<openvdb::FloatGrid>("density");
@@ -306,6 +329,7 @@ int main(int argc, char* argv[])
   test_maps(folder);
   test_several(folder);
   test_memory(folder);
+  test_pages(folder);
   test_wrong(folder);
   test_damaged(folder);
   return failures ? 1 : 0;

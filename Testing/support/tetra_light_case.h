@@ -260,7 +260,7 @@ static inline int tetra_lit_nearer(const void* a, const void* b)
   return tetra_nearer(&((const tetra_lit_stretch*)a)->stretch, &((const tetra_lit_stretch*)b)->stretch);
 }
 
-/* Draws the reference, 4*TETRA_PIXELS. Of light above 1, 1 is left. */
+/* Draws the reference, 4*TETRA_PIXELS. Light may be above 1. */
 static inline void tetra_reference_lit(const tetra_case* c, double* rgba)
 {
   tetra_lit_stretch* met = calloc((size_t)c->mesh.cell_count + 1, sizeof *met);
@@ -285,9 +285,6 @@ static inline void tetra_reference_lit(const tetra_case* c, double* rgba)
     memset(out, 0, 4 * sizeof *out);
     for (size_t i = 0; i < count; ++i) {
       tetra_integrate_lit(c, &world, &local, met + i, origin, along, out);
-    }
-    for (int i = 0; i < 3; ++i) {
-      out[i] = fmin(out[i], 1.0);
     }
   }
   tetra_space_destroy(&world);

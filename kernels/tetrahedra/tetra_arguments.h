@@ -33,6 +33,16 @@
 #define TETRA_PLANES 12  /* of clip planes and the sides of a box */
 #define TETRA_CONTOURS 16
 
+/* Values of several components: each has a table of its own, of which points know the places. */
+typedef struct stratus_tetra_media_arguments {
+  int components;                /* 0: one, and the rest means nothing */
+  int dependent;                 /* 1: the last has the opacity, and the others the colour: a value of a table, or red, green and blue */
+  int mean;                      /* 1: independent components count by their share of the optical depth */
+  int sums_at[4];                /* where a component's sums begin, laid out as stratus_tetra_sums() */
+  float last[4], depth_scale[4]; /* its last entry; the optical depth of a unit of its sums over a unit of length */
+  int has_opaque[4];
+} stratus_tetra_media_arguments;
+
 typedef struct stratus_tetra_arguments {
   stratus_picture_arguments picture;
   stratus_table_arguments table;
@@ -54,10 +64,11 @@ typedef struct stratus_tetra_arguments {
   int contour_count;
   float contour[TETRA_CONTOURS][5]; /* sorted by value: value, colour times opacity, opacity */
   int plane_count;
-  float plane[TETRA_PLANES][6];  /* a ray is seen where [0] + u [1] + v [2] + ([3] + u [4] + v [5]) z >= 0 */
-  int steps_most;                /* the most cells that a ray can pass from one border face to the next */
-  int has_ends;                  /* 1: rays end at opaque geometry, each pixel at a depth of its own */
-  stratus_light_arguments light; /* of the variant TETRA_LIT, as all that follows; places are (a, b, z) */
+  float plane[TETRA_PLANES][6];        /* a ray is seen where [0] + u [1] + v [2] + ([3] + u [4] + v [5]) z >= 0 */
+  int steps_most;                      /* the most cells that a ray can pass from one border face to the next */
+  int has_ends;                        /* 1: rays end at opaque geometry, each pixel at a depth of its own */
+  stratus_tetra_media_arguments media; /* of the variant TETRA_LIT, as all that follows */
+  stratus_light_arguments light;       /* of the variant TETRA_LIT, as all that follows; places are (a, b, z) */
   float bend[2]; /* by how much light changes at most where a normal turns by an angle, and how much it bends by the angle's square */
   int thins;     /* 1: gradient opacity */
   float factor_scale, factor_last; /* from gradients to steps of the gradient opacity, and its last step */

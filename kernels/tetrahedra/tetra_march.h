@@ -21,6 +21,8 @@ typedef struct stratus_tetra_scene {
   GLOBAL const float* cell_values; /* read only if the arguments' cell_values is set */
   GLOBAL const float* gradients;   /* of points, four floats each, as the next read by the variant TETRA_LIT alone */
   GLOBAL const float* factors;     /* the gradient opacity */
+  GLOBAL const float* components;  /* of points or cells, four floats each: places in the components' tables */
+  GLOBAL const int* media;         /* their sums */
 } stratus_tetra_scene;
 
 typedef struct stratus_tetra_ray {
@@ -43,6 +45,7 @@ typedef struct stratus_tetra_passage {
 #if TETRA_LIT
   vfloat edge[3]; /* of the face by which the ray entered, as the next */
   vint name[3];
+  vint cell; /* the one that was passed */
 #endif
 } stratus_tetra_passage;
 
@@ -168,6 +171,7 @@ INLINE stratus_tetra_passage tetra_pass(
     passage.first = gather_float(scene->cell_values, r->cell >> vi_set(3), live);
   }
 #if TETRA_LIT
+  passage.cell = r->cell;
   for (int i = 0; i < 3; ++i) {
     passage.edge[i] = r->edge[i];
     passage.name[i] = r->name[i];
@@ -198,12 +202,12 @@ INLINE void tetra_extreme(stratus_tetra_light* light, vmask mask, vfloat first, 
 }
 
 #if TETRA_LIT
-/* The gradient where a ray passes a face, as tetra_cross() has the value. */
-INLINE void tetra_face_gradient(const stratus_tetra_scene* scene, const vint name[3], const vfloat edge[3], vmask mask, vfloat g[3])
+/* Floats of points, `count` of four, where a ray passes a face, as tetra_cross() has the value. */
+INLINE void tetra_face_floats(GLOBAL const float* floats, int count, const vint name[3], const vfloat edge[3], vmask mask, vfloat g[4])
 {
   const vfloat zero = v_set(0.0f), hair = v_set(1e-30f);
   vfloat weight[3], sum = zero;
-  g[0] = g[1] = g[2] = zero;
+  g[0] = g[1] = g[2] = g[3] = zero;
   for (int i = 0; i < 3; ++i) {
     weight[i] = v_max(edge[i], zero) + hair;
     sum = sum + weight[i];
@@ -211,8 +215,8 @@ INLINE void tetra_face_gradient(const stratus_tetra_scene* scene, const vint nam
   const vfloat share = v_reciprocal(sum);
   for (int i = 0; i < 3; ++i) {
     vfloat q[4];
-    gather_four(scene->gradients, name[i], mask, q);
-    for (int axis = 0; axis < 3; ++axis) {
+    gather_four(floats, name[i], mask, q);
+    for (int axis = 0; axis < count; ++axis) {
       g[axis] = v_fma(weight[i] * share, q[axis], g[axis]);
     }
   }
@@ -225,9 +229,9 @@ INLINE stratus_tetra_stretch tetra_stretch(
   const vfloat per_z = v_reciprocal(v_max(passage->to - passage->from, v_set(1e-30f)));
   const vfloat from = v_clamp((begin - passage->from) * per_z, 0.0f, 1.0f), to = v_clamp((end - passage->from) * per_z, 0.0f, 1.0f);
   stratus_tetra_stretch s;
-  vfloat near[3], far[3];
-  tetra_face_gradient(scene, passage->name, passage->edge, mask, near);
-  tetra_face_gradient(scene, r->name, r->edge, mask, far);
+  vfloat near[4], far[4];
+  tetra_face_floats(scene->gradients, 3, passage->name, passage->edge, mask, near);
+  tetra_face_floats(scene->gradients, 3, r->name, r->edge, mask, far);
   for (int axis = 0; axis < 3; ++axis) {
     s.gradient[axis] = v_fma(far[axis] - near[axis], from, near[axis]);
     s.turn[axis] = (far[axis] - near[axis]) * (to - from);
@@ -240,6 +244,30 @@ INLINE stratus_tetra_stretch tetra_stretch(
   s.rise = end - begin;
   s.length = (end - begin) * r->length;
   return s;
+}
+
+/* Adds the light of several components on the part begin..end of a cell that was passed. */
+INLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask, vfloat near)
+{
+  const vfloat per_z = v_reciprocal(v_max(passage->to - passage->from, v_set(1e-30f)));
+  const vfloat from = v_clamp((begin - passage->from) * per_z, 0.0f, 1.0f), to = v_clamp((end - passage->from) * per_z, 0.0f, 1.0f);
+  stratus_tetra_values values;
+  if (a->cell_values) {
+    gather_four(scene->components, passage->cell >> vi_set(3), mask, values.from);
+    for (int c = 0; c < TETRA_COMPONENTS; ++c) {
+      values.to[c] = values.from[c];
+    }
+  } else {
+    vfloat first[4], last[4];
+    tetra_face_floats(scene->components, 4, passage->name, passage->edge, mask, first);
+    tetra_face_floats(scene->components, 4, r->name, r->edge, mask, last);
+    for (int c = 0; c < TETRA_COMPONENTS; ++c) {
+      values.from[c] = v_fma(last[c] - first[c], from, first[c]);
+      values.to[c] = v_fma(last[c] - first[c], to, first[c]);
+    }
+  }
+  tetra_media(a, scene->media, &values, light, mask, (end - begin) * r->length, near);
 }
 
 /* The lanes whose stretch may show: its sums differ, or it lies within one entry. */
@@ -291,8 +319,10 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
       tetra_add(a, scene->sums, light, mask, &from, &to, (end - begin) * r->length, near);
     } else {
 #if TETRA_LIT
-      const vmask some = tetra_may_show(a, &from, &to, mask);
-      if (m_any(some)) {
+      const vmask some = a->media.components ? mask : tetra_may_show(a, &from, &to, mask);
+      if (m_any(some) && a->media.components) {
+        tetra_shade_components(a, scene, r, light, passage, begin, end, some, near);
+      } else if (m_any(some)) {
         const stratus_tetra_stretch stretch = tetra_stretch(scene, r, passage, begin, end, some);
         tetra_light_stretch(a, scene->sums, scene->factors, &stretch, light, some, first, last, &from, &to, near);
       }

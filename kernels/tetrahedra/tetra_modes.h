@@ -7,6 +7,7 @@
 #include "tetra_shade.h"
 /* A device's kernel holds a file where it is included first: what other variants need, too, must stand above. */
 #if TETRA_LIT
+#include "tetra_components.h"
 #include "tetra_light.h"
 #else
 typedef int stratus_tetra_stretch; /* of no use */

@@ -97,15 +97,15 @@ INLINE void store_ray(const stratus_tetra_walk* t, int pixel, const float rgba[4
 /* Stores the pixels of lanes whose ray has ended. */
 INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vmask mask)
 {
-  float channel[4][STRATUS_WIDTH], depth[STRATUS_WIDTH], most[STRATUS_WIDTH];
+  float channel[4][STRATUS_WIDTH], depth[STRATUS_WIDTH], largest[STRATUS_WIDTH];
   int pixel[STRATUS_WIDTH], segments[STRATUS_WIDTH], entry[STRATUS_WIDTH];
-  const vfloat one = v_set(1.0f); /* rounding may take a sum above 1 */
-  v_store(channel[0], v_min(k->light.red, one));
-  v_store(channel[1], v_min(k->light.green, one));
-  v_store(channel[2], v_min(k->light.blue, one));
+  const vfloat one = v_set(1.0f), most = v_set(TETRA_LIT ? LARGEST_FLOAT : 1.0f); /* rounding may take a sum above 1, light goes beyond */
+  v_store(channel[0], v_min(k->light.red, most));
+  v_store(channel[1], v_min(k->light.green, most));
+  v_store(channel[2], v_min(k->light.blue, most));
   v_store(channel[3], one - k->light.transparency);
   v_store(depth, k->light.depth);
-  v_store(most, k->light.most);
+  v_store(largest, k->light.most);
   vi_store(pixel, vi_select(mask, k->pixel, vi_set(-1)));
   vi_store(segments, k->segments);
   CONSTANT stratus_tetra_arguments* a = t->arguments;
@@ -129,7 +129,7 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
     for (int c = 0; c < 4; ++c) {
       rgba[c] = channel[c][lane];
       if (a->mode == TETRA_EXTREMES) {
-        rgba[c] = most[lane] > -LARGEST_FLOAT ? t->view->colors[4 * entry[lane] + c] : 0.0f;
+        rgba[c] = largest[lane] > -LARGEST_FLOAT ? t->view->colors[4 * entry[lane] + c] : 0.0f;
       }
     }
     store_ray(t, pixel[lane], rgba, depth[lane], segments[lane]);

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Values of several components: a table for each, and the places of all values in them. */
+#include "tetra_caster.h"
+
+#include "mesh.h"
+#include "table_fill.h"
+#include "tetra_lattice.h"
+
+#include <string.h>
+
+/* Entries of a table, as of one component (tetra_caster.c). */
+#define ENTRIES 32768
+
+int stratus_tetra_component_count(const stratus_mesh* mesh)
+{
+  return mesh->components > 1 ? mesh->components : 1;
+}
+
+/* A mesh's component as values of one. */
+static stratus_volume component_of(const stratus_mesh* mesh, int c)
+{
+  stratus_volume volume = stratus_mesh_values(mesh);
+  volume.values = (const char*)volume.values + (size_t)c * stratus_type_size(mesh->type);
+  return volume;
+}
+
+float stratus_tetra_fetch(const stratus_mesh* mesh, const stratus_volume* volume, double bias, size_t value)
+{
+  bool finite = true;
+  for (int c = 1; c < mesh->components; ++c) {
+    const stratus_volume other = component_of(mesh, c);
+    finite = finite && isfinite(stratus_volume_fetch(&other, bias, value));
+  }
+  return finite ? stratus_volume_fetch(volume, bias, value) : NAN;
+}
+
+stratus_status stratus_tetra_components_check(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options)
+{
+  const int count = stratus_tetra_component_count(mesh);
+  if (count == 1) {
+    return STRATUS_OK;
+  }
+  if (options->mode != STRATUS_TETRA_COMPOSITE) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "values of %d components are not supported in mode %s, only in composite", count,
+      stratus_tetra_mode_name(options->mode));
+  }
+  if (options->method == STRATUS_TETRA_METHOD_PROJECT) {
+    return stratus_fail(
+      context, STRATUS_UNSUPPORTED, "values of %d components cannot be projected, only marched: take the method march or auto", count);
+  }
+  if (options->dependent && !(count == 2 || (count == 4 && mesh->type == STRATUS_UINT8))) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "%d dependent components of type %d are not supported, only 2 of any type, or 4 of unsigned bytes", count, (int)mesh->type);
+  }
+  const int functions = options->dependent ? 1 : count;
+  for (int c = 0; c < functions; ++c) {
+    TRY(stratus_transfer_check(context, transfers + c));
+    if (transfers[c].gradient_count > 0 || options->shade) {
+      return stratus_fail(
+        context, STRATUS_UNSUPPORTED, "light and gradient opacity of %d components are not supported, only of one", count);
+    }
+  }
+  return STRATUS_OK;
+}
+
+void stratus_tetra_components_drop(stratus_tetra_caster* caster)
+{
+  stratus_tetra_components* m = &caster->components;
+  stratus_tetra_device_drop_components(caster->device);
+  stratus_release(caster->context, m->places);
+  stratus_release(caster->context, m->sums);
+  stratus_release(caster->context, m->transfers);
+  *m = (stratus_tetra_components){ 0 };
+}
+
+/* ---- tables */
+
+/* The finite fetched values of a component, from lo to hi. */
+static stratus_table_values values_of(const stratus_mesh* mesh, const stratus_volume* component, double bias)
+{
+  const int64_t count = mesh->cell_values ? mesh->cell_count : mesh->point_count;
+  float lo = INFINITY, hi = -INFINITY;
+  for (int64_t i = 0; i < count; ++i) {
+    const float value = stratus_volume_fetch(component, bias, (size_t)i);
+    lo = isfinite(value) ? fminf(lo, value) : lo;
+    hi = isfinite(value) ? fmaxf(hi, value) : hi;
+  }
+  return (stratus_table_values){ .fetching = { bias, stratus_type_is_wide(component->type), stratus_type_is_integer(component->type) },
+    .lo = lo <= hi ? lo : 0.0f,
+    .hi = lo <= hi ? hi : 0.0f,
+    .uniform = true };
+}
+
+typedef struct components_build {
+  stratus_tetra_caster* caster;
+  const stratus_mesh* mesh;
+  const stratus_transfer* transfers;
+  stratus_tetra_components made;
+  stratus_volume component[4];
+  double bias[4];
+  float scale[4], offset[4]; /* from a fetched value to its place */
+} components_build;
+
+/* The function of a component's table. half: points for one that has a colour alone. */
+static stratus_transfer function_of(const components_build* b, int c, double half[2])
+{
+  const bool colors = b->made.dependent && c + 1 < b->made.count;
+  stratus_transfer t = b->transfers[b->made.dependent ? 0 : c];
+  if (colors) { /* any opacity: the sums' colours are divided by it */
+    half[0] = 0.0;
+    half[1] = 0.5;
+    t.opacity = half;
+    t.opacity_count = 1;
+    t.clamp = 1;
+  }
+  return t;
+}
+
+/* Appends the sums of component c's table. */
+static stratus_status add_table(components_build* b, int c)
+{
+  stratus_context* context = b->caster->context;
+  stratus_tetra_components* m = &b->made;
+  const stratus_table_values values = values_of(b->mesh, &b->component[c], b->bias[c]);
+  double half[2];
+  const stratus_transfer function = function_of(b, c, half);
+  stratus_table* table = NULL;
+  int32_t* sums = NULL;
+  void* memory = NULL;
+  stratus_status status = stratus_table_create_fine(context, &function, &values, STRATUS_SAMPLING_PREINTEGRATED, 1.0, ENTRIES, &table);
+  status = status == STRATUS_OK ? stratus_tetra_sums(context, table, &sums) : status;
+  const size_t words = status == STRATUS_OK ? STRATUS_TETRA_SUMS * (size_t)table->size : 0, at = (m->sum_count + 3) / 4 * 4;
+  status = status == STRATUS_OK ? stratus_allocate_zero(context, at + words, sizeof(int32_t), &memory) : status;
+  if (status == STRATUS_OK) {
+    if (m->sums) {
+      memcpy(memory, m->sums, m->sum_count * sizeof *m->sums);
+    }
+    memcpy((int32_t*)memory + at, sums, words * sizeof *sums);
+    stratus_release(context, m->sums);
+    m->sums = memory;
+    m->sum_count = at + words;
+    m->sums_at[c] = (int)at;
+    m->last[c] = (float)(table->size - 1);
+    m->depth_scale[c] = stratus_table_arguments_of(table).tau_scale * (m->dependent ? 1.0f : (float)function.weight);
+    m->has_opaque[c] = table->has_opaque != 0 && (m->dependent || function.weight > 0.0);
+    m->shown = m->shown || (table->shown > 0 && (!m->dependent || c + 1 == m->count));
+    b->scale[c] = table->scale;
+    b->offset[c] = table->offset;
+  }
+  stratus_release(context, sums);
+  stratus_table_destroy(table);
+  return status;
+}
+
+/* ---- places */
+
+/* The number of a value in the mesh for each slot of a tetra_mesh's values; -1: none. */
+static int64_t value_at(const components_build* b, int64_t slot)
+{
+  const stratus_tetra_mesh* tetra = b->caster->mesh;
+  const int32_t* n = b->mesh->lattice;
+  if (tetra->names) {
+    return b->mesh->cell_values ? (int64_t)tetra->at[slot] : slot;
+  }
+  const int64_t i = slot % n[0], j = slot / n[0] % n[1], k = slot / n[0] / n[1];
+  if (!b->mesh->cell_values) {
+    return slot;
+  }
+  return i < n[0] - 1 && j < n[1] - 1 && k < n[2] - 1 ? (k * (n[1] - 1) + j) * (n[0] - 1) + i : -1;
+}
+
+static stratus_status fill_places(components_build* b)
+{
+  stratus_tetra_components* m = &b->made;
+  const stratus_tetra_mesh* tetra = b->caster->mesh;
+  const int64_t count = (int64_t)tetra->value_count;
+  void* memory = NULL;
+  TRY(stratus_allocate_zero(b->caster->context, (size_t)count, 4 * sizeof(float), &memory));
+  m->places = memory;
+  m->value_count = (size_t)count;
+#pragma omp parallel for num_threads(b->caster->context->threads)
+  for (int64_t slot = 0; slot < count; ++slot) {
+    const int64_t value = value_at(b, slot);
+    float* place = m->places + 4 * (tetra->names && !b->mesh->cell_values ? tetra->names[slot] : slot);
+    for (int c = 0; c < m->count && value >= 0; ++c) {
+      const float fetched = stratus_volume_fetch(&b->component[c], b->bias[c], (size_t)value);
+      place[c] = isfinite(fetched) ? fetched * b->scale[c] + b->offset[c] : 0.0f;
+    }
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status build(components_build* b)
+{
+  stratus_tetra_components* m = &b->made;
+  for (int c = 0; c < m->count; ++c) {
+    b->component[c] = component_of(b->mesh, c);
+    b->bias[c] = stratus_volume_bias(&b->component[c]);
+    if (m->dependent && m->count == 4 && c < 3) { /* red, green and blue are what they are */
+      b->scale[c] = 1.0f / 255.0f;
+      b->offset[c] = (float)b->bias[c] * b->scale[c];
+    } else {
+      TRY(add_table(b, c));
+    }
+  }
+  TRY(fill_places(b));
+  return stratus_transfer_copy(b->caster->context, b->transfers, m->transfer_count, &m->transfers);
+}
+
+stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfers,
+  const stratus_tetra_options* options, double* ms)
+{
+  const int count = stratus_tetra_component_count(mesh);
+  stratus_tetra_components* known = &caster->components;
+  components_build b = { .caster = caster, .mesh = mesh, .transfers = transfers };
+  if (count == 1) {
+    stratus_tetra_components_drop(caster);
+    return STRATUS_OK;
+  }
+  b.made = (stratus_tetra_components){
+    .count = count, .dependent = options->dependent != 0, .transfer_count = options->dependent ? 1 : count, .values = caster->value_builds
+  };
+  bool same = known->count == count && known->dependent == b.made.dependent && known->values == caster->value_builds;
+  for (int t = 0; t < b.made.transfer_count && same; ++t) {
+    same = stratus_transfer_same(known->transfers + t, transfers + t);
+  }
+  if (same) {
+    return STRATUS_OK;
+  }
+  const double start = stratus_now_ms();
+  const stratus_status status = build(&b);
+  stratus_tetra_components_drop(caster);
+  *known = b.made;
+  ++caster->component_builds;
+  if (status != STRATUS_OK) {
+    stratus_tetra_components_drop(caster);
+  }
+  *ms += stratus_now_ms() - start;
+  return status;
+}
+
+void stratus_tetra_frame_components(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_tetra_options* options)
+{
+  const stratus_tetra_components* m = &caster->components;
+  stratus_tetra_media_arguments* a = &frame->arguments.media;
+  if (m->count == 0) {
+    return;
+  }
+  frame->lit = true;
+  frame->components = m->places;
+  frame->media = m->sums;
+  frame->media_count = m->sum_count;
+  a->components = m->count;
+  a->dependent = m->dependent;
+  a->mean = options->mean_components && !m->dependent;
+  for (int c = 0; c < m->count; ++c) {
+    a->sums_at[c] = m->sums_at[c];
+    a->last[c] = m->last[c];
+    a->depth_scale[c] = m->depth_scale[c];
+    a->has_opaque[c] = m->has_opaque[c];
+  }
+}
