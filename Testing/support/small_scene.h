@@ -16,7 +16,7 @@
 #define SMALL_WIDTH 12
 #define SMALL_HEIGHT 10
 #define SMALL_PIXELS (SMALL_WIDTH * SMALL_HEIGHT)
-#define SMALL_SETTINGS 13
+#define SMALL_SETTINGS 15
 
 typedef struct small_scene {
   double values[SMALL_VALUES]; /* a wide type, which is converted when it is fetched */
@@ -83,12 +83,24 @@ static inline const uint8_t* small_mask(void)
   return mask;
 }
 
+/* A function of two variables that shows the ball, the more so the steeper it is; and an edited one. */
+static inline const stratus_transfer_2d* small_transfer_2d(int edited)
+{
+  static const float rgba[2][16] = { { 0, 0, 0, 0, 1, 0.5f, 0.2f, 0.3f, 0, 0, 0, 0, 0.2f, 0.5f, 1, 0.8f },
+    { 0, 0, 0, 0, 0.2f, 0.9f, 0.2f, 0.5f, 0, 0, 0, 0, 0.2f, 0.5f, 1, 0.1f } };
+  static const stratus_transfer_2d functions[2] = {
+    { .rgba = rgba[0], .columns = 2, .rows = 2, .value_range = { 1e6, 1e6 + 1.0 }, .second_range = { 0.0, 0.5 }, .unit_distance = 1.0 },
+    { .rgba = rgba[1], .columns = 2, .rows = 2, .value_range = { 1e6, 1e6 + 1.0 }, .second_range = { 0.0, 0.5 }, .unit_distance = 1.0 }
+  };
+  return functions + edited;
+}
+
 /* Setting 0..SMALL_SETTINGS-1: first all structures, both samplings, both interpolations and an audit, then modes, masks and crop
- * regions. */
+ * regions, a slice, and a function of two variables. */
 static inline stratus_ray_cast_options small_setting(int index)
 {
   static const stratus_mode modes[] = { STRATUS_MODE_MAXIMUM, STRATUS_MODE_AVERAGE, STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE,
-    STRATUS_MODE_COMPOSITE };
+    STRATUS_MODE_COMPOSITE, STRATUS_MODE_SLICE, STRATUS_MODE_COMPOSITE };
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
   options.structure = (stratus_structure)(index % 5);
   options.sampling = index == 5 ? STRATUS_SAMPLING_AUTO : index % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
@@ -106,6 +118,9 @@ static inline stratus_ray_cast_options small_setting(int index)
       options.crop_bounds[side] = side % 2 ? 3.0 : 2.0;
     }
     options.jitter = index == 12;
+    options.slice = (stratus_slice){ .center = { 2.0, 2.0, 3.0 }, .linear = { 0.2, 0.4, 1.0 } };
+    options.transfer_2d = index == 14 ? small_transfer_2d(0) : NULL;
+    options.sampling = index == 14 ? STRATUS_SAMPLING_MIDPOINT : options.sampling;
   }
   return options;
 }
@@ -113,7 +128,10 @@ static inline stratus_ray_cast_options small_setting(int index)
 static inline stratus_status small_render(stratus_ray_caster* caster, const small_scene* scene, const stratus_transfer* transfer,
   int setting, small_picture* picture, stratus_ray_cast_report* report)
 {
-  const stratus_ray_cast_options options = small_setting(setting);
+  stratus_ray_cast_options options = small_setting(setting);
+  if (options.transfer_2d && transfer == &scene->edited) { /* it holds in place of the function of the value */
+    options.transfer_2d = small_transfer_2d(1);
+  }
   const stratus_image image = {
     .width = SMALL_WIDTH, .height = SMALL_HEIGHT, .rgba = picture->rgba, .depth = picture->depth, .samples = picture->samples
   };
