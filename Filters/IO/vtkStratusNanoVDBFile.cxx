@@ -32,35 +32,6 @@ template <class T> struct Traits<nanovdb::Vec3<T>> {
   static const Type* Get(const nanovdb::Vec3<T>& value) { return &value[0]; }
 };
 
-constexpr int NumberOf(float)
-{
-  return VTK_FLOAT;
-}
-constexpr int NumberOf(double)
-{
-  return VTK_DOUBLE;
-}
-constexpr int NumberOf(int16_t)
-{
-  return VTK_SHORT;
-}
-constexpr int NumberOf(int32_t)
-{
-  return VTK_INT;
-}
-constexpr int NumberOf(uint32_t)
-{
-  return VTK_UNSIGNED_INT;
-}
-constexpr int NumberOf(int64_t)
-{
-  return VTK_LONG_LONG;
-}
-constexpr int NumberOf(uint8_t)
-{
-  return VTK_UNSIGNED_CHAR;
-}
-
 // The bytes of a grid, and what lies in them.
 class GridBytes
 {
@@ -101,7 +72,7 @@ public:
   {
     const Tree& tree = this->Source.template At<Tree>(this->Source.Begin(), sizeof(nanovdb::GridData));
     this->Top = &this->Source.template At<Root>(&tree, tree.mNodeOffset[3]);
-    this->Type = NumberOf(Component());
+    this->Type = vtkStratusTypeOf(Component());
     this->Components = Traits<Value>::Components;
     this->Active = tree.mVoxelCount;
     this->Leaves = tree.mNodeCount[0];

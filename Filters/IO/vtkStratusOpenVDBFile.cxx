@@ -31,27 +31,6 @@ template <class T> struct Traits<openvdb::math::Vec3<T>> {
   static const Type* Get(const openvdb::math::Vec3<T>& value) { return value.asV(); }
 };
 
-constexpr int NumberOf(float)
-{
-  return VTK_FLOAT;
-}
-constexpr int NumberOf(double)
-{
-  return VTK_DOUBLE;
-}
-constexpr int NumberOf(int32_t)
-{
-  return VTK_INT;
-}
-constexpr int NumberOf(int64_t)
-{
-  return VTK_LONG_LONG;
-}
-constexpr int NumberOf(uint8_t)
-{
-  return VTK_UNSIGNED_CHAR;
-}
-
 template <class Grid> class SparseGrid : public vtkStratusSparseGrid
 {
 public:
@@ -60,7 +39,7 @@ public:
 
   SparseGrid(openvdb::GridBase::ConstPtr owner, const Grid& grid) : Owner(owner), Source(grid)
   {
-    this->Type = NumberOf(Component());
+    this->Type = vtkStratusTypeOf(Component());
     this->Components = Traits<Value>::Components;
   }
 

@@ -14,6 +14,36 @@
 #include <string>
 #include <vector>
 
+// VTK's number of the type of a grid's components.
+constexpr int vtkStratusTypeOf(float)
+{
+  return VTK_FLOAT;
+}
+constexpr int vtkStratusTypeOf(double)
+{
+  return VTK_DOUBLE;
+}
+constexpr int vtkStratusTypeOf(int16_t)
+{
+  return VTK_SHORT;
+}
+constexpr int vtkStratusTypeOf(int32_t)
+{
+  return VTK_INT;
+}
+constexpr int vtkStratusTypeOf(uint32_t)
+{
+  return VTK_UNSIGNED_INT;
+}
+constexpr int vtkStratusTypeOf(int64_t)
+{
+  return VTK_LONG_LONG;
+}
+constexpr int vtkStratusTypeOf(uint8_t)
+{
+  return VTK_UNSIGNED_CHAR;
+}
+
 // The part of a grid that becomes an image: values of voxels low to high, ends included, x fastest, in memory that holds zeros. What is
 // written is cut at the box's border. A value that the memory has already is not written, so that pages of zeros stay untouched.
 template <class T> class vtkStratusDenseBox
