@@ -10,6 +10,9 @@ from paraview import simple
 from paraview.vtk import vtkIOImage
 from paraview.vtk.util.numpy_support import vtk_to_numpy
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from showing import make_view, show_volume
+
 plugin, stratus, compare, folder = sys.argv[1:5]
 os.makedirs(folder, exist_ok=True)
 failures = 0
@@ -40,22 +43,6 @@ def look_like(view, output):
     view.CameraParallelProjection = 0
 
 
-def make_view(width, height):
-    view = simple.CreateView("RenderView")
-    view.ViewSize = [width, height]
-    view.UseColorPaletteForBackground = 0
-    view.Background = [0, 0, 0]
-    view.OrientationAxesVisibility = 0
-    view.UseFXAA = 0  # it blurs where colours change fast
-    return view
-
-
-READERS = {".vti": ("XMLImageDataReader", "UniformGridRepresentation"), ".vtr": ("XMLRectilinearGridReader", "UniformGridRepresentation"),
-           ".vtu": ("XMLUnstructuredGridReader", "UnstructuredGridRepresentation"),
-           ".vts": ("XMLStructuredGridReader", "StructuredGridRepresentation"),
-           ".vtm": ("XMLMultiBlockDataReader", "UnstructuredGridRepresentation")}
-
-
 def draw(path, array, opacity, color, unit, least, width=500, height=400, component=None, judged=None, settings=None, options=(),
          judge=None, representation=None, headlight=False):
     """The same scene twice: `stratus render` in floats, ParaView in bytes. component: of a vector, by its name; `stratus render` then draws
@@ -70,18 +57,8 @@ def draw(path, array, opacity, color, unit, least, width=500, height=400, compon
     command += list(options)
     told = subprocess.run(command, capture_output=True, text=True)
     check(told.returncode == 0, told.stderr)
-    reader, usual = READERS[os.path.splitext(path)[1]]
-    source = getattr(simple, reader)(FileName=[path])
-    source.UpdatePipeline()
     view = make_view(width, height)
-    shown = simple.Show(source, view, representation or usual)
-    simple.ColorBy(shown, ("POINTS", array, component) if component else ("POINTS", array))
-    look, fade = simple.GetColorTransferFunction(array), simple.GetOpacityTransferFunction(array)
-    look.ColorSpace, look.UseLogScale = "RGB", 0
-    look.RGBPoints = [number for point in color for number in point]
-    fade.Points = [number for value, alpha in opacity for number in (value, alpha, 0.5, 0.0)]
-    shown.SetRepresentationType("Stratus Volume")
-    shown.ScalarOpacityUnitDistance = unit
+    source, shown = show_volume(path, array, opacity, color, unit, view, representation, component)
     if headlight:
         view.UseLight = 0
         lamp = simple.AddLight(view=view)
@@ -93,7 +70,6 @@ def draw(path, array, opacity, color, unit, least, width=500, height=400, compon
                 setattr(getattr(shown, key), inner, given)
         else:
             setattr(shown, key, value)
-    shown.SetScalarBarVisibility(view, False)
     look_like(view, told.stdout)
     simple.SaveScreenshot(bytes_, view, ImageResolution=[width, height], TransparentBackground=0)
     verdict = subprocess.run([compare, bytes_, floats, str(least)], capture_output=True, text=True)

@@ -10,9 +10,8 @@ from paraview.vtk.util.numpy_support import vtk_to_numpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from grids import COLORS, OPACITY, write_all
+from showing import make_view, show_volume
 
-READERS = {".vtr": ("XMLRectilinearGridReader", "UniformGridRepresentation"), ".vts": ("XMLStructuredGridReader", "StructuredGridRepresentation"),
-           ".vtu": ("XMLUnstructuredGridReader", "UnstructuredGridRepresentation")}
 plugin, folder = sys.argv[1:3]
 process = simple.servermanager.vtkProcessModule.GetProcessModule()
 ranks, rank = process.GetNumberOfLocalPartitions(), process.GetPartitionId()
@@ -32,20 +31,8 @@ simple.LoadPlugin(plugin, ns=vars(simple))
 simple._DisableFirstRenderCameraReset()
 differences = []
 for name in "levels.vtr", "hills.vts", "cells.vtu":
-    reader, representation = READERS[os.path.splitext(name)[1]]
-    source = getattr(simple, reader)(FileName=[os.path.join(folder, name)])
-    source.UpdatePipeline()
-    view = simple.CreateView("RenderView")
-    view.ViewSize, view.UseFXAA, view.OrientationAxesVisibility = [500, 400], 0, 0
-    view.UseColorPaletteForBackground, view.Background = 0, [0, 0, 0]
-    shown = simple.Show(source, view, representation)
-    simple.ColorBy(shown, ("POINTS", "hill"))
-    look, fade = simple.GetColorTransferFunction("hill"), simple.GetOpacityTransferFunction("hill")
-    look.ColorSpace, look.RGBPoints = "RGB", [number for point in COLORS for number in point]
-    fade.Points = [number for value, alpha in OPACITY for number in (value, alpha, 0.5, 0.0)]
-    shown.SetRepresentationType("Stratus Volume")
-    shown.ScalarOpacityUnitDistance = 1
-    shown.SetScalarBarVisibility(view, False)
+    view = make_view(500, 400)
+    show_volume(os.path.join(folder, name), "hill", OPACITY, COLORS, 1, view)
     view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [160, 50, 60], [120, 2, 17], [0, 0, 1]
     simple.SaveScreenshot(os.path.join(folder, f"{name}-{ranks}.png"), view, ImageResolution=[500, 400], TransparentBackground=0)
     if rank == 0 and ranks > 1:
