@@ -9,10 +9,6 @@
 #include "ray_sampling.h"
 #include "ray_shading_table.h"
 
-#include <string.h>
-
-_Static_assert(sizeof(stratus_ray_lights) == sizeof(stratus_light_arguments), "the same fields");
-
 stratus_status stratus_ray_shading_check(stratus_context* context, const stratus_ray_cast_options* options)
 {
   return options->shade ? stratus_shading_check(context, &options->shading) : STRATUS_OK;
@@ -131,8 +127,5 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
     return;
   }
   const double origin[3] = { index_to_world[3], index_to_world[7], index_to_world[11] };
-  stratus_light_arguments lights;
-  memcpy(&lights, &a->light, sizeof lights);
-  stratus_lights_set(camera, &options->shading, origin, edge, &lights);
-  memcpy(&a->light, &lights, sizeof lights);
+  stratus_lights_set(camera, &options->shading, origin, edge, &a->light);
 }

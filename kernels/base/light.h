@@ -65,34 +65,40 @@ INLINE vfloat v_power(vfloat a, float power)
   return v_set(1.0f) - v_absorbed(depth);
 }
 
+/* The optical depth of an opacity, of which `passes` is 1 less it. Near 1 the logarithm loses what that has rounded, so that a series takes
+ * opacities from 0 to 1/8. */
+INLINE vfloat depth_of_opacity(vfloat opacity, vfloat passes)
+{
+  vfloat thin = v_set(1.0f / 8.0f);
+  for (int n = 7; n > 0; --n) {
+    thin = v_fma(thin, opacity, v_set(1.0f / (float)n));
+  }
+  return v_select(v_lt(opacity, v_set(0.125f)), thin * opacity, v_set(0.0f) - v_logarithm(v_clamp(passes, 1e-35f, 1.0f)));
+}
+
 /* What multiplies an optical depth where `factor`, 0..1, multiplies the opacity of a way on which the depth is `way`. 1 - F A lets pass
  * what a depth of -ln(1 - F A) does. */
 INLINE vfloat factor_of_way(vfloat factor, vfloat way)
 {
-  const vfloat zero = v_set(0.0f), one = v_set(1.0f), opacity = v_absorbed(way), y = factor * opacity;
-  /* Near 1 the logarithm loses what 1 - y has rounded, so that a series takes y from 0 to 1/8. */
-  vfloat thin = v_set(1.0f / 8.0f);
-  for (int n = 7; n > 0; --n) {
-    thin = v_fma(thin, y, v_set(1.0f / (float)n));
-  }
-  const vfloat passes = v_clamp((one - factor) + factor * (one - opacity), 1e-35f, 1.0f);
-  const vfloat effective = v_select(v_lt(y, v_set(0.125f)), thin * y, zero - v_logarithm(passes));
+  const vfloat one = v_set(1.0f), opacity = v_absorbed(way);
+  const vfloat effective = depth_of_opacity(factor * opacity, (one - factor) + factor * (one - opacity));
   return v_select(v_lt(factor, one), effective * v_reciprocal(v_max(way, v_set(1e-30f))), one);
 }
 
-/* The gradient opacity of a gradient, `factors` sampled at `last` + 1 even steps. scale: from gradients to steps. */
-INLINE vfloat factor_of_gradient(GLOBAL const float* factors, float scale, float last, const vfloat g[3], vmask mask)
+/* The gradient opacity of a gradient. Each lane has a function of its own, sampled at `last` + 1 even steps from `first` on; `scale` takes
+ * gradients to steps. */
+INLINE vfloat factor_of_gradient(GLOBAL const int* factors, vint first, vfloat scale, float last, const vfloat g[3], vmask mask)
 {
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   vfloat v[3];
   for (int axis = 0; axis < 3; ++axis) { /* beyond the last step the factor is constant; squares stay finite */
-    v[axis] = v_clamp(g[axis] * v_set(scale), -last, last);
+    v[axis] = v_clamp(g[axis] * scale, -last, last);
   }
-  const vfloat square = v_dot3(v, v), zero = v_set(0.0f);
+  const vfloat square = v_dot3(v, v);
   const vmask steep = v_le(v_set(1e-28f), square); /* a shorter gradient takes the first factor */
-  const vfloat place = v_min(v_select(steep, square * v_inverse_root(v_select(steep, square, v_set(1.0f))), zero), v_set(last));
-  const vint entry = v_to_int(place);
-  const vfloat low = v_from_bits(v_gather_ints((GLOBAL const int*)factors, entry, mask)),
-               high = v_from_bits(v_gather_ints((GLOBAL const int*)factors + 1, entry, mask));
+  const vfloat place = v_min(v_select(steep, square * v_inverse_root(v_select(steep, square, one)), zero), v_set(last));
+  const vint entry = v_to_int(place), at = first + entry;
+  const vfloat low = v_from_bits(v_gather_ints(factors, at, mask)), high = v_from_bits(v_gather_ints(factors + 1, at, mask));
   return v_lerp(low, high, place - v_from_int(entry));
 }
 

@@ -4,6 +4,7 @@
 #ifndef STRATUS_RAY_CAST_ARGUMENTS_H
 #define STRATUS_RAY_CAST_ARGUMENTS_H
 
+#include "light_arguments.h"
 #include "picture_arguments.h"
 #include "real.h"
 #include "table_arguments.h"
@@ -152,17 +153,6 @@ typedef struct stratus_ray_mode {
   float contour[STRATUS_CONTOURS_MAX][5]; /* isosurfaces, sorted by value: value, colour times opacity, opacity */
 } stratus_ray_mode;
 
-typedef struct stratus_ray_lights {
-  int on, two_sided, count;        /* on: bit c where component c is lit */
-  float normal[9];                 /* 3x3, by rows: takes a value's index gradient to a normal, of any length */
-  float place[9];                  /* 3x3, by rows: takes index displacements to world ones, in units of the shortest voxel edge */
-  float material[4][4];            /* of each component: ambient, diffuse, specular, specular power */
-  float vector[8][3], color[8][3]; /* vector: the direction to the light, of length 1; where positional, its position, as `place` maps it */
-  int positional[8];
-  float attenuation[8][3]; /* in units of `place`; of lights that are not dimmed 1, 0, 0 */
-  float cone[8][5];        /* the direction in which the light shines, the cosine at the cone's edge, -1: no cone, and the exponent */
-} stratus_ray_lights;
-
 /* Shading by several tables: each component and each label has a table of its own, and each component a gradient opacity. All stand in one
  * array of floats. */
 typedef struct stratus_ray_media {
@@ -213,7 +203,7 @@ typedef struct stratus_ray_cast_arguments {
   stratus_ray_rough rough;
   stratus_table_arguments table;
   stratus_ray_mode mode;
-  stratus_ray_lights light;
+  stratus_light_arguments light; /* places are index coordinates; `place` takes them to units of the shortest voxel edge */
   stratus_ray_media media;
   stratus_ray_function_2d transfer_2d;
   stratus_ray_surface slice;

@@ -52,7 +52,7 @@ SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments*
     vfloat g[3];
     stratus_lit_sample lighting;
     RAY_NAME(ray_gradient)(a, values, k->grid, x, mask, g);
-    ray_light(a, 0, x, k->d, g, lighting.diffuse, lighting.specular);
+    light_at(&a->light, 0, x, k->d, g, lighting.diffuse, lighting.specular);
     light_layer(&lighting, layer);
   }
   for (int c = 0; c < 4; ++c) {

@@ -21,10 +21,11 @@ OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, valu
   }
   if (m_any(thins)) {
     const vfloat factor = gradient_opacity(a, table, factor_first, factor_scale, g, thins);
-    lighting->factor = v_select(thins, a->media.factor_reach > 0.0f ? factor_of_opacity(a, factor, depth) : factor, one);
+    lighting->factor =
+      v_select(thins, a->media.factor_reach > 0.0f ? factor_of_way(factor, depth * v_set(a->media.factor_reach)) : factor, one);
   }
   if (lit) {
-    ray_light(a, c, x, k->d, g, lighting->diffuse, lighting->specular);
+    light_at(&a->light, c, x, k->d, g, lighting->diffuse, lighting->specular);
   } else {
     for (int i = 0; i < 3; ++i) {
       lighting->diffuse[i] = one;

@@ -101,7 +101,7 @@ OUTLINE void RAY_NAME(shade_by_two)(CONSTANT stratus_ray_cast_arguments* a, GLOB
       if (!by_gradient) {
         RAY_NAME(ray_gradient)(a, sample->values, k->grid, x, mask, g);
       }
-      ray_light(a, 0, x, k->d, g, lighting.diffuse, lighting.specular);
+      light_at(&a->light, 0, x, k->d, g, lighting.diffuse, lighting.specular);
       light_layer(&lighting, layer);
     }
     for (int c = 0; c < 4; ++c) {

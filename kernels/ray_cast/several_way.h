@@ -67,7 +67,7 @@ INLINE void several_light(const several_source* from, const stratus_packet* k, v
     way->lighting.specular[c] = v_set(0.0f);
   }
   if (a->light.on) {
-    ray_light(a, 0, x, k->d, g, way->lighting.diffuse, way->lighting.specular);
+    light_at(&a->light, 0, x, k->d, g, way->lighting.diffuse, way->lighting.specular);
   }
 }
 

@@ -43,7 +43,7 @@ INLINE void tetra_light_at(CONSTANT stratus_tetra_arguments* a, GLOBAL const flo
     lit->specular[c] = v_set(0.0f);
   }
   if (a->thins) {
-    lit->factor = factor_of_gradient(factors, a->factor_scale, a->factor_last, g, mask);
+    lit->factor = factor_of_gradient((GLOBAL const int*)factors, vi_set(0), v_set(a->factor_scale), a->factor_last, g, mask);
     if (a->factor_way > 0.0f) {
       lit->factor = factor_of_way(lit->factor, way);
     }
@@ -79,7 +79,7 @@ INLINE vfloat tetra_light_pieces(
   if (a->thins) {
     vfloat f[3];
     for (int i = 0; i < 3; ++i) {
-      f[i] = factor_of_gradient(factors, a->factor_scale, a->factor_last, g[i], mask);
+      f[i] = factor_of_gradient((GLOBAL const int*)factors, vi_set(0), v_set(a->factor_scale), a->factor_last, g[i], mask);
     }
     const vfloat bend = v_abs(v_fma(v_set(-0.5f), f[0] + f[2], f[1]));
     q = q + v_fma(depth, v_abs(f[2] - f[0]), v_set(8.0f) * most * bend);
