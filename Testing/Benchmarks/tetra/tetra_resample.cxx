@@ -42,8 +42,9 @@ vtkSmartPointer<vtkImageData> resample_mesh(const tetra_mesh& mesh, int along, d
   vtkNew<vtkFloatArray> floats;
   image->CopyStructure(all);
   floats->SetNumberOfTuples(values->GetNumberOfTuples());
+  const double outside = value_outside(mesh);
   for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i) { // FixedPoint knows no blanked points: they get a value that is transparent
-    floats->SetValue(i, static_cast<float>(valid->GetComponent(i, 0) != 0.0 ? values->GetComponent(i, 0) : value_outside(mesh)));
+    floats->SetValue(i, static_cast<float>(valid->GetComponent(i, 0) != 0.0 ? values->GetComponent(i, 0) : outside));
   }
   image->GetPointData()->SetScalars(floats);
   return image;
