@@ -17,6 +17,7 @@
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
 #include <vtkCellData.h>
+#include <vtkCompositeDataSet.h>
 
 #include <vtkDataSetReader.h>
 #include <vtkGenericEnSightReader.h>
@@ -312,14 +313,26 @@ std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time)
   for (variable_entry& one : list) {
     by_name->SetVariableName(one.name.c_str());
     by_name->UpdateTimeStep(time);
-    vtkDataSet* const data = by_name->GetOutput();
-    vtkDataArray* values = data ? data->GetPointData()->GetArray(one.name.c_str()) : nullptr;
-    values = values || !data ? values : data->GetCellData()->GetArray(one.name.c_str());
-    if (values) {
-      double range[2];
-      values->GetFiniteRange(range, values->GetNumberOfComponents() == 1 ? 0 : -1); // -1: of lengths
-      one.low = range[0];
-      one.high = range[1];
+    vtkDataObject* const output = by_name->GetOutputDataObject(0);
+    vtkCompositeDataSet* const blocks = vtkCompositeDataSet::SafeDownCast(output);
+    std::vector<vtkDataSet*> grids;
+    if (blocks) {
+      grids = vtkCompositeDataSet::GetDataSets(blocks);
+    } else if (vtkDataSet* grid = vtkDataSet::SafeDownCast(output)) {
+      grids.push_back(grid);
+    }
+    for (vtkDataSet* grid : grids) {
+      vtkDataArray* values = grid->GetPointData()->GetArray(one.name.c_str());
+      values = values ? values : grid->GetCellData()->GetArray(one.name.c_str());
+      double range[2] = { 1.0, 0.0 };
+      if (values) {
+        values->GetFiniteRange(range, values->GetNumberOfComponents() == 1 ? 0 : -1); // -1: of lengths
+      }
+      if (range[0] <= range[1]) {
+        const bool first = one.low > one.high;
+        one.low = first ? range[0] : std::min(one.low, range[0]);
+        one.high = first ? range[1] : std::max(one.high, range[1]);
+      }
     }
   }
   choose_variable(reader, "");

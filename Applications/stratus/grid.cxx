@@ -81,7 +81,8 @@ void grid_drawing::take(const cli::routed& data)
 void grid_drawing::look()
 {
   const cli::options& o = this->Options;
-  this->Transfer = cli::make_transfer(this->Mesh.box(), nullptr, o);
+  const stratus_volume box = this->Mesh.box();
+  this->Transfer = cli::make_transfer({ &box }, nullptr, o);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
   this->Camera = cli::place_camera(this->Core, o, this->Mesh, view);
@@ -89,7 +90,8 @@ void grid_drawing::look()
 
 std::pair<double, double> grid_drawing::range() const
 {
-  const cli::histogram h = cli::histogram_of(this->Mesh.box());
+  const stratus_volume box = this->Mesh.box();
+  const cli::histogram h = cli::histogram_of({ &box });
   return { h.low, h.high };
 }
 

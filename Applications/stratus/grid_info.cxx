@@ -161,7 +161,8 @@ void cli::print_grid(const options& o, vtkDataSet* grid)
     mesh m;
     m.set(grid, o);
     core.check(stratus_mesh_check(core, &m.view()), "'" + o.source + "'");
-    const transfer look = make_transfer(m.box(), nullptr, o);
+    const stratus_volume box = m.box();
+    const transfer look = make_transfer({ &box }, nullptr, o);
     const stratus_transfer view = look.view();
     core.check(stratus_transfer_check(core, &view), "transfer function");
     const stratus_tetra_report report = draw(core, m.view(), view, place_camera(core, o, m, view), o.width, o.height);

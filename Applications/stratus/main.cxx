@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -41,12 +42,23 @@ void list_arrays(vtkDataSet* image)
   }
 }
 
-void print_volume(const cli::options& o, cli::context& core, const cli::input& in)
+// blocks: those that are drawn with `in` as one volume.
+void print_volume(
+  const cli::options& o, cli::context& core, const cli::input& in, const std::vector<std::unique_ptr<cli::input>>& blocks = {})
 {
-  const cli::histogram h = cli::histogram_of(in.volume);
+  cli::volumes all = { &in.volume };
   double bounds[6];
   core.check(stratus_volume_bounds(core, &in.volume, bounds), "bounds");
-  row("volume", cli::describe(in.volume));
+  for (const auto& block : blocks) {
+    double own[6];
+    core.check(stratus_volume_bounds(core, &block->volume, own), "bounds");
+    for (int side = 0; side < 6; ++side) {
+      bounds[side] = side % 2 ? std::max(bounds[side], own[side]) : std::min(bounds[side], own[side]);
+    }
+    all.push_back(&block->volume);
+  }
+  const cli::histogram h = cli::histogram_of(all);
+  row("volume", (blocks.empty() ? "" : "the first block of ") + cli::describe(in.volume));
   row("origin", cli::format("%.10g %.10g %.10g", in.volume.origin[0], in.volume.origin[1], in.volume.origin[2]));
   row("bounds",
     cli::format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", bounds[0], bounds[1], bounds[2], bounds[3], bounds[4], bounds[5]));
@@ -60,7 +72,7 @@ void print_volume(const cli::options& o, cli::context& core, const cli::input& i
     row("range", cli::format("%.9g .. %.9g", h.low, h.high));
   }
   row("not finite", cli::grouped(static_cast<unsigned long long>(h.not_finite)) + " values");
-  row("opacity", cli::make_transfer(in.volume, in.scene, o).origin);
+  row("opacity", cli::make_transfer(all, in.scene, o).origin);
 }
 
 void print_time(const cli::series& in)
@@ -114,7 +126,11 @@ void info(const cli::options& o)
         (one.low <= one.high ? cli::format("%.9g .. %.9g", one.low, one.high) : "nothing finite"));
   }
   if (image) {
-    print_volume(o, core, *image);
+    std::vector<std::unique_ptr<cli::input>> blocks;
+    for (const auto& block : data.blocks) {
+      blocks.push_back(std::make_unique<cli::input>(core, o.source, block, o.array));
+    }
+    print_volume(o, core, *image, blocks);
   } else {
     cli::print_grid(o, data.grid);
   }

@@ -10,14 +10,17 @@
 #include <vtkCellData.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataArray.h>
+#include <vtkImageData.h>
 #include <vtkPointData.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkStructuredGrid.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <vector>
 
 namespace {
 
@@ -91,6 +94,69 @@ std::string names_of(vtkDataSet* data_set)
   }
   return names.empty() ? "none" : names;
 }
+// The array that is drawn of a part if it is one of points.
+vtkDataArray* drawn_on_points(vtkDataSet* part, const std::string& array)
+{
+  try {
+    bool on_cells = false;
+    vtkDataArray* values = cli::choose_array(part, array, on_cells);
+    return on_cells ? nullptr : values;
+  } catch (const cli::failure&) {
+    return nullptr;
+  }
+}
+
+bool overlap(vtkDataSet* a, vtkDataSet* b)
+{
+  const double *of_a = a->GetBounds(), *of_b = b->GetBounds();
+  bool inside = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double slack = 1e-6 * (of_a[2 * axis + 1] - of_a[2 * axis]);
+    inside = inside && of_a[2 * axis] < of_b[2 * axis + 1] - slack && of_b[2 * axis] < of_a[2 * axis + 1] - slack;
+  }
+  return inside;
+}
+
+// Takes the parts as they are where all are images or rectilinear grids side by side that have the array on their points. Rays interpolate
+// within their cells then. Returns false where one part is not so.
+bool keep_blocks(vtkCompositeDataSet* whole, const std::string& path, const std::string& array, cli::routed& result)
+{
+  std::vector<vtkDataSet*> parts = vtkCompositeDataSet::GetDataSets(whole);
+  parts.erase(std::remove_if(parts.begin(), parts.end(), [](vtkDataSet* part) { return part->GetNumberOfPoints() == 0; }), parts.end());
+  std::map<std::string, int> kinds;
+  int type = VTK_VOID;
+  for (size_t i = 0; i < parts.size(); ++i) {
+    vtkImageData* image = vtkImageData::SafeDownCast(parts[i]);
+    vtkRectilinearGrid* axes = vtkRectilinearGrid::SafeDownCast(parts[i]);
+    vtkDataArray* values = image || axes ? drawn_on_points(parts[i], array) : nullptr;
+    type = i > 0 || !values ? type : values->GetDataType();
+    if (!values || values->GetDataType() != type) {
+      return false;
+    }
+    const int* dimensions = image ? image->GetDimensions() : axes->GetDimensions();
+    const auto overlaps = [&](vtkDataSet* other) { return overlap(parts[i], other); };
+    if (*std::min_element(dimensions, dimensions + 3) < 2 ||
+      std::any_of(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(i), overlaps)) {
+      return false;
+    }
+    if (axes) {
+      check_axes(axes, path);
+    }
+    ++kinds[parts[i]->GetClassName()];
+  }
+  if (parts.empty()) {
+    return false;
+  }
+  result.kind = std::to_string(parts.size()) + (parts.size() == 1 ? " block:" : " blocks:");
+  for (const auto& kind : kinds) {
+    result.kind += cli::format(" %d ", kind.second) + kind.first;
+  }
+  result.arrays = names_of(parts[0]);
+  result.image = parts[0];
+  result.blocks.assign(parts.begin() + 1, parts.end());
+  return true;
+}
+
 // Joins the parts that have the array. `result` gets the grid and tells of the parts.
 void join(vtkCompositeDataSet* whole, const std::string& path, const std::string& array, cli::routed& result)
 {
@@ -155,7 +221,9 @@ routed route(vtkDataObject* data, const std::string& path, const std::string& ar
     result.kind = points_of(dimensions, "curvilinear grid");
     result.grid = curved;
   } else if (vtkCompositeDataSet* whole = vtkCompositeDataSet::SafeDownCast(data)) {
-    join(whole, path, array, result);
+    if (!keep_blocks(whole, path, array, result)) {
+      join(whole, path, array, result);
+    }
   } else {
     throw failure("'" + path + "' holds " + (data ? data->GetClassName() : "nothing") + ", which has no volume to draw");
   }

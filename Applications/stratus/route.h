@@ -7,6 +7,7 @@
 #include <vtkSmartPointer.h>
 
 #include <string>
+#include <vector>
 
 class vtkDataArray;
 
@@ -14,13 +15,16 @@ namespace cli {
 
 struct routed {
   vtkSmartPointer<vtkDataSet> image; // an image or a rectilinear grid, for the ray caster,
-  vtkSmartPointer<vtkDataSet> grid;  // or an unstructured or structured one, for the caster of tetrahedra
-  std::string kind;                  // of the file's data, for people
-  std::string arrays;                // of composite data: what their first part has, since `grid` has the drawn one alone
+  // More of them, which lie beside `image` without overlap: the blocks of one volume. Each has the drawn array, of one type.
+  std::vector<vtkSmartPointer<vtkDataSet>> blocks;
+  vtkSmartPointer<vtkDataSet> grid; // or an unstructured or structured one, for the caster of tetrahedra
+  std::string kind;                 // of the file's data, for people
+  std::string arrays;               // of composite data: what their first part has, since `grid` has the drawn one alone
 };
 
 // The one place that decides how a kind of data is drawn. Throws failure for data that are not drawn at all, with their kind.
-// Composite data become one grid, in which parts that meet share their points. `array` is the name of the array that will be drawn, "" for
+// Composite data of images and rectilinear grids alone stay blocks; other composite data become one grid, in which parts that meet share
+// their points. `array` is the name of the array that will be drawn, "" for
 // the first.
 routed route(vtkDataObject* data, const std::string& path, const std::string& array);
 

@@ -11,25 +11,33 @@
 
 namespace {
 
-template <class T> void count_values(const stratus_volume& volume, cli::histogram& h)
+template <class T, class Each> void each_value(const cli::volumes& all, const Each& each)
 {
-  const T* values = static_cast<const T*>(volume.values);
-  const int64_t n = volume.dimensions[0] * volume.dimensions[1] * volume.dimensions[2];
-  const int64_t stride = volume.value_stride;
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-#pragma omp parallel for reduction(min : low) reduction(max : high)
-  for (int64_t i = 0; i < n; ++i) {
-    const double value = static_cast<double>(values[i * stride]);
-    if (std::isfinite(value)) {
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
+  for (const stratus_volume* volume : all) {
+    each(
+      static_cast<const T*>(volume->values), volume->dimensions[0] * volume->dimensions[1] * volume->dimensions[2], volume->value_stride);
   }
+}
+
+template <class T> void count_values(const cli::volumes& all, cli::histogram& h)
+{
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low, number = 0.0;
+  each_value<T>(all, [&](const T* values, int64_t n, int64_t stride) {
+    number += static_cast<double>(n);
+#pragma omp parallel for reduction(min : low) reduction(max : high)
+    for (int64_t i = 0; i < n; ++i) {
+      const double value = static_cast<double>(values[i * stride]);
+      if (std::isfinite(value)) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
+    }
+  });
   h.low = low;
   h.high = high;
   if (low > high) {
-    h.not_finite = static_cast<double>(n);
+    h.not_finite = number;
     return;
   }
   // A range of few integers gets a bin for each, so that no bin mixes the background with what is drawn.
@@ -39,20 +47,22 @@ template <class T> void count_values(const stratus_volume& volume, cli::histogra
   h.last = integers ? high + 0.5 : high;
   const double scale = low == high ? 0.0 : static_cast<double>(bins) / (h.last - h.first);
   std::vector<int64_t> total(bins + 1, 0);
+  each_value<T>(all, [&](const T* values, int64_t n, int64_t stride) {
 #pragma omp parallel
-  {
-    std::vector<int64_t> mine(bins + 1, 0);
+    {
+      std::vector<int64_t> mine(bins + 1, 0);
 #pragma omp for nowait
-    for (int64_t i = 0; i < n; ++i) {
-      const double value = static_cast<double>(values[i * stride]);
-      ++mine[std::isfinite(value) ? std::min(static_cast<size_t>((value - h.first) * scale), bins - 1) : bins];
-    }
+      for (int64_t i = 0; i < n; ++i) {
+        const double value = static_cast<double>(values[i * stride]);
+        ++mine[std::isfinite(value) ? std::min(static_cast<size_t>((value - h.first) * scale), bins - 1) : bins];
+      }
 #pragma omp critical
-    std::transform(total.begin(), total.end(), mine.begin(), total.begin(), [](int64_t a, int64_t b) { return a + b; });
-  }
+      std::transform(total.begin(), total.end(), mine.begin(), total.begin(), [](int64_t a, int64_t b) { return a + b; });
+    }
+  });
   h.count.assign(total.begin(), total.end() - 1);
   h.not_finite = static_cast<double>(total[bins]);
-  h.finite = static_cast<double>(n) - h.not_finite;
+  h.finite = number - h.not_finite;
 }
 
 // Finds the end of the background: from its peak on, the first bin below 3/10 of the peak, or the floor of the valley before the next rise,
@@ -99,7 +109,7 @@ double ramp(double t)
 
 // Returns the opacity at the ramp's top with which a ray through the shown values collects an optical depth of about 2. `place` tells where
 // a value stands on the ramp, 0..1.
-template <class Place> double top_opacity(const stratus_volume& volume, const cli::histogram& h, const Place& place)
+template <class Place> double top_opacity(const cli::histogram& h, const Place& place)
 {
   double weight = 0.0;
   double shown = 0.0;
@@ -115,7 +125,7 @@ template <class Place> double top_opacity(const stratus_volume& volume, const cl
     return 0.5;
   }
   const double total = std::max(h.finite, 1.0);
-  const double length = std::cbrt(static_cast<double>(volume.dimensions[0] * volume.dimensions[1] * volume.dimensions[2]));
+  const double length = std::cbrt(h.finite + h.not_finite);
   const double footprint = std::pow(shown / total, 2.0 / 3.0);
   const double depth_at_one = weight / total * length / footprint;
   return std::min(std::max(1.0 - std::exp(-2.0 / std::max(depth_at_one, 1e-6)), 0.004), 0.9);
@@ -124,39 +134,39 @@ template <class Place> double top_opacity(const stratus_volume& volume, const cl
 
 namespace cli {
 
-histogram histogram_of(const stratus_volume& volume)
+histogram histogram_of(const volumes& all)
 {
   histogram h;
-  switch (volume.type) {
+  switch (all[0]->type) {
     case STRATUS_INT8:
-      count_values<int8_t>(volume, h);
+      count_values<int8_t>(all, h);
       break;
     case STRATUS_UINT8:
-      count_values<uint8_t>(volume, h);
+      count_values<uint8_t>(all, h);
       break;
     case STRATUS_INT16:
-      count_values<int16_t>(volume, h);
+      count_values<int16_t>(all, h);
       break;
     case STRATUS_UINT16:
-      count_values<uint16_t>(volume, h);
+      count_values<uint16_t>(all, h);
       break;
     case STRATUS_INT32:
-      count_values<int32_t>(volume, h);
+      count_values<int32_t>(all, h);
       break;
     case STRATUS_UINT32:
-      count_values<uint32_t>(volume, h);
+      count_values<uint32_t>(all, h);
       break;
     case STRATUS_INT64:
-      count_values<int64_t>(volume, h);
+      count_values<int64_t>(all, h);
       break;
     case STRATUS_UINT64:
-      count_values<uint64_t>(volume, h);
+      count_values<uint64_t>(all, h);
       break;
     case STRATUS_FLOAT32:
-      count_values<float>(volume, h);
+      count_values<float>(all, h);
       break;
     case STRATUS_FLOAT64:
-      count_values<double>(volume, h);
+      count_values<double>(all, h);
       break;
   }
   return h;
@@ -203,7 +213,7 @@ void transfer::shown(double& low, double& high) const
   high = this->opacity[2 * last];
 }
 
-void guess_opacity(const stratus_volume& volume, const histogram& h, transfer& result)
+void guess_opacity(const histogram& h, transfer& result)
 {
   if (h.count.size() < 2) { // no or only one value: a haze
     result.opacity = { h.low <= h.high ? h.low : 0.0, 0.05 };
@@ -223,7 +233,7 @@ void guess_opacity(const stratus_volume& volume, const histogram& h, transfer& r
   double from = bright ? h.last - bins * h.width() : h.first + bins * h.width();
   from = std::min(std::max(from, h.low), h.high);
   const double to = bright ? h.low : h.high;
-  const double top = top_opacity(volume, h, [from, to](double value) { return (value - from) / (to - from); });
+  const double top = top_opacity(h, [from, to](double value) { return (value - from) / (to - from); });
   const double knee = from + knee_at * (to - from);
   if (bright) {
     result.opacity = { to, top, knee, knee_height * top, from, 0.0, h.high, 0.0 };
@@ -263,15 +273,15 @@ static double lowest_of_log(const histogram& h)
 }
 
 // A straight ramp over the logarithm of the value.
-static void guess_log_opacity(const stratus_volume& volume, const histogram& h, transfer& result)
+static void guess_log_opacity(const histogram& h, transfer& result)
 {
   constexpr int pieces = 32;
   const double low = lowest_of_log(h), decades = std::log(h.high / low);
   if (decades <= 0.0) {
-    guess_opacity(volume, h, result);
+    guess_opacity(h, result);
     return;
   }
-  const double top = top_opacity(volume, h, [=](double value) { return value > low ? std::log(value / low) / decades : 0.0; });
+  const double top = top_opacity(h, [=](double value) { return value > low ? std::log(value / low) / decades : 0.0; });
   result.opacity = { std::min(0.0, low), 0.0 };
   for (int i = 0; i <= pieces; ++i) {
     const double t = static_cast<double>(i) / pieces;
@@ -281,7 +291,7 @@ static void guess_log_opacity(const stratus_volume& volume, const histogram& h, 
   result.origin = format("histogram, over the logarithm: opacity 0 at %.4g, %.3g at %.4g", low, top, h.high);
 }
 
-static void set_opacity(const stratus_volume& volume, const stratus_scene* scene, const options& o, double voxel, transfer& result)
+static void set_opacity(const volumes& all, const stratus_scene* scene, const options& o, double voxel, transfer& result)
 {
   if (!o.opacity.empty()) {
     result.opacity = parse_opacity(o.opacity);
@@ -290,26 +300,27 @@ static void set_opacity(const stratus_volume& volume, const stratus_scene* scene
     result.opacity.assign(scene->transfer.opacity, scene->transfer.opacity + 2 * scene->transfer.opacity_count);
     result.origin = "the scene's own";
   } else {
-    (o.logarithmic ? guess_log_opacity : guess_opacity)(volume, histogram_of(volume), result);
+    (o.logarithmic ? guess_log_opacity : guess_opacity)(histogram_of(all), result);
     for (size_t i = 1; i < result.opacity.size() && result.unit_distance != voxel; i += 2) { // the guess is per voxel edge
       result.opacity[i] = -std::expm1(result.unit_distance / voxel * std::log1p(-result.opacity[i]));
     }
   }
 }
 
-transfer make_transfer(const stratus_volume& volume, const stratus_scene* scene, const options& o)
+transfer make_transfer(const volumes& all, const stratus_scene* scene, const options& o)
 {
   transfer result;
+  const stratus_volume& volume = *all[0];
   const double* m = volume.matrix;
   const double bigger =
     std::fabs(m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]));
   const double voxel = std::cbrt(volume.spacing[0] * volume.spacing[1] * volume.spacing[2] * bigger);
   result.unit_distance = o.unit_distance > 0.0 ? o.unit_distance : scene ? scene->transfer.unit_distance : voxel;
-  set_opacity(volume, scene, o, voxel, result);
+  set_opacity(all, scene, o, voxel, result);
   result.shown(result.low, result.high);
   result.logarithmic = o.logarithmic;
   if (o.logarithmic && !(result.low > 0.0)) { // opacities that were given may begin at 0
-    result.low = lowest_of_log(histogram_of(volume));
+    result.low = lowest_of_log(histogram_of(all));
     result.high = std::max(result.high, result.low);
   }
   if (o.color.empty() && scene && !o.logarithmic) {

@@ -10,6 +10,9 @@
 
 namespace cli {
 
+// A volume, or its blocks, which have values of one type.
+using volumes = std::vector<const stratus_volume*>;
+
 // The frequencies of a volume's values.
 struct histogram {
   double low = 0.0, high = 0.0;   // of the finite values; low > high: there are none
@@ -20,7 +23,7 @@ struct histogram {
 
   double width() const { return (this->last - this->first) / static_cast<double>(this->count.size()); }
 };
-histogram histogram_of(const stratus_volume& volume);
+histogram histogram_of(const volumes& all);
 
 // A transfer function that owns its points.
 class transfer
@@ -41,9 +44,9 @@ public:
 
 // Guesses an opacity that is transparent over the dominant value (the air, the background) and a ramp away from it. The ramp's height suits
 // a view through the whole volume.
-void guess_opacity(const stratus_volume& volume, const histogram& values, transfer& result);
+void guess_opacity(const histogram& values, transfer& result);
 // Parses "value:alpha,value:alpha,...".
 std::vector<double> parse_opacity(const std::string& text);
 // Options that were not given take the scene's own function, or a guess where `scene` is null or the scale is logarithmic.
-transfer make_transfer(const stratus_volume& volume, const stratus_scene* scene, const options& o);
+transfer make_transfer(const volumes& all, const stratus_scene* scene, const options& o);
 } // namespace cli

@@ -31,6 +31,9 @@ public:
       stratus_ray_caster_destroy(more.caster);
       stratus_tetra_caster_destroy(more.tetra);
     }
+    for (stratus_ray_caster* caster : this->BlockCasters) {
+      stratus_ray_caster_destroy(caster);
+    }
   }
   volume_drawing(const volume_drawing&) = delete;
   volume_drawing& operator=(const volume_drawing&) = delete;
@@ -60,6 +63,8 @@ private:
 
   void read_more();
   void read_member(member& more);
+  cli::volumes all() const;
+  void draw_blocks(const stratus_ray_cast_options& cast, const stratus_image& image);
   void draw_several(const stratus_ray_cast_options& cast, const stratus_image& image);
   void choose_parts(stratus_ray_cast_options& cast);
   void tell_report() const;
@@ -67,6 +72,8 @@ private:
   const cli::options& Options;
   cli::context& Core;
   std::unique_ptr<cli::input> Input, Mask;
+  std::vector<std::unique_ptr<cli::input>> Blocks; // of the same volume as Input, beside it
+  std::vector<stratus_ray_caster*> BlockCasters;
   std::vector<member> More;
   cli::transfer Transfer;
   stratus_camera Camera = {};
@@ -84,6 +91,29 @@ void volume_drawing::take(const cli::routed& data)
   this->Input->volume.revision = ++this->Steps;
   this->Up = o.up.empty() ? this->Input->up_axis : o.up[0] - 'x';
   this->Input->volume.matrix[5 * this->Up] *= o.exaggeration;
+  this->Blocks.clear();
+  for (const auto& block : data.blocks) {
+    this->Blocks.push_back(std::make_unique<cli::input>(this->Core, o.source, block, o.array));
+    this->Blocks.back()->volume.revision = this->Steps;
+    this->Blocks.back()->volume.matrix[5 * this->Up] *= o.exaggeration;
+  }
+  if (!this->Blocks.empty() && (!o.companions.empty() || !o.mask.empty() || o.audit)) {
+    throw cli::usage("'" + o.source + "' is a volume of " + std::to_string(1 + this->Blocks.size()) +
+      " blocks, which is drawn alone: leave out " +
+      (o.audit             ? "--audit"
+          : o.mask.empty() ? "the other INPUTs"
+                           : "--mask"));
+  }
+}
+
+// The volume, or all its blocks.
+cli::volumes volume_drawing::all() const
+{
+  cli::volumes result = { &this->Input->volume };
+  for (const auto& block : this->Blocks) {
+    result.push_back(&block->volume);
+  }
+  return result;
 }
 
 // Reads a scene, an image or a rectilinear grid, or else cells.
@@ -92,11 +122,14 @@ void volume_drawing::read_member(member& more)
   const std::string& source = more.o.source;
   const bool scene = cli::is_scene(source);
   const cli::routed data = scene ? cli::routed() : cli::route(cli::read_data(source, more.o.array, more.o.raw), source, more.o.array);
+  if (!data.blocks.empty()) {
+    throw cli::usage("'" + source + "' is a volume of " + std::to_string(1 + data.blocks.size()) + " blocks, which is drawn alone");
+  }
   if (scene || data.image) {
     more.input = scene ? std::make_unique<cli::input>(this->Core, source, more.o.array, more.o.raw)
                        : std::make_unique<cli::input>(this->Core, source, data.image, more.o.array);
     more.input->volume.matrix[5 * this->Up] *= this->Options.exaggeration;
-    more.functions = cli::make_transfer(more.input->volume, more.input->scene, more.o);
+    more.functions = cli::make_transfer({ &more.input->volume }, more.input->scene, more.o);
     this->Core.check(stratus_ray_caster_create(this->Core, &more.caster), "ray caster");
     return;
   }
@@ -108,7 +141,8 @@ void volume_drawing::read_member(member& more)
   more.mesh->set(data.grid, more.o);
   this->Core.check(stratus_mesh_check(this->Core, &more.mesh->view()), "'" + source + "'");
   more.outline = more.mesh->outline();
-  more.functions = cli::make_transfer(more.mesh->box(), nullptr, more.o);
+  const stratus_volume box = more.mesh->box();
+  more.functions = cli::make_transfer({ &box }, nullptr, more.o);
   this->Core.check(stratus_tetra_caster_create(this->Core, &more.tetra), "caster of tetrahedra");
 }
 
@@ -133,11 +167,14 @@ void volume_drawing::look()
 {
   const cli::options& o = this->Options;
   const cli::input& in = *this->Input;
-  this->Transfer = cli::make_transfer(in.volume, in.scene, o);
+  this->Transfer = cli::make_transfer(this->all(), in.scene, o);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
   this->read_more();
-  std::vector<cli::shown_volume> shown = { { &in.volume, view } };
+  std::vector<cli::shown_volume> shown;
+  for (const stratus_volume* volume : this->all()) {
+    shown.push_back({ volume, view });
+  }
   for (const member& more : this->More) {
     shown.push_back({ more.mesh ? &more.outline : &more.input->volume, more.functions.view() });
   }
@@ -146,7 +183,7 @@ void volume_drawing::look()
 
 std::pair<double, double> volume_drawing::range() const
 {
-  const cli::histogram h = cli::histogram_of(this->Input->volume);
+  const cli::histogram h = cli::histogram_of(this->all());
   return { h.low, h.high };
 }
 
@@ -155,9 +192,13 @@ cli::scene_frame volume_drawing::place() const
   cli::scene_frame frame;
   frame.camera = this->Camera;
   this->Core.check(stratus_volume_bounds(this->Core, &this->Input->volume, frame.bounds), "bounds");
+  cli::volumes shown = this->all();
   for (const member& more : this->More) {
+    shown.push_back(more.mesh ? &more.outline : &more.input->volume);
+  }
+  for (const stratus_volume* volume : shown) {
     double own[6];
-    this->Core.check(stratus_volume_bounds(this->Core, more.mesh ? &more.outline : &more.input->volume, own), "bounds");
+    this->Core.check(stratus_volume_bounds(this->Core, volume, own), "bounds");
     for (int side = 0; side < 6; ++side) {
       frame.bounds[side] = side % 2 ? std::max(frame.bounds[side], own[side]) : std::min(frame.bounds[side], own[side]);
     }
@@ -221,9 +262,57 @@ void volume_drawing::draw(const stratus_image& image)
     this->draw_several(cast, image);
     return;
   }
+  if (!this->Blocks.empty()) {
+    this->draw_blocks(cast, image);
+    return;
+  }
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(
     stratus_ray_caster_render(this->Caster, &this->Input->volume, &view, &this->Camera, &cast, &image, &this->Report), "render");
+}
+
+void volume_drawing::draw_blocks(const stratus_ray_cast_options& cast, const stratus_image& image)
+{
+  const cli::volumes volumes = this->all();
+  const stratus_transfer view = this->Transfer.view();
+  std::vector<stratus_ray_cast_input> inputs(volumes.size());
+  std::vector<stratus_ray_cast_report> reports(volumes.size());
+  this->BlockCasters.resize(std::max(this->BlockCasters.size(), this->Blocks.size()), nullptr);
+  for (size_t i = 0; i < volumes.size(); ++i) {
+    stratus_ray_caster*& caster = i > 0 ? this->BlockCasters[i - 1] : this->Caster;
+    if (!caster) {
+      this->Core.check(stratus_ray_caster_create(this->Core, &caster), "ray caster");
+    }
+    inputs[i].caster = caster;
+    inputs[i].volume = volumes[i];
+    inputs[i].transfer = &view;
+    inputs[i].options = &cast;
+  }
+  this->Core.check(
+    stratus_ray_caster_render_blocks(inputs.data(), static_cast<int>(inputs.size()), &this->Camera, &image, reports.data()), "render");
+  // The block with the most samples tells the reasons, all of them add up to the counts.
+  const auto busiest = std::max_element(reports.begin(), reports.end(),
+    [](const stratus_ray_cast_report& a, const stratus_ray_cast_report& b) { return a.samples < b.samples; });
+  this->Report = *busiest;
+  for (auto r = reports.begin(); r != reports.end(); ++r) {
+    if (r != busiest) {
+      this->Report.rays += r->rays;
+      this->Report.samples += r->samples;
+      this->Report.skipped += r->skipped;
+      this->Report.lookups += r->lookups;
+      this->Report.blocks += r->blocks;
+      this->Report.occupied_blocks += r->occupied_blocks;
+      this->Report.structure_bytes += r->structure_bytes;
+      this->Report.range_ms += r->range_ms;
+      this->Report.table_ms += r->table_ms;
+      this->Report.occupancy_ms += r->occupancy_ms;
+      this->Report.structure_ms += r->structure_ms;
+      this->Report.upload_ms += r->upload_ms;
+      this->Report.probe_ms += r->probe_ms;
+      this->Report.probe_samples += r->probe_samples;
+      this->Report.cast_ms += r->cast_ms;
+    }
+  }
 }
 
 // Crop and mask are the first volume's alone.
@@ -272,7 +361,9 @@ void volume_drawing::tell() const
     row("opacity", more.functions.origin);
     row("why", more.report.why);
   }
-  row("volume", cli::describe(this->Input->volume) + ", array '" + this->Input->array_name + "'");
+  row("volume",
+    (this->Blocks.empty() ? "" : std::to_string(1 + this->Blocks.size()) + " blocks, the first of ") + cli::describe(this->Input->volume) +
+      ", array '" + this->Input->array_name + "'");
   row("camera", cli::describe(this->Camera));
   this->tell_report();
 }

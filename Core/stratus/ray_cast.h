@@ -290,6 +290,20 @@ typedef struct stratus_ray_cast_input {
 STRATUS_API stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
   const stratus_image* image, stratus_ray_cast_report* reports);
 
+/* Draws the blocks of a volume that was cut into `count` >= 1 grids, of any sizes and spacings, that meet at their borders: from front to
+ * back, each by its own caster in the part of the picture that it covers. The parts are blended as floats, so that the borders show
+ * nothing. A block behind what is opaque already is not drawn. inputs: volumes alone, no meshes. The blocks' axes should be the same: the
+ * order follows from their boxes along the axes of inputs[0], by the planes across these axes that part them. Blocks whose boxes overlap
+ * are drawn one behind the other, the nearest middle first, and the reports of two of them say so; stratus_ray_caster_render_several()
+ * mixes them.
+ *
+ * Modes composite, first-hit, isosurface and slice; others give STRATUS_UNSUPPORTED for more than one block. Errors along a ray add up by
+ * their squares, so that each block has the tolerance that its options tell, divided by the square root of the cube root of count.
+ * reports: NULL, or one for each block; a block that can't be seen has zeros, and says so. What else holds of
+ * stratus_ray_caster_render() holds of each block. A failed call names the block, and leaves the picture undefined. */
+STRATUS_API stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
+  const stratus_image* image, stratus_ray_cast_report* reports);
+
 /* First hits (STRATUS_MODE_FIRST_HIT): a voxel is a cube about its value, so that the solid reaches half a voxel beyond a volume of points.
  * In the report, samples are hits, lookups are nodes that trees visited, blocks and occupied_blocks are bricks of 4^3 voxels that hold an
  * effective one, and occupancy_builds counts the sets of voxels made. Sampling, sample distance, termination and block size are not used. A

@@ -86,20 +86,34 @@ public:
 
   void Write(void* values, const int64_t low[3], const int64_t high[3]) const override
   {
-    using Box = vtkStratusDenseBox<Component>;
-    Box box(values, low, high, this->Components);
+    vtkStratusDenseBox<Component> box(values, low, high, this->Components);
     box.SetBackground(Traits<Value>::Get(this->Top->mBackground));
-    this->Source.template At<Root>(this->Top, 0, sizeof(Root) + this->Top->mTableSize * sizeof(typename Root::Tile));
-    for (uint32_t n = 0; n < this->Top->mTableSize; ++n) {
-      const typename Root::Tile& tile = *this->Top->tile(n);
-      const nanovdb::Coord origin = tile.origin();
-      const int64_t first[3] = { origin[0], origin[1], origin[2] };
-      if (tile.child != 0) {
-        this->WriteUpper(box, this->Source.template At<Upper>(this->Top, tile.child), first);
-      } else {
-        box.SetCube(first, nanovdb::NanoUpper<Build>::DIM, Traits<Value>::Get(tile.value));
-      }
-    }
+    this->Visit([&box](const int64_t first[3], int64_t size) { return !box.Misses(first, size); },
+      [&box](const int64_t first[3], int64_t size, const Value& value, bool) { box.SetCube(first, size, Traits<Value>::Get(value)); },
+      [&box](const int64_t first[3], const Leaf& leaf) {
+        Value value;
+        box.Fill(first, 8, [&](int64_t x, int64_t y, int64_t z) {
+          value = leaf.getValue(static_cast<uint32_t>((x * 8 + y) * 8 + z));
+          return Traits<Value>::Get(value);
+        });
+      });
+  }
+
+  std::vector<vtkStratusCellBox> ListActive() const override
+  {
+    std::vector<vtkStratusCellBox> boxes;
+    this->Visit([](const int64_t*, int64_t) { return true; },
+      [&boxes](const int64_t first[3], int64_t size, const Value&, bool active) {
+        if (active) {
+          boxes.push_back(vtkStratusCellsAt(first, size));
+        }
+      },
+      [&boxes](const int64_t first[3], const Leaf& leaf) {
+        if (!leaf.mValueMask.isOff()) {
+          boxes.push_back(vtkStratusCellsAt(first, 8));
+        }
+      });
+    return boxes;
   }
 
 private:
@@ -113,36 +127,50 @@ private:
     place[2] = first[2] + step * static_cast<int64_t>(n % side);
   }
 
-  template <class Box> void WriteUpper(Box& box, const Upper& node, const int64_t first[3]) const
+  // Calls tile(first, size, value, active) or leaf(first, leaf) for each of the cubes that the tree divides space into and that
+  // wanted(first, size) asks for, as it does for those around them.
+  template <class Wanted, class OnTile, class OnLeaf> void Visit(const Wanted& wanted, const OnTile& tile, const OnLeaf& leaf) const
   {
-    using Node = nanovdb::NanoUpper<Build>;
-    for (uint32_t n = 0; n < Node::SIZE; ++n) {
-      int64_t place[3];
-      Place<Node>(first, n, place);
-      if (node.mChildMask.isOn(n)) {
-        this->WriteLower(box, this->Source.template At<Lower>(&node, node.mTable[n].child), place);
+    this->Source.template At<Root>(this->Top, 0, sizeof(Root) + this->Top->mTableSize * sizeof(typename Root::Tile));
+    for (uint32_t n = 0; n < this->Top->mTableSize; ++n) {
+      const typename Root::Tile& entry = *this->Top->tile(n);
+      const nanovdb::Coord origin = entry.origin();
+      const int64_t first[3] = { origin[0], origin[1], origin[2] };
+      if (!wanted(first, nanovdb::NanoUpper<Build>::DIM)) {
+        continue;
+      }
+      if (entry.child != 0) {
+        const Upper& node = this->Source.template At<Upper>(this->Top, entry.child);
+        this->template VisitNode<nanovdb::NanoUpper<Build>, nanovdb::NanoLower<Build>>(
+          node, first, wanted, tile, [&](const int64_t place[3], uint64_t child) {
+            const Lower& inner = this->Source.template At<Lower>(&node, child);
+            this->template VisitNode<nanovdb::NanoLower<Build>, nanovdb::NanoLeaf<Build>>(
+              inner, place, wanted, tile, [&](const int64_t at[3], uint64_t last) {
+                const Leaf& one = this->Source.template At<Leaf>(&inner, last);
+                this->Source.template At<Leaf>(
+                  &one, 0, static_cast<uint64_t>(one.memUsage())); // some have as many bytes as their flags tell
+                leaf(at, one);
+              });
+          });
       } else {
-        box.SetCube(place, nanovdb::NanoLower<Build>::DIM, Traits<Value>::Get(node.mTable[n].value));
+        tile(first, nanovdb::NanoUpper<Build>::DIM, entry.value, entry.state != 0);
       }
     }
   }
 
-  template <class Box> void WriteLower(Box& box, const Lower& node, const int64_t first[3]) const
+  template <class Node, class Child, class Data, class Wanted, class OnTile, class OnChild>
+  static void VisitNode(const Data& node, const int64_t first[3], const Wanted& wanted, const OnTile& tile, const OnChild& child)
   {
-    using Node = nanovdb::NanoLower<Build>;
     for (uint32_t n = 0; n < Node::SIZE; ++n) {
       int64_t place[3];
       Place<Node>(first, n, place);
+      if (!wanted(place, Child::DIM)) {
+        continue;
+      }
       if (node.mChildMask.isOn(n)) {
-        const Leaf& leaf = this->Source.template At<Leaf>(&node, node.mTable[n].child);
-        this->Source.template At<Leaf>(&leaf, 0, static_cast<uint64_t>(leaf.memUsage())); // some have as many bytes as their flags tell
-        Value value;
-        box.Fill(place, 8, [&](int64_t x, int64_t y, int64_t z) {
-          value = leaf.getValue(static_cast<uint32_t>((x * 8 + y) * 8 + z));
-          return Traits<Value>::Get(value);
-        });
+        child(place, node.mTable[n].child);
       } else {
-        box.SetCube(place, nanovdb::NanoLeaf<Build>::DIM, Traits<Value>::Get(node.mTable[n].value));
+        tile(place, Child::DIM, node.mTable[n].value, node.mValueMask.isOn(n));
       }
     }
   }

@@ -3,16 +3,18 @@
 
 #include "vtkStratusNetCDFFile.h"
 
+#include "vtkDataSet.h"
+
 std::string vtkStratusNetCDFReader::Inspect()
 {
   const vtkStratusNetCDFFile file(this->FileName);
   return this->InspectFile(file);
 }
 
-void vtkStratusNetCDFReader::Build(size_t step, vtkDataSet* output)
+void vtkStratusNetCDFReader::Build(size_t step, vtkDataObject* output)
 {
   const vtkStratusNetCDFFile file(this->FileName);
-  this->BuildFile(file, step, output);
+  this->BuildFile(file, step, vtkDataSet::SafeDownCast(output));
 }
 
 void vtkStratusNetCDFReader::PrintSelf(ostream& os, vtkIndent indent)

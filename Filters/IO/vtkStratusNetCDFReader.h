@@ -29,7 +29,7 @@ protected:
   virtual void BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) = 0;
 
   std::string Inspect() override;
-  void Build(size_t step, vtkDataSet* output) override;
+  void Build(size_t step, vtkDataObject* output) override;
 
 private:
   vtkStratusNetCDFReader(const vtkStratusNetCDFReader&) = delete;

@@ -49,24 +49,46 @@ public:
     const auto& tree = this->Source.constTree();
     const Value background = tree.background();
     box.SetBackground(Traits<Value>::Get(background));
-    auto tile = tree.cbeginValueAll();
+    const auto accessor = this->Source.getConstAccessor();
+    int64_t first[3]; // of a leaf, or of as many voxels of a tile
+    for (first[2] = low[2] & ~int64_t(7); first[2] <= high[2]; first[2] += 8) {
+      for (first[1] = low[1] & ~int64_t(7); first[1] <= high[1]; first[1] += 8) {
+        for (first[0] = low[0] & ~int64_t(7); first[0] <= high[0]; first[0] += 8) {
+          const openvdb::Coord origin(static_cast<int>(first[0]), static_cast<int>(first[1]), static_cast<int>(first[2]));
+          Value value;
+          if (const auto* leaf = accessor.probeConstLeaf(origin)) {
+            box.Fill(first, 8, [&](int64_t x, int64_t y, int64_t z) {
+              value = leaf->getValue(static_cast<openvdb::Index>((x * 8 + y) * 8 + z));
+              return Traits<Value>::Get(value);
+            });
+          } else {
+            value = accessor.getValue(origin);
+            box.SetCube(first, 8, Traits<Value>::Get(value));
+          }
+        }
+      }
+    }
+  }
+
+  std::vector<vtkStratusCellBox> ListActive() const override
+  {
+    std::vector<vtkStratusCellBox> boxes;
+    const auto& tree = this->Source.constTree();
+    auto tile = tree.cbeginValueOn();
     tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1); // tiles alone: leaves come below
     for (; tile; ++tile) {
       openvdb::CoordBBox place;
       tile.getBoundingBox(place);
-      const Value value = tile.getValue();
       const int64_t first[3] = { place.min().x(), place.min().y(), place.min().z() };
-      box.SetCube(first, static_cast<int64_t>(place.max().x()) - first[0] + 1, Traits<Value>::Get(value));
+      boxes.push_back(vtkStratusCellsAt(first, static_cast<int64_t>(place.max().x()) - first[0] + 1));
     }
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
-      const openvdb::Coord origin = leaf->origin();
-      const int64_t first[3] = { origin.x(), origin.y(), origin.z() };
-      Value value;
-      box.Fill(first, 8, [&](int64_t x, int64_t y, int64_t z) {
-        value = leaf->getValue(static_cast<openvdb::Index>((x * 8 + y) * 8 + z));
-        return Traits<Value>::Get(value);
-      });
+      const int64_t first[3] = { leaf->origin().x(), leaf->origin().y(), leaf->origin().z() };
+      if (leaf->onVoxelCount() > 0) {
+        boxes.push_back(vtkStratusCellsAt(first, 8));
+      }
     }
+    return boxes;
   }
 
 private:

@@ -4,6 +4,7 @@
 #define vtkStratusSparseGrid_h
 
 #include "vtkStratusReadError.h"
+#include "vtkStratusSparseBlocks.h"
 
 #include "vtkType.h"
 
@@ -54,6 +55,16 @@ public:
   {
     std::copy(low, low + 3, this->Low);
     std::copy(high, high + 3, this->High);
+  }
+
+  // Whether none of the cube's voxels lies in the box.
+  bool Misses(const int64_t first[3], int64_t size) const
+  {
+    bool misses = false;
+    for (int a = 0; a < 3; ++a) {
+      misses = misses || first[a] > this->High[a] || first[a] + size <= this->Low[a];
+    }
+    return misses;
   }
 
   // Sets every voxel, before any other is written.
@@ -107,6 +118,17 @@ private:
   int64_t Components, Low[3], High[3];
 };
 
+// The cells that have a corner in a cube of voxels.
+inline vtkStratusCellBox vtkStratusCellsAt(const int64_t first[3], int64_t size)
+{
+  vtkStratusCellBox box;
+  for (int a = 0; a < 3; ++a) {
+    box.Low[a] = first[a] - 1;
+    box.High[a] = first[a] + size;
+  }
+  return box;
+}
+
 // What a grid is, and its values where they are asked for. All members throw vtkStratusReadError.
 class vtkStratusSparseGrid
 {
@@ -115,6 +137,9 @@ public:
 
   // Writes all voxels of the box, active and inactive ones, into memory that holds zeros: values of Type, Components a voxel.
   virtual void Write(void* values, const int64_t low[3], const int64_t high[3]) const = 0;
+
+  // Lists the cells that an active voxel is a corner of: those of each leaf that has one, and those of each active tile.
+  virtual std::vector<vtkStratusCellBox> ListActive() const = 0;
 
   int Type = VTK_FLOAT; // of VTK's numbers
   int Components = 1;

@@ -5,7 +5,10 @@
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPartitionedDataSet.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 
@@ -85,19 +88,18 @@ std::string vtkStratusVDBReader::Inspect()
   this->Grid = file->Read(this->GridName);
   this->Description = this->Grid->Kind + ", " + std::to_string(this->Grid->Active) + " active voxels in " +
     std::to_string(this->Grid->Leaves) + " leaves and tiles of " + TellBytes(static_cast<double>(this->Grid->Bytes));
-  this->Description += this->Grid->Empty ? ": nothing but background"
-                                         : ", within " + TellBox(*this->Grid) + ": an image of this box and a border of one voxel";
-  this->Description += others.empty() ? "" : "; left out: " + others;
   this->CheckMap();
-  this->CheckSize();
-  return "vtkImageData";
+  this->FindExtent();
+  this->Description += this->Grid->Empty ? ": nothing but background" : ", within " + TellBox(*this->Grid);
+  const bool blocks = this->ChooseBlocks();
+  this->Description += blocks || this->Grid->Empty ? "" : ": an image of this box and a border of one voxel";
+  this->Description += others.empty() ? "" : "; left out: " + others;
+  return blocks ? "vtkPartitionedDataSet" : "vtkImageData";
 }
 
-// Finds the extent.
-void vtkStratusVDBReader::CheckSize()
+void vtkStratusVDBReader::FindExtent()
 {
   const vtkStratusSparseGrid& grid = *this->Grid;
-  double bytes = vtkDataArray::GetDataTypeSize(grid.Type) * static_cast<double>(grid.Components);
   for (int a = 0; a < 3; ++a) {
     if (grid.Low[a] > grid.High[a] || grid.Low[a] <= INT_MIN || grid.High[a] >= INT_MAX) {
       this->Fail("the box of the active voxels of '" + this->GridName + "' is " + TellBox(grid) +
@@ -105,13 +107,41 @@ void vtkStratusVDBReader::CheckSize()
     }
     this->WholeExtent[2 * a] = static_cast<int>(grid.Low[a] - 1);
     this->WholeExtent[2 * a + 1] = static_cast<int>(grid.High[a] + 1);
-    bytes *= static_cast<double>(grid.High[a] - grid.Low[a] + 3);
   }
-  if (bytes > 1048576.0 * static_cast<double>(this->MemoryLimit)) {
-    this->Fail("the grid '" + this->GridName + "' would take " + TellBytes(bytes) + " as an image: its active voxels lie within " +
-      TellBox(grid) + ". The sparse grid takes " + TellBytes(static_cast<double>(grid.Bytes)) + "; the limit is " +
-      std::to_string(this->MemoryLimit) + " MiB (MemoryLimit)");
+}
+
+// Chooses between an image and blocks, which it divides.
+bool vtkStratusVDBReader::ChooseBlocks()
+{
+  constexpr size_t most = 256; // pictures take a time that grows with them
+  const vtkStratusSparseGrid& grid = *this->Grid;
+  const double voxel = static_cast<double>(vtkDataArray::GetDataTypeSize(grid.Type)) * grid.Components;
+  const double limit = 1048576.0 * static_cast<double>(this->MemoryLimit);
+  const std::string tell = ". The sparse grid takes " + TellBytes(static_cast<double>(grid.Bytes)) + "; the limit is " +
+    std::to_string(this->MemoryLimit) + " MiB (MemoryLimit)";
+  double image = voxel, blocks = 0.0;
+  this->Blocks.clear();
+  for (int a = 0; a < 3; ++a) {
+    image *= static_cast<double>(grid.High[a] - grid.Low[a] + 3);
   }
+  if (this->Layout == IMAGE_LAYOUT || grid.Empty || (this->Layout == AUTO_LAYOUT && image <= limit)) {
+    if (image > limit) {
+      this->Fail("the grid '" + this->GridName + "' would take " + TellBytes(image) + " as an image: its active voxels lie within " +
+        TellBox(grid) + tell);
+    }
+    return false;
+  }
+  this->Blocks = vtkStratusDivide(grid.ListActive(), most);
+  for (const vtkStratusCellBox& box : this->Blocks) {
+    blocks += voxel * vtkStratusVoxelsOf(box);
+  }
+  if (blocks > limit) {
+    this->Fail("the grid '" + this->GridName + "' would take " + TellBytes(blocks) + " as " + std::to_string(this->Blocks.size()) +
+      " blocks, and " + TellBytes(image) + " as an image" + tell);
+  }
+  this->Description +=
+    "; " + std::to_string(this->Blocks.size()) + " blocks of " + TellBytes(blocks) + " in place of an image of " + TellBytes(image);
+  return true;
 }
 
 // An image has axes at right angles.
@@ -136,40 +166,66 @@ void vtkStratusVDBReader::CheckMap()
   }
 }
 
-void vtkStratusVDBReader::Build(size_t, vtkDataSet* output)
+void vtkStratusVDBReader::BuildImage(vtkImageData* image, const vtkStratusSparseGrid& grid, const int extent[6]) const
 {
-  vtkImageData* image = vtkImageData::SafeDownCast(output);
-  std::unique_ptr<vtkStratusSparseGrid> grid = std::move(this->Grid);
-  if (!grid) {
-    grid = vtkStratusSparseFile::Open(this->FileName)->Read(this->GridName);
-  }
   double spacing[3], direction[9];
   int64_t low[3], high[3];
-  for (int i = 0; i < 9; ++i) {
-    direction[i] = grid->Matrix[static_cast<size_t>(i)] / Length(*grid, static_cast<size_t>(i % 3));
+  for (size_t i = 0; i < 9; ++i) {
+    direction[i] = grid.Matrix[i] / Length(grid, i % 3);
   }
   for (int a = 0; a < 3; ++a) {
-    spacing[a] = Length(*grid, static_cast<size_t>(a));
-    low[a] = this->WholeExtent[2 * a];
-    high[a] = this->WholeExtent[2 * a + 1];
+    spacing[a] = Length(grid, static_cast<size_t>(a));
+    low[a] = extent[2 * a];
+    high[a] = extent[2 * a + 1];
   }
-  image->SetExtent(this->WholeExtent);
-  image->SetOrigin(grid->Offset.data());
+  image->SetExtent(extent[0], extent[1], extent[2], extent[3], extent[4], extent[5]);
+  image->SetOrigin(grid.Offset.data());
   image->SetSpacing(spacing);
   image->SetDirectionMatrix(direction);
-  const vtkSmartPointer<vtkDataArray> values = MakeArray(grid->Type, grid->Components, image->GetNumberOfPoints());
-  grid->Write(values->GetVoidPointer(0), low, high);
+  const vtkSmartPointer<vtkDataArray> values = MakeArray(grid.Type, grid.Components, image->GetNumberOfPoints());
+  grid.Write(values->GetVoidPointer(0), low, high);
   values->SetName(this->GridName.c_str());
   image->GetPointData()->AddArray(values);
-  if (grid->Components == 1) {
+  if (grid.Components == 1) {
     image->GetPointData()->SetActiveScalars(this->GridName.c_str());
   } else {
     image->GetPointData()->SetActiveVectors(this->GridName.c_str());
   }
 }
 
+void vtkStratusVDBReader::Build(size_t, vtkDataObject* output)
+{
+  std::unique_ptr<vtkStratusSparseGrid> grid = std::move(this->Grid);
+  if (!grid) {
+    grid = vtkStratusSparseFile::Open(this->FileName)->Read(this->GridName);
+  }
+  if (vtkImageData* image = vtkImageData::SafeDownCast(output)) {
+    this->BuildImage(image, *grid, this->WholeExtent);
+    return;
+  }
+  vtkPartitionedDataSet* parts = vtkPartitionedDataSet::SafeDownCast(output);
+  parts->Initialize();
+  for (const vtkStratusCellBox& box : this->Blocks) {
+    int extent[6];
+    for (int a = 0; a < 3; ++a) {
+      extent[2 * a] = static_cast<int>(box.Low[a]);
+      extent[2 * a + 1] = static_cast<int>(box.High[a]);
+    }
+    vtkNew<vtkImageData> block;
+    this->BuildImage(block, *grid, extent);
+    parts->SetPartition(parts->GetNumberOfPartitions(), block);
+  }
+}
+
+int vtkStratusVDBReader::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject"); // an image, or blocks
+  return 1;
+}
+
 void vtkStratusVDBReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Layout: " << this->Layout << "\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
 }

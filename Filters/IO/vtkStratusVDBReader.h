@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusVDBReader
- * @brief   reads a sparse grid from a file of OpenVDB (.vdb) or NanoVDB (.nvdb) as a vtkImageData
+ * @brief   reads a sparse grid from a file of OpenVDB (.vdb) or NanoVDB (.nvdb) as an image, or as blocks
  *
  * Which library reads is told by the file's first bytes. The file's grids are its variables: numbers of 8 to 64 bits, booleans as 0 and 1,
  * and vectors of three components. NanoVDB's packed floats (Fp4, Fp8, Fp16, FpN) become float, as do OpenVDB's halves. Grids of points,
@@ -12,7 +12,11 @@
  * the grid's map (voxel size, turn, shift) puts them. A map with shear, or one of a frustum, is an error.
  *
  * The image is dense: its memory is that of the box. Pages of it that no value other than 0 comes to are never touched, and take no memory
- * on systems that give pages as they are written. A grid whose box would take more than MemoryLimit is an error that tells the bytes.
+ * on systems that give pages as they are written. Where it would take more than MemoryLimit, the output is a vtkPartitionedDataSet of
+ * images instead, unless Layout chooses: blocks of the same grid that meet in faces and cover all cells with an active voxel at a corner.
+ * They are divided until at least half of their voxels lie in leaves and active tiles, or there are 256 of them.
+ * vtkStratusMultiBlockVolumeMapper draws them as one volume, without seams; between them lies nothing, whatever the background's value.
+ * Blocks that would take more than MemoryLimit are an error that tells the bytes.
  */
 #ifndef vtkStratusVDBReader_h
 #define vtkStratusVDBReader_h
@@ -21,7 +25,9 @@
 
 #include <memory> // For std::unique_ptr
 
+class vtkImageData;
 class vtkStratusSparseGrid;
+struct vtkStratusCellBox;
 
 class STRATUSFILTERSIO_EXPORT vtkStratusVDBReader : public vtkStratusVariableReader
 {
@@ -32,7 +38,17 @@ public:
 
   //@{
   /**
-   * Set/Get the most that the image may take, in MiB, at least 1. Default 4096.
+   * Set/Get whether the output is one image, or blocks; automatic: blocks where the image would take more than MemoryLimit. Default
+   * automatic.
+   */
+  enum { AUTO_LAYOUT, IMAGE_LAYOUT, BLOCKS_LAYOUT };
+  vtkSetClampMacro(Layout, int, AUTO_LAYOUT, BLOCKS_LAYOUT);
+  vtkGetMacro(Layout, int);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the most that the image or the blocks may take, in MiB, at least 1. Default 4096.
    */
   vtkSetClampMacro(MemoryLimit, vtkIdType, 1, VTK_ID_MAX / 1048576);
   vtkGetMacro(MemoryLimit, vtkIdType);
@@ -43,19 +59,24 @@ protected:
   ~vtkStratusVDBReader() override;
 
   std::string Inspect() override;
-  void Build(size_t step, vtkDataSet* output) override;
+  void Build(size_t step, vtkDataObject* output) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
 
 private:
   vtkStratusVDBReader(const vtkStratusVDBReader&) = delete;
   void operator=(const vtkStratusVDBReader&) = delete;
 
-  void CheckSize();
+  void FindExtent();
+  bool ChooseBlocks();
+  void BuildImage(vtkImageData* image, const vtkStratusSparseGrid& grid, const int extent[6]) const;
   void CheckMap();
   [[noreturn]] void Fail(const std::string& why) const;
 
+  int Layout = AUTO_LAYOUT;
   vtkIdType MemoryLimit = 4096;
   std::unique_ptr<vtkStratusSparseGrid> Grid; // from where it is looked at to where it is put out
   std::string GridName;
+  std::vector<vtkStratusCellBox> Blocks; // empty: the output is an image
 };
 
 #endif

@@ -3,8 +3,8 @@
 
 #include "vtkStratusReadError.h"
 
+#include "vtkDataObject.h"
 #include "vtkDataObjectTypes.h"
-#include "vtkDataSet.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -138,7 +138,11 @@ int vtkStratusVariableReader::RequestInformation(vtkInformation*, vtkInformation
     return 0;
   }
   vtkInformation* info = outputs->GetInformationObject(0);
-  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->WholeExtent, 6);
+  if (vtkDataObject::GetData(info)->GetExtentType() == VTK_3D_EXTENT) {
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->WholeExtent, 6);
+  } else {
+    info->Remove(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
+  }
   if (this->Times.empty()) {
     info->Remove(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
     info->Remove(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
@@ -153,7 +157,7 @@ int vtkStratusVariableReader::RequestInformation(vtkInformation*, vtkInformation
 int vtkStratusVariableReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
   vtkInformation* info = outputs->GetInformationObject(0);
-  vtkDataSet* output = vtkDataSet::GetData(info);
+  vtkDataObject* output = vtkDataObject::GetData(info);
   if (!output || !this->Look()) {
     return 0;
   }

@@ -78,8 +78,8 @@ protected:
   /// Looks up Variables, Times, TimeUnits, Description and WholeExtent. Returns the class of the output for the chosen variable.
   /// Throws vtkStratusReadError, as Build() and ChosenName() do.
   virtual std::string Inspect() = 0;
-  /// Fills the output with a step, which is 0 in a file without time.
-  virtual void Build(size_t step, vtkDataSet* output) = 0;
+  /// Fills the output, of the class that Inspect() told, with a step, which is 0 in a file without time.
+  virtual void Build(size_t step, vtkDataObject* output) = 0;
   /// Returns VariableName, or the first variable if there is none. Fails with the list of variables for another name.
   std::string ChosenName() const;
 

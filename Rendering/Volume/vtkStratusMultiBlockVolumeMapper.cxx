@@ -1,80 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusMultiBlockVolumeMapper.h"
 
-#include "vtkStratusVolumeMapper.h"
+#include "vtkStratusJointPicture.h"
+#include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkBoundingBox.h"
-#include "vtkCamera.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObjectTree.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMath.h"
-#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPlaneCollection.h"
 #include "vtkRectilinearGrid.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
 #include "vtkVolume.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
 namespace {
 
-// Where rays come from in the data's coordinates: a point, or a direction for parallel projections.
-struct Eye {
-  double Point[4];                            // w is 0 for a direction, which points away from the scene
-  double Middle(const double bounds[6]) const // how far the box's middle is, in some unit
-  {
-    double sum = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double middle = 0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]);
-      sum += this->Point[3] != 0.0 ? (middle - this->Point[axis]) * (middle - this->Point[axis]) : -middle * this->Point[axis];
-    }
-    return sum;
-  }
-};
-
 struct Block {
   vtkDataSet* Grid = nullptr;
   double Bounds[6];
 };
-
-Eye EyeOf(vtkRenderer* renderer, vtkVolume* volume)
-{
-  vtkCamera* camera = renderer->GetActiveCamera();
-  Eye eye = { { 0.0, 0.0, 0.0, camera->GetParallelProjection() ? 0.0 : 1.0 } };
-  const double* from = camera->GetPosition();
-  const double* along = camera->GetDirectionOfProjection();
-  for (int axis = 0; axis < 3; ++axis) {
-    eye.Point[axis] = camera->GetParallelProjection() ? -along[axis] : from[axis];
-  }
-  vtkNew<vtkMatrix4x4> inverse;
-  vtkMatrix4x4::Invert(volume->GetMatrix(), inverse);
-  inverse->MultiplyPoint(eye.Point, eye.Point);
-  return eye;
-}
-
-// Whether `near` may hide something of `far`: no plane across an axis that parts them has the eye on the side of `far`.
-bool MayHide(const Block& near, const Block& far, const Eye& eye)
-{
-  for (int axis = 0; axis < 3; ++axis) {
-    const double plane[2] = { far.Bounds[2 * axis + 1], far.Bounds[2 * axis] };
-    if (near.Bounds[2 * axis] >= plane[0] && eye.Point[axis] <= (eye.Point[3] != 0.0 ? plane[0] : 0.0)) {
-      return false; // far is below the plane, as the eye is
-    }
-    if (near.Bounds[2 * axis + 1] <= plane[1] && eye.Point[axis] >= (eye.Point[3] != 0.0 ? plane[1] : 0.0)) {
-      return false;
-    }
-  }
-  return true;
-}
 
 bool Overlap(const Block& a, const Block& b)
 {
@@ -85,39 +39,60 @@ bool Overlap(const Block& a, const Block& b)
   return overlap;
 }
 
-// The blocks from back to front: always one that hides none of those left, the farthest of these; where each hides another, which only
-// blocks that overlap or three that pass one another do, the farthest of all.
-std::vector<size_t> Order(const std::vector<Block>& blocks, const Eye& eye)
-{
-  std::vector<size_t> left(blocks.size());
-  for (size_t i = 0; i < left.size(); ++i) {
-    left[i] = i;
-  }
-  std::stable_sort(
-    left.begin(), left.end(), [&](size_t a, size_t b) { return eye.Middle(blocks[a].Bounds) > eye.Middle(blocks[b].Bounds); });
-  std::vector<size_t> order;
-  while (!left.empty()) {
-    auto next = std::find_if(left.begin(), left.end(), [&](size_t i) {
-      return std::none_of(left.begin(), left.end(), [&](size_t other) { return other != i && MayHide(blocks[i], blocks[other], eye); });
-    });
-    next = next == left.end() ? left.begin() : next;
-    order.push_back(*next);
-    left.erase(next);
-  }
-  return order;
-}
 } // namespace
 
 class vtkStratusMultiBlockVolumeMapper::Internals
 {
 public:
-  vtkNew<vtkStratusVolumeMapper> Settings;
-  std::vector<vtkSmartPointer<vtkStratusVolumeMapper>> Mappers; // of the blocks, in the input's order
-  std::string Error, Warning;
+  Internals();
+  ~Internals();
 
   std::vector<Block> Find(vtkDataObject* input, vtkStratusMultiBlockVolumeMapper* mapper, std::string& warning);
   void Configure(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to) const;
+  // Draws all mappers' blocks in one picture. `error` stays empty where an abort ended it.
+  bool Render(vtkRenderer* renderer, vtkVolume* volume, std::string& error);
+
+  vtkNew<vtkStratusVolumeMapper> Settings;
+  std::vector<vtkSmartPointer<vtkStratusVolumeMapper>> Mappers; // of the blocks, in the input's order
+  vtkStratusJointPicture Picture;
+  std::string Error, Warning;
+
+private:
+  bool OnProgress();
+  bool Describe(vtkRenderer* renderer, vtkVolume* volume, std::string& error);
+  bool PrepareContext(std::string& error);
+  bool Cast(const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error);
+
+  vtkStratusContext Context;
+  std::vector<stratus_ray_caster*> Casters; // of the blocks
+  std::vector<stratus_ray_cast_options> Options;
+  std::vector<stratus_ray_cast_input> Inputs;
+  vtkRenderer* Renderer = nullptr; // set while rendering
+  vtkStratusJointPicture::Scene Scene;
 };
+
+vtkStratusMultiBlockVolumeMapper::Internals::Internals() : Context([this](double) { return this->OnProgress(); })
+{
+  this->Context.OnRelease = [this] {
+    for (stratus_ray_caster* caster : this->Casters) {
+      stratus_ray_caster_destroy(caster);
+    }
+    this->Casters.clear();
+    this->Picture.ForgetTime();
+  };
+}
+
+vtkStratusMultiBlockVolumeMapper::Internals::~Internals()
+{
+  this->Context.OnRelease();
+  this->Context.OnRelease = nullptr; // members that it uses are destroyed before the context
+}
+
+bool vtkStratusMultiBlockVolumeMapper::Internals::OnProgress()
+{
+  vtkRenderWindow* window = this->Renderer ? this->Renderer->GetRenderWindow() : nullptr;
+  return window && window->CheckAbortStatus();
+}
 
 vtkStandardNewMacro(vtkStratusMultiBlockVolumeMapper);
 
@@ -203,10 +178,104 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   to->SetImageErrorTolerance(settings->GetImageErrorTolerance());
   to->SetTermination(settings->GetTermination());
   to->SetBlockSize(settings->GetBlockSize());
-  to->SetDevice(settings->GetDevice());
   to->SetNumberOfThreads(settings->GetNumberOfThreads());
   to->SetAudit(settings->GetAudit());
   to->SetCountSamples(settings->GetCountSamples());
+}
+
+// Asks each block's mapper what it draws.
+bool vtkStratusMultiBlockVolumeMapper::Internals::Describe(vtkRenderer* renderer, vtkVolume* volume, std::string& error)
+{
+  const size_t count = this->Mappers.size();
+  this->Options.resize(count);
+  this->Inputs.assign(count, stratus_ray_cast_input());
+  this->Scene.Boxes.clear();
+  for (size_t i = 0; i < count; ++i) {
+    vtkStratusVolumeMapper::Internals& block = *this->Mappers[i]->Internal;
+    if (!block.Describe(renderer, volume, this->Options[i], error)) {
+      error = "block " + std::to_string(i) + ": " + error;
+      return false;
+    }
+    this->Inputs[i].volume = &block.Image.GetVolume();
+    this->Inputs[i].transfer = block.Functions.data();
+    this->Inputs[i].options = &this->Options[i];
+  }
+  return true;
+}
+
+bool vtkStratusMultiBlockVolumeMapper::Internals::PrepareContext(std::string& error)
+{
+  const int threads = this->Settings->GetNumberOfThreads();
+  this->Context.SetDevice(this->Settings->GetDevice(), threads, error);
+  if (!error.empty() || !this->Context.Prepare(threads, error)) {
+    return false;
+  }
+  for (size_t i = this->Mappers.size(); i < this->Casters.size(); ++i) {
+    stratus_ray_caster_destroy(this->Casters[i]);
+  }
+  this->Casters.resize(this->Mappers.size(), nullptr);
+  for (size_t i = 0; i < this->Casters.size(); ++i) {
+    // The picture's rectangle relies on a volume that is right.
+    if ((!this->Casters[i] && stratus_ray_caster_create(this->Context.Get(), &this->Casters[i]) != STRATUS_OK) ||
+      stratus_volume_check(this->Context.Get(), this->Inputs[i].volume) != STRATUS_OK) {
+      error = "block " + std::to_string(i) + ": " + stratus_context_message(this->Context.Get());
+      return false;
+    }
+    this->Inputs[i].caster = this->Casters[i];
+    const bool boxed = this->Options[i].crop && this->Options[i].crop_regions == STRATUS_CROP_INSIDE;
+    this->Scene.Boxes.push_back({ this->Inputs[i].volume, boxed ? this->Options[i].crop_bounds : nullptr });
+    this->Mappers[i]->Internal->OfferTree(this->Casters[i], this->Context.Get());
+  }
+  return true;
+}
+
+bool vtkStratusMultiBlockVolumeMapper::Internals::Cast(
+  const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error)
+{
+  std::vector<stratus_ray_cast_report> reports(this->Inputs.size());
+  const stratus_status status =
+    stratus_ray_caster_render_blocks(this->Inputs.data(), static_cast<int>(this->Inputs.size()), &camera, &image, reports.data());
+  if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
+    error = stratus_context_message(this->Context.Get());
+  }
+  if (status != STRATUS_OK || !whole) {
+    return status == STRATUS_OK;
+  }
+  this->Scene.Milliseconds = 0.0;
+  std::fill_n(this->Scene.Window, 4, 0);
+  for (size_t i = 0; i < reports.size(); ++i) {
+    const int* of = reports[i].window;
+    int* all = this->Scene.Window;
+    this->Mappers[i]->Internal->Report = reports[i];
+    this->Scene.Milliseconds += reports[i].cast_ms;
+    if (of[0] < of[1] && of[2] < of[3]) {
+      const bool first = all[0] >= all[1];
+      for (int side = 0; side < 4; ++side) {
+        all[side] = first ? of[side] : side % 2 ? std::max(all[side], of[side]) : std::min(all[side], of[side]);
+      }
+    }
+  }
+  return true;
+}
+
+bool vtkStratusMultiBlockVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* volume, std::string& error)
+{
+  if (!this->Picture.Begin(renderer, volume, volume->GetMapper(), this->Error, error)) {
+    return error.empty();
+  }
+  if (!this->Describe(renderer, volume, error) || !this->PrepareContext(error)) {
+    return false;
+  }
+  this->Scene.Renderer = renderer;
+  this->Scene.Prop = volume;
+  this->Scene.Settings = this->Mappers[0];
+  this->Scene.Cast = [this](const stratus_camera& camera, const stratus_image& image, bool whole, std::string& why) {
+    return this->Cast(camera, image, whole, why);
+  };
+  this->Renderer = renderer;
+  const bool drawn = this->Picture.Render(this->Scene, error);
+  this->Renderer = nullptr;
+  return drawn;
 }
 
 void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
@@ -215,33 +284,27 @@ void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* 
   std::string error, warning;
   const std::vector<Block> blocks = this->Internal->Find(this->GetInputDataObject(0, 0), this, warning);
   auto& mappers = this->Internal->Mappers;
-  const int mode = this->GetBlendMode();
-  const bool blends = mode == COMPOSITE_BLEND || mode == ISOSURFACE_BLEND || mode == SLICE_BLEND;
-  if (blocks.size() > 1 && !blends) {
-    error = "blend mode " + std::to_string(mode) + " is not supported for more than one block; composite, isosurface and slice are";
-  } else {
-    mappers.resize(blocks.size());
-    for (size_t i = 0; i < blocks.size(); ++i) {
-      if (!mappers[i]) {
-        mappers[i] = vtkSmartPointer<vtkStratusVolumeMapper>::New();
-      }
-      this->Internal->Configure(this, mappers[i]);
-      mappers[i]->SetInputDataObject(blocks[i].Grid);
-      for (size_t j = 0; j < i; ++j) {
-        if (Overlap(blocks[i], blocks[j])) {
-          warning = "blocks overlap, and are drawn one over the other";
-        }
-      }
+  mappers.resize(blocks.size());
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    if (!mappers[i]) {
+      mappers[i] = vtkSmartPointer<vtkStratusVolumeMapper>::New();
     }
-    bool first = true;
-    for (const size_t i : Order(blocks, EyeOf(renderer, volume))) {
-      mappers[i]->FollowsBlock = !first;
-      mappers[i]->Render(renderer, volume);
-      error = mappers[i]->GetLastError()[0] ? mappers[i]->GetLastError() : error;
-      first = false;
+    this->Internal->Configure(this, mappers[i]);
+    mappers[i]->SetInputDataObject(blocks[i].Grid);
+    for (size_t j = 0; j < i && warning.empty(); ++j) {
+      if (Overlap(blocks[i], blocks[j])) {
+        warning = "blocks overlap, and are drawn one over the other";
+      }
     }
   }
-  if (!error.empty() && error != this->Internal->Error && mappers.empty()) { // each block's mapper has told of its own
+  if (blocks.size() == 1) { // draws and tells by itself
+    mappers[0]->SetDevice(this->Internal->Settings->GetDevice());
+    mappers[0]->Render(renderer, volume);
+    error = mappers[0]->GetLastError();
+  } else if (!blocks.empty()) {
+    this->Internal->Render(renderer, volume, error);
+  }
+  if (!error.empty() && error != this->Internal->Error && blocks.size() > 1) {
     vtkErrorMacro(<< error << "; nothing is drawn");
   }
   if (!warning.empty() && warning != this->Internal->Warning) {
@@ -249,6 +312,12 @@ void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* 
   }
   this->Internal->Error = error;
   this->Internal->Warning = warning;
+}
+
+vtkImageData* vtkStratusMultiBlockVolumeMapper::GetLastImage()
+{
+  auto& mappers = this->Internal->Mappers;
+  return mappers.size() == 1 ? mappers[0]->GetLastImage() : this->Internal->Picture.GetLastImage();
 }
 
 vtkStratusVolumeMapper* vtkStratusMultiBlockVolumeMapper::GetSettings()
@@ -304,6 +373,7 @@ void vtkStratusMultiBlockVolumeMapper::ReleaseGraphicsResources(vtkWindow* windo
       mapper->ReleaseGraphicsResources(window);
     }
   }
+  this->Internal->Picture.ReleaseGraphicsResources(window);
   this->Superclass::ReleaseGraphicsResources(window);
 }
 

@@ -10,8 +10,9 @@
  * warning. Each block chooses its own structure and sampling, and its gradients are one-sided at its border unless it has ghost cells.
  *
  * What vtkVolumeMapper has (scalars, blend mode, cropping, clipping planes) is set at this mapper, the rest at GetSettings(); both hold for
- * all blocks. Blocks are blended in the frame buffer, which rounds to its own precision after each. That draws the blend modes composite
- * and isosurface, and first hits; more than one block in another mode is refused by an error, and nothing is drawn.
+ * all blocks. The blocks' pictures are blended as floats, so that their borders show nothing. That draws the blend modes composite,
+ * isosurface and slice, and first hits; more than one block in another mode is refused by an error, and nothing is drawn. The cost of a
+ * picture grows with what is seen of each block, and each block keeps its own structure and tables.
  *
  * @sa vtkStratusVolumeMapper vtkStratusMultiVolume
  */
@@ -23,6 +24,7 @@
 
 #include <memory> // For std::unique_ptr
 
+class vtkImageData;
 class vtkStratusVolumeMapper;
 
 class STRATUSRENDERINGVOLUME_EXPORT vtkStratusMultiBlockVolumeMapper : public vtkVolumeMapper
@@ -48,7 +50,12 @@ public:
   vtkStratusVolumeMapper* GetBlockMapper(int block);
 
   /**
-   * Get why the last picture was refused, whole or in part; empty if it was not.
+   * Get the last picture, as vtkStratusVolumeMapper::GetLastImage() does; nullptr where there is none.
+   */
+  vtkImageData* GetLastImage();
+
+  /**
+   * Get why the last picture was refused; empty if it was not.
    */
   const char* GetLastError();
 

@@ -615,10 +615,9 @@ private:
   vtkStratusVolumeMapper(const vtkStratusVolumeMapper&) = delete;
   void operator=(const vtkStratusVolumeMapper&) = delete;
 
+  // These draw what the mappers of their blocks or volumes describe.
   friend class vtkStratusMultiBlockVolumeMapper;
-  bool FollowsBlock = false; // another block of the prop is in the window already
-
-  friend class vtkStratusMultiVolume; // draws what the mappers of its volumes describe
+  friend class vtkStratusMultiVolume;
   class Internals;
   std::unique_ptr<Internals> Internal;
 };

@@ -70,15 +70,14 @@ void vtkStratusVolumeMapper::Internals::WidenBounds(double bounds[6]) const
   }
 }
 
-// Offers the input's tree to the caster. A damaged tree is reported once, and the caster builds its own.
-void vtkStratusVolumeMapper::Internals::OfferTree()
+void vtkStratusVolumeMapper::Internals::OfferTree(stratus_ray_caster* caster, stratus_context* context)
 {
   vtkStratusVolumeMapper* self = this->Mapper;
   vtkFieldData* fields = self->GetInput()->GetFieldData();
   vtkAbstractArray* offered = fields ? fields->GetAbstractArray(vtkStratusTreeArray) : nullptr;
   vtkUnsignedCharArray* tree = vtkUnsignedCharArray::SafeDownCast(offered);
   const vtkMTimeType time = offered ? offered->GetMTime() : 0;
-  if (offered == this->Offered && time == this->OfferedTime && this->Caster == this->OfferedTo) {
+  if (offered == this->Offered && time == this->OfferedTime && caster == this->OfferedTo) {
     return;
   }
   if (offered && !tree) {
@@ -87,11 +86,10 @@ void vtkStratusVolumeMapper::Internals::OfferTree()
   }
   this->Offered = offered;
   this->OfferedTime = time;
-  this->OfferedTo = this->Caster;
+  this->OfferedTo = caster;
   const size_t size = tree ? static_cast<size_t>(tree->GetNumberOfValues()) : 0;
   const void* bytes = size > 0 ? tree->GetPointer(0) : nullptr;
-  if (stratus_ray_caster_offer_tree(this->Caster, bytes, size) != STRATUS_OK) {
-    vtkWarningWithObjectMacro(
-      self, << "the input's tree is not used: " << stratus_context_message(this->Context.Get()) << "; one is built");
+  if (stratus_ray_caster_offer_tree(caster, bytes, size) != STRATUS_OK) {
+    vtkWarningWithObjectMacro(self, << "the input's tree is not used: " << stratus_context_message(context) << "; one is built");
   }
 }

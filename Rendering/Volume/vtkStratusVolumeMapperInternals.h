@@ -31,6 +31,8 @@ public:
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   // Checks everything that is drawn but the camera, and sets Image, Functions and the options by it. Needs no context.
   bool Describe(vtkRenderer* renderer, vtkVolume* prop, stratus_ray_cast_options& options, std::string& error);
+  // Offers the input's tree to a caster of the context. A damaged tree is reported once, and the caster builds its own.
+  void OfferTree(stratus_ray_caster* caster, stratus_context* context);
   vtkImageData* GetLastImage();
   vtkTypeUInt64 GetFunctionBuilds() const;
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
@@ -74,12 +76,10 @@ private:
   bool HasLabels() const;
   bool SetTransfers(vtkVolumeProperty* property, std::string& error);
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
-  // Light, first hits and carried trees (vtkStratusVolumeMapperFirstHit.cxx).
+  // Light and first hits (vtkStratusVolumeMapperFirstHit.cxx).
   bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
   bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
   bool SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options);
-  void OfferTree();
-
   bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   // Functions of two variables and slices (vtkStratusVolumeMapperLookup.cxx).
   static bool HasTransfer2D(vtkVolumeProperty* property);
@@ -94,7 +94,6 @@ private:
   void LearnTime(const Coarseness& coarseness);
   bool CastTo(const stratus_ray_cast_options& options, const float* depths, std::vector<float>& rgba);
   bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error);
-  vtkStratusPicture::Others FindOthers(vtkRenderer* renderer, vtkVolume* prop) const;
 
   vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusPicture Picture;

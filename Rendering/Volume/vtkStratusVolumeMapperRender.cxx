@@ -2,8 +2,7 @@
 // Draws one picture of vtkStratusVolumeMapper: chooses its coarseness, reads depths, casts rays and displays the result.
 #include "vtkStratusVolumeMapperInternals.h"
 
-#include "vtkStratusMultiBlockVolumeMapper.h"
-#include "vtkStratusMultiVolume.h"
+#include "vtkStratusJointPicture.h"
 
 #include "vtkImageData.h"
 #include "vtkRenderWindow.h"
@@ -79,23 +78,6 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
 
 // ---------------------------------------------------------------- a picture
 
-vtkStratusPicture::Others vtkStratusVolumeMapper::Internals::FindOthers(vtkRenderer* renderer, vtkVolume* prop) const
-{
-  vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, prop, [](vtkProp* other) {
-    vtkVolume* volume = vtkVolume::SafeDownCast(other);
-    if (vtkStratusMultiVolume::SafeDownCast(other)) {
-      return true;
-    }
-    // Other volumes of this class end no rays, except those that write depth.
-    vtkStratusVolumeMapper* mapper = volume ? vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
-    auto* blocks = volume ? vtkStratusMultiBlockVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
-    mapper = blocks ? blocks->GetSettings() : mapper;
-    return mapper && mapper->RenderMode == COMPOSITE_MODE;
-  });
-  others.Any = others.Any || this->Mapper->FollowsBlock;
-  return others;
-}
-
 bool vtkStratusVolumeMapper::Internals::Cast(
   vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error)
 {
@@ -153,7 +135,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     return false;
   }
   this->WarnOfGradientOpacity(prop->GetProperty());
-  this->OfferTree();
+  this->OfferTree(this->Caster, this->Context.Get());
   const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);
   if (coarseness.Step > 1.0) {
     options.sample_distance = coarseness.Step * this->FullSampleDistance;
@@ -171,7 +153,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   }
   const double start = Now();
   const bool alone = this->Mapper->RenderToImage && !renderer->GetSelector();
-  const vtkStratusPicture::Others others = this->FindOthers(renderer, prop);
+  const vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, prop, vtkStratusJointPicture::EndsNoRay);
   const float* opaqueDepth = alone ? nullptr : this->Picture.ReadOpaqueDepth(renderer, others);
   const double read = Now();
   this->Rgba.resize(4 * static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1]);

@@ -148,6 +148,21 @@ def test_kinds():
         fail("parts that meet do not share their points")
     if picture("halves.vtm") != same:
         fail("two halves are another picture than the whole")
+    # blocks of images stay images
+    whole = image()
+    blocks = vtkMultiBlockDataSet()
+    for number, extent in enumerate(((0, 2, 0, 3, 0, 5), (2, 4, 0, 1, 0, 5), (2, 4, 1, 3, 0, 5))):
+        part = vtkImageData()
+        part.DeepCopy(whole)
+        part.Crop(extent)
+        blocks.SetBlock(number, part)
+    write(vtkXMLImageDataWriter, whole, "box.vti")
+    write(vtkXMLMultiBlockDataWriter, blocks, "box.vtm")
+    expect(0, "kind +3 blocks: 3 vtkImageData, drawn by rays", "info", "box.vtm")
+    fixed = ("--sampling", "midpoint", "--sample-distance", ".05")
+    if abs(drawn("box.vtm", *LOOK, *fixed) - drawn("box.vti", *LOOK, *fixed)).max() > 1:
+        fail("blocks of an image are another picture than the whole")
+    expect(2, "'box.vtm' is a volume of 3 blocks, which is drawn alone: leave out --audit", "render", "box.vtm", "-o", "no.png", "--audit")
 
 
 def test_modes_of_grids():
@@ -445,7 +460,9 @@ def test_vdb():
             fail(f"{name} of cloud.vdb is another picture than the density it is a multiple of")
     expect(1, r"no variable 'qc' in 'cloud.vdb'; the variables are: density \(0 \.\. 1\), wind \(0 \.\. 5\)$",
            "render", "cloud.vdb", "-o", "no.png", "--variable", "qc")
-    expect(1, r"would take 256\d{9} bytes .* the limit is 4096 MiB", "render", "wide.vdb", "-o", "no.png")
+    expect(0, r"2 blocks of 8000 bytes .* in place of an image of 256\d{9} bytes", "info", "wide.vdb")
+    expect(0, "volume +2 blocks, the first of 10 x 10 x 10 float32", "render", "wide.vdb", "-o", "wide.png")
+    expect(2, "'wide.vdb' is a volume of 2 blocks, which is drawn alone", "render", "cloud.vdb", "wide.vdb", "-o", "no.png")
     with open("cloud.vdb", "rb") as file:
         text = file.read()
     with open("cut.vdb", "wb") as file:

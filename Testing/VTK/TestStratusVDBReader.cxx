@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sparse grids become the images that they are: each voxel against the grid's own accessor, tiles and lone voxels among them, maps, kinds
-// of values, and files that are wrong.
+// Sparse grids become the images or blocks that they are: each voxel against the grid's own accessor, tiles and lone voxels among them,
+// maps, kinds of values, and files that are wrong.
 #include "vdb_testing.h"
 
 #include "reading_testing.h"
@@ -9,6 +9,7 @@
 #include "vtkImageData.h"
 #include "vtkLogger.h"
 #include "vtkMatrix3x3.h"
+#include "vtkPartitionedDataSet.h"
 #include "vtkPointData.h"
 #include "vtkStratusVDBReader.h"
 
@@ -211,7 +212,7 @@ void test_several(const std::string& folder)
     "the second grid of NanoVDB");
 }
 
-// A grid that is large and nearly empty is refused with its bytes, and drawn where it is allowed.
+// A grid that is large and nearly empty is no image: it becomes blocks, or is refused with its bytes.
 void test_memory(const std::string& folder)
 {
   const auto grid = openvdb::FloatGrid::create(0.0F);
@@ -220,19 +221,109 @@ void test_memory(const std::string& folder)
   grid->tree().setValue(openvdb::Coord(1899, 2047, 1999), 2);
   const std::string file = folder + "/wide.vdb";
   vdb::write_vdb(file, { grid });
-  refuse<vtkStratusVDBReader>(file, nullptr, "'density' would take 32865632800 bytes");
-  refuse<vtkStratusVDBReader>(file, nullptr, "within -100..1899, 0..2047, 0..1999");
+  reader wide(file, nullptr);
+  wide.read();
+  check(wide.errors->heard.empty(), "blocks of a wide grid: " + wide.errors->heard);
+  check(
+    std::string(wide.reader->GetDescription()).find("2 blocks of 8000 bytes (0.007629 MiB) in place of an image of 32865632800 bytes") !=
+      std::string::npos,
+    std::string("nothing of blocks is told: ") + wide.reader->GetDescription());
+  wide.reader->SetLayout(vtkStratusVDBReader::IMAGE_LAYOUT);
+  wide.read();
+  check(wide.errors->heard.find("'density' would take 32865632800 bytes") != std::string::npos &&
+      wide.errors->heard.find("within -100..1899, 0..2047, 0..1999") != std::string::npos,
+    "an image beyond the limit: " + wide.errors->heard);
   grid->tree().setValue(openvdb::Coord(1899, 2047, 1999), 0);
   grid->tree().setValueOff(openvdb::Coord(1899, 2047, 1999));
   grid->tree().setValue(openvdb::Coord(155, 255, 255), 2);
   vdb::write_vdb(file, { grid });
   reader r(file, nullptr);
+  r.reader->SetLayout(vtkStratusVDBReader::IMAGE_LAYOUT);
   r.reader->SetMemoryLimit(60);
   r.read();
   check(r.errors->heard.find("68694048 bytes (65.51 MiB) as an image") != std::string::npos, "a limit of one's own: " + r.errors->heard);
   r.reader->SetMemoryLimit(66);
   vtkDataSet* data = r.read();
   check(r.errors->heard.empty() && data->GetPointData()->GetScalars()->GetRange()[1] == 2, "within the limit: " + r.errors->heard);
+
+  const auto haze = openvdb::FloatGrid::create(0.0F);
+  haze->fill(openvdb::CoordBBox(openvdb::Coord(0, 0, 0), openvdb::Coord(127, 127, 127)), 1.0F);
+  vdb::write_vdb(folder + "/haze.vdb", { haze });
+  reader full(folder + "/haze.vdb", nullptr);
+  full.reader->SetMemoryLimit(1);
+  full.read();
+  check(full.errors->heard.find("as 1 blocks, and 8787") != std::string::npos, "blocks beyond the limit: " + full.errors->heard);
+}
+
+// Blocks have the grid's values, meet without overlap, and cover every cell with an active corner; few hold more than is active.
+void test_blocks(const std::string& folder)
+{
+  const auto grid = openvdb::FloatGrid::create(-0.5F);
+  grid->setName("density");
+  grid->tree().addTile(2, openvdb::Coord(256, 0, 128), 3.0F, true); // of 128 voxels a side
+  for (int ball = 0; ball < 9; ++ball) {
+    const int middle[3] = { 37 * ball, 300 - 61 * ball % 300, 83 * ball % 290 }, radius = 4 + ball;
+    for (int x = -radius; x <= radius; ++x) {
+      for (int y = -radius; y <= radius; ++y) {
+        for (int z = -radius; z <= radius; ++z) {
+          if (x * x + y * y + z * z <= radius * radius) {
+            grid->tree().setValue(
+              openvdb::Coord(middle[0] + x, middle[1] + y, middle[2] + z), static_cast<float>(ball + 0.1 * x + 0.01 * y + 0.001 * z));
+          }
+        }
+      }
+    }
+  }
+  const std::string files[] = { folder + "/blocks.vdb", folder + "/blocks.nvdb" };
+  vdb::write_vdb(files[0], { grid });
+  nanovdb::io::writeGrid(files[1], vdb::to_nano(grid));
+  for (const std::string& file : files) {
+    reader r(file, nullptr);
+    r.reader->SetLayout(vtkStratusVDBReader::BLOCKS_LAYOUT);
+    r.read();
+    vtkPartitionedDataSet* parts = vtkPartitionedDataSet::SafeDownCast(r.reader->GetOutputDataObject(0));
+    check(r.errors->heard.empty() && parts && parts->GetNumberOfPartitions() > 4, file + ": no blocks: " + r.errors->heard);
+    std::vector<unsigned char> covered(400 * 400 * 400, 0); // cells from -20 on
+    const auto cell = [](int x, int y, int z) {
+      return static_cast<size_t>(x + 20) + 400 * (static_cast<size_t>(y + 20) + 400 * static_cast<size_t>(z + 20));
+    };
+    int twice = 0, bare = 0;
+    double voxels = 0.0;
+    for (unsigned int p = 0; parts && p < parts->GetNumberOfPartitions(); ++p) {
+      vtkImageData* image = vtkImageData::SafeDownCast(parts->GetPartition(p));
+      const int wrong = count_wrong(
+        image, [&](int x, int y, int z, int) { return grid->tree().getValue(openvdb::Coord(x, y, z)); }, 0.0);
+      check(wrong == 0, file + ": " + std::to_string(wrong) + " values of a block are not the grid's");
+      const int* e = image->GetExtent();
+      voxels += static_cast<double>(image->GetNumberOfPoints());
+      for (int z = e[4]; z < e[5]; ++z) {
+        for (int y = e[2]; y < e[3]; ++y) {
+          for (int x = e[0]; x < e[1]; ++x) {
+            twice += covered[cell(x, y, z)]++ > 0 ? 1 : 0;
+          }
+        }
+      }
+    }
+    double active = 0.0;
+    for (auto voxel = grid->cbeginValueOn(); voxel; ++voxel) {
+      const openvdb::CoordBBox box = [&] {
+        openvdb::CoordBBox b;
+        voxel.getBoundingBox(b);
+        return b;
+      }();
+      for (auto at = box.begin(); at; ++at) {
+        ++active;
+        for (int corner = 0; corner < 8; ++corner) {
+          bare += covered[cell((*at).x() - (corner & 1), (*at).y() - (corner >> 1 & 1), (*at).z() - (corner >> 2))] > 0 ? 0 : 1;
+        }
+      }
+    }
+    check(twice == 0 && bare == 0,
+      file + ": " + std::to_string(twice) + " cells are in two blocks, " + std::to_string(bare) + " with an active corner are in none");
+    std::printf(
+      "%s: %u blocks of %.0f voxels, %.0f of them active\n", file.c_str(), parts ? parts->GetNumberOfPartitions() : 0, voxels, active);
+    check(voxels < 2.5 * active, file + ": the blocks hold much more than what is active");
+  }
 }
 
 long resident_most()
@@ -301,9 +392,10 @@ void test_damaged(const std::string& folder)
     std::ofstream(folder + "/damaged.nvdb", std::ios::binary) << text;
     reader r(folder + "/damaged.nvdb", nullptr);
     r.reader->SetMemoryLimit(64);
-    vtkDataSet* data = r.read();
+    r.read();
     ++(r.errors->heard.empty() ? read : refused);
-    check(!r.errors->heard.empty() || (data && data->GetNumberOfPoints() > 0), "neither an error nor an image");
+    vtkDataObject* data = r.reader->GetOutputDataObject(0);
+    check(!r.errors->heard.empty() || (data && data->GetNumberOfElements(vtkDataObject::POINT) > 0), "neither an error nor an image");
   }
   check(refused > 30 && read > 30, "of 300 damaged files " + std::to_string(refused) + " are refused, " + std::to_string(read) + " read");
 }
@@ -329,6 +421,7 @@ int main(int argc, char* argv[])
   test_maps(folder);
   test_several(folder);
   test_memory(folder);
+  test_blocks(folder);
   test_pages(folder);
   test_wrong(folder);
   test_damaged(folder);

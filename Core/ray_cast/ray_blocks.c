@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Draws the blocks of a volume that was cut into grids of their own: from front to back, each by its own caster in the part of the picture
+ * that it covers, and blends the parts as floats. */
+#include "block_order.h"
+#include "camera.h"
+#include "picture.h"
+#include "ray_caster.h"
+#include "vector.h"
+#include "volume.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Blocks that reach into one another by less than this share of the shortest voxel edge lie side by side. */
+#define SLACK 1e-3
+/* The share of the tolerance that what lies behind the last transparency may have, and a transparency that floats can't tell from none, as
+ * for the rays of one volume. */
+#define TERMINATION_SHARE 0.5
+#define TERMINATION_LEAST 0x1p-24
+
+typedef struct blocks {
+  stratus_context* context;
+  const stratus_ray_cast_input* inputs;
+  int count;
+  const stratus_camera* camera;
+  const stratus_image* image;
+  int overlap[2];     /* two blocks that overlap; -1: none does */
+  stratus_image part; /* room for the part of the picture that a block covers */
+  float* ends;        /* of its rays */
+} blocks;
+
+/* Finds the pixels that a block may cover. */
+static void find_window(const blocks* b, const stratus_volume* volume, int window[4])
+{
+  double index_to_world[16], world_to_index[16], eye[3], right[3], up[3], forward[3], lo[3], hi[3];
+  const int sides[2] = { b->image->width, b->image->height };
+  stratus_volume_index_to_world(volume, index_to_world);
+  if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) { /* the block's own picture refuses it */
+    window[0] = window[2] = 0;
+    window[1] = sides[0];
+    window[3] = sides[1];
+    return;
+  }
+  stratus_matrix_point(world_to_index, b->camera->eye, eye);
+  stratus_matrix_vector(world_to_index, b->camera->right, right);
+  stratus_matrix_vector(world_to_index, b->camera->up, up);
+  stratus_matrix_vector(world_to_index, b->camera->forward, forward);
+  for (int axis = 0; axis < 3; ++axis) { /* solid voxels reach half a voxel beyond their points */
+    lo[axis] = -0.5;
+    hi[axis] = (double)volume->dimensions[axis] - 0.5;
+  }
+  stratus_camera_window(eye, right, up, forward, b->camera->parallel, lo, hi, sides, window);
+}
+
+/* The camera of a part of the picture, whose pixels have the rays that they have in the whole. */
+static stratus_camera camera_of(const blocks* b, const int window[4])
+{
+  const int sides[2] = { b->image->width, b->image->height };
+  stratus_camera part = *b->camera;
+  double center[2], half[2];
+  for (int side = 0; side < 2; ++side) {
+    center[side] = (double)(window[2 * side] + window[2 * side + 1]) / sides[side] - 1.0;
+    half[side] = (double)(window[2 * side + 1] - window[2 * side]) / sides[side];
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double sideways = center[0] * part.right[axis] + center[1] * part.up[axis];
+    if (part.parallel) {
+      part.eye[axis] += sideways;
+    } else {
+      part.forward[axis] += sideways;
+    }
+    part.right[axis] *= half[0];
+    part.up[axis] *= half[1];
+  }
+  return part;
+}
+
+/* Gives the transparency below which a ray of the block's picture ends. */
+static float least_transparency(const stratus_ray_cast_options* options)
+{
+  const double given = options->termination > 0.0 ? 1.0 - options->termination : TERMINATION_SHARE * options->tolerance;
+  return (float)fmax(given, TERMINATION_LEAST);
+}
+
+/* Sets where the rays of a part end: at opaque geometry, and at once where the picture is opaque already. Returns whether any ray is left,
+ * and in *wanted whether any ends early. */
+static bool set_ends(const blocks* b, const int window[4], float least, bool* wanted)
+{
+  const int width = window[1] - window[0];
+  const bool may_end = isfinite(b->camera->far_k) && (b->camera->parallel || b->camera->near_k > 0.0);
+  bool any = false;
+  *wanted = b->image->opaque_depth != NULL;
+  for (int y = window[2]; y < window[3]; ++y) {
+    const size_t row = (size_t)y * (size_t)b->image->width;
+    float* ends = b->ends + (size_t)(y - window[2]) * (size_t)width;
+    for (int x = window[0]; x < window[1]; ++x) {
+      const bool opaque = 1.0f - b->image->rgba[4 * (row + (size_t)x) + 3] <= least;
+      *ends++ = opaque ? 0.0f : b->image->opaque_depth ? b->image->opaque_depth[row + (size_t)x] : 1.0f;
+      any = any || !opaque;
+      *wanted = *wanted || (opaque && may_end);
+    }
+  }
+  return any;
+}
+
+/* Blends the part behind what the picture has. inside: the pixels of the part that show something. */
+static void blend_behind(const blocks* b, const int window[4], const int inside[4])
+{
+  const stratus_image* image = b->image;
+  const int width = window[1] - window[0];
+  for (int y = inside[2]; y < inside[3]; ++y) {
+    const size_t to = (size_t)(window[2] + y) * (size_t)image->width + (size_t)window[0], from = (size_t)y * (size_t)width;
+    for (int x = inside[0]; x < inside[1]; ++x) {
+      float* sum = image->rgba + 4 * (to + (size_t)x);
+      const float* add = b->part.rgba + 4 * (from + (size_t)x);
+      const float clear = 1.0f - sum[3];
+      for (int c = 0; c < 4; ++c) {
+        sum[c] += clear * add[c];
+      }
+      if (image->depth && image->depth[to + (size_t)x] == INFINITY) {
+        image->depth[to + (size_t)x] = b->part.depth[from + (size_t)x];
+      }
+      if (image->samples) {
+        image->samples[to + (size_t)x] += b->part.samples[from + (size_t)x];
+      }
+    }
+  }
+}
+
+static void round_picture(const stratus_image* image)
+{
+  const size_t channels = 4 * (size_t)image->width * (size_t)image->height;
+  for (size_t i = 0; image->rgba8 && i < channels; ++i) {
+    const float value = image->rgba[i] * 255.0f + 0.5f;
+    image->rgba8[i] = (uint8_t)(int)(value < 255.0f ? value : 255.0f); /* rgba is never negative */
+  }
+}
+
+/* Draws one block, and tells of it in the terms of the whole picture. */
+static stratus_status draw_block(blocks* b, int number, stratus_ray_cast_report* report)
+{
+  const stratus_ray_cast_input* in = &b->inputs[number];
+  stratus_ray_cast_options options = in->options ? *in->options : stratus_ray_cast_options_default();
+  stratus_image part = b->part;
+  int window[4];
+  bool ends = false;
+  find_window(b, in->volume, window);
+  if (window[0] >= window[1] || window[2] >= window[3] || !set_ends(b, window, least_transparency(&options), &ends)) {
+    snprintf(report->why, sizeof report->why, "not drawn: nothing of the block can be seen");
+    return STRATUS_OK;
+  }
+  part.width = window[1] - window[0];
+  part.height = window[3] - window[2];
+  part.opaque_depth = ends ? b->ends : NULL;
+  options.tolerance /= sqrt(cbrt((double)b->count)); /* of errors of as many blocks as a ray may meet, which add up by their squares */
+  const stratus_camera camera = camera_of(b, window);
+  TRY(stratus_ray_caster_render(in->caster, in->volume, in->transfer, &camera, &options, &part, report));
+  blend_behind(b, window, report->window);
+  for (int side = 0; side < 4; ++side) {
+    report->window[side] += window[side / 2 * 2];
+  }
+  if (number == b->overlap[0] || number == b->overlap[1]) {
+    const size_t length = strlen(report->why);
+    snprintf(report->why + length, sizeof report->why - length, "; overlaps block %d", b->overlap[number == b->overlap[0]]);
+  }
+  return STRATUS_OK;
+}
+
+/* ---- order */
+
+/* Sets boxes and eye in the coordinates of the first block's axes, each of which has the world's unit. */
+static stratus_status measure(const blocks* b, stratus_block_box* boxes, stratus_block_eye* eye, double* slack)
+{
+  double axes[16], to_axes[16];
+  stratus_volume_index_to_world(b->inputs[0].volume, axes);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double edge = sqrt(axes[axis] * axes[axis] + axes[4 + axis] * axes[4 + axis] + axes[8 + axis] * axes[8 + axis]);
+    for (int row = 0; row < 3; ++row) {
+      axes[4 * row + axis] /= edge;
+    }
+  }
+  if (!stratus_matrix_invert_affine(axes, to_axes)) {
+    return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT, "the axes of block 0 lie in one plane");
+  }
+  eye->parallel = b->camera->parallel != 0;
+  (eye->parallel ? stratus_matrix_vector : stratus_matrix_point)(to_axes, eye->parallel ? b->camera->forward : b->camera->eye, eye->point);
+  *slack = INFINITY;
+  for (int n = 0; n < b->count; ++n) {
+    const stratus_volume* volume = b->inputs[n].volume;
+    const double half = volume->cell_centered ? 0.5 : 0.0;
+    double to_world[16];
+    stratus_volume_index_to_world(volume, to_world);
+    boxes[n] = (stratus_block_box){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+    for (int axis = 0; axis < 3; ++axis) {
+      const double edge[3] = { to_world[axis], to_world[4 + axis], to_world[8 + axis] };
+      *slack = fmin(*slack, SLACK * sqrt(stratus_vector_dot(edge, edge)));
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+      double index[3], world[3], point[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        index[axis] = corner >> axis & 1 ? (double)(volume->dimensions[axis] - 1) + half : -half;
+      }
+      stratus_matrix_point(to_world, index, world);
+      stratus_matrix_point(to_axes, world, point);
+      for (int axis = 0; axis < 3; ++axis) {
+        boxes[n].lo[axis] = fmin(boxes[n].lo[axis], point[axis]);
+        boxes[n].hi[axis] = fmax(boxes[n].hi[axis], point[axis]);
+      }
+    }
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status check(const blocks* b)
+{
+  for (int n = 0; n < b->count; ++n) {
+    const stratus_ray_cast_input* in = &b->inputs[n];
+    if (!in->caster || in->tetra) {
+      return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT, "block %d has no ray caster: blocks are volumes", n);
+    }
+    if (in->caster->context != b->context) {
+      return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT, "the ray caster of block %d is of another context than that of block 0", n);
+    }
+    TRY(stratus_volume_check(b->context, in->volume));
+    const stratus_mode mode = in->options ? in->options->mode : STRATUS_MODE_COMPOSITE;
+    if (mode != STRATUS_MODE_COMPOSITE && mode != STRATUS_MODE_FIRST_HIT && mode != STRATUS_MODE_ISOSURFACE && mode != STRATUS_MODE_SLICE &&
+      b->count > 1) {
+      return stratus_fail(b->context, STRATUS_UNSUPPORTED,
+        "block %d of %d has mode %s, whose pictures don't lie one behind the other: composite, first-hit, isosurface and slice do", n,
+        b->count, stratus_mode_name(mode));
+    }
+  }
+  return STRATUS_OK;
+}
+
+/* Makes room for the largest part. */
+static stratus_status make_room(blocks* b)
+{
+  const size_t pixels = (size_t)b->image->width * (size_t)b->image->height;
+  void* memory = NULL;
+  TRY(stratus_allocate(b->context, pixels, 4 * sizeof(float), &memory));
+  b->part.rgba = memory;
+  TRY(stratus_allocate(b->context, pixels, sizeof(float), &memory));
+  b->ends = memory;
+  if (b->image->depth) {
+    TRY(stratus_allocate(b->context, pixels, sizeof(float), &memory));
+    b->part.depth = memory;
+  }
+  if (b->image->samples) {
+    TRY(stratus_allocate(b->context, pixels, sizeof(uint32_t), &memory));
+    b->part.samples = memory;
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
+  const stratus_image* image, stratus_ray_cast_report* reports)
+{
+  if (!inputs || !inputs[0].caster) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  blocks b = { .context = inputs[0].caster->context, .inputs = inputs, .count = count, .camera = camera, .image = image };
+  stratus_status status = STRATUS_OK;
+  void *boxes = NULL, *order = NULL;
+  stratus_block_eye eye;
+  double slack = 0.0;
+  if (count < 1) {
+    return stratus_fail(b.context, STRATUS_INVALID_ARGUMENT, "%d blocks, must be 1 or more", count);
+  }
+  if (count == 1) {
+    return stratus_ray_caster_render(inputs[0].caster, inputs[0].volume, inputs[0].transfer, camera, inputs[0].options, image, reports);
+  }
+  TRY(check(&b));
+  TRY(stratus_image_check(b.context, image));
+  TRY(stratus_camera_check(b.context, camera, image));
+  stratus_image_clear(image);
+  TRY_CLEANUP(stratus_allocate(b.context, (size_t)count, sizeof(stratus_block_box), &boxes));
+  TRY_CLEANUP(stratus_allocate(b.context, (size_t)count, sizeof(int), &order));
+  TRY_CLEANUP(measure(&b, boxes, &eye, &slack));
+  TRY_CLEANUP(stratus_block_order(b.context, boxes, count, &eye, slack, order, b.overlap));
+  TRY_CLEANUP(make_room(&b));
+  for (int i = 0; i < count; ++i) {
+    const int number = ((const int*)order)[i];
+    stratus_ray_cast_report report = { .expected_error = NAN, .tolerance_met = 1 };
+    status = draw_block(&b, number, &report);
+    if (status != STRATUS_OK) {
+      char message[sizeof b.context->message];
+      memcpy(message, b.context->message, sizeof message);
+      stratus_fail(b.context, status, "block %d: %.900s", number, message);
+      goto cleanup;
+    }
+    if (reports) {
+      reports[number] = report;
+    }
+  }
+  round_picture(image);
+cleanup:
+  stratus_release(b.context, boxes);
+  stratus_release(b.context, order);
+  stratus_release(b.context, b.part.rgba);
+  stratus_release(b.context, b.part.depth);
+  stratus_release(b.context, b.part.samples);
+  stratus_release(b.context, b.ends);
+  return status;
+}

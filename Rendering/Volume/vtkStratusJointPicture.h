@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One picture of several grids, for which the settings of one vtkStratusVolumeMapper hold. Private to the module.
+#ifndef vtkStratusJointPicture_h
+#define vtkStratusJointPicture_h
+
+#include "vtkStratusDisplay.h"
+#include "vtkStratusPicture.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkImageData;
+class vtkProp3D;
+class vtkRenderer;
+class vtkStratusVolumeMapper;
+class vtkWindow;
+
+class VTK_STRATUS_PRIVATE vtkStratusJointPicture
+{
+public:
+  using CastRays = std::function<bool(const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error)>;
+
+  // What is drawn: boxes are the grids that may show.
+  struct Scene {
+    vtkRenderer* Renderer = nullptr;
+    vtkProp3D* Prop = nullptr;
+    vtkStratusVolumeMapper* Settings = nullptr;
+    std::vector<vtkStratusPicture::Box> Boxes;
+    // Casts the rays. whole: it is the picture itself, not a part between peels. Returns false where it fails, with the reason in `error`,
+    // or where an abort ends it. Valid in this frame, even when the scene is gone.
+    CastRays Cast;
+    // What Cast() tells of the whole picture.
+    double Milliseconds = 0.0;
+    int Window[4] = { 0, 0, 0, 0 };
+  };
+
+  // As in vtkStratusDisplay.
+  bool Begin(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper, const std::string& lastError, std::string& error);
+  // Must follow Begin(). `error` stays empty where an abort ended the picture.
+  bool Render(Scene& scene, std::string& error);
+  // Returns nullptr where there is no picture, as after one that was refused.
+  vtkImageData* GetLastImage();
+  // Forgets how long a picture takes.
+  void ForgetTime() { this->FullMilliseconds = 0.0; }
+  void ReleaseGraphicsResources(vtkWindow* window) { this->Display.ReleaseGraphicsResources(window); }
+
+  // Whether another prop is drawn by this module and writes no depth, so that no ray ends at it.
+  static bool EndsNoRay(vtkProp* other);
+
+private:
+  double ChooseCoarseness(const Scene& scene) const;
+  void LearnTime(const Scene& scene);
+
+  vtkStratusDisplay Display;
+  vtkStratusPicture Picture;
+  bool HasPicture = false, HasSamples = false;
+  double FullMilliseconds = 0.0; // estimated time of an exact picture, 0: unknown
+  vtkMTimeType LearnedFor = 0;
+  CastRays CastPart; // of the frame
+  std::vector<float> Rgba, Depth, PartDepth;
+  std::vector<unsigned char> Bytes;
+  std::vector<uint32_t> Samples;
+  vtkSmartPointer<vtkImageData> LastImage;
+};
+
+#endif

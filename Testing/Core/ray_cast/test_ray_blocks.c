@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Volumes that were cut into blocks: the order against brute force along rays, and pictures against that of the whole volume. */
+#include "picture_case.h"
+
+#include "block_order.h"
+
+#define BLOCKS_MOST 64
+
+static picture whole, drawn;
+
+/* A volume's blocks, which share the layers of points at which they meet, or the borders of cells. */
+typedef struct cut {
+  stratus_volume volume[BLOCKS_MOST];
+  void* values[BLOCKS_MOST];
+  stratus_ray_caster* caster[BLOCKS_MOST];
+  int count;
+} cut;
+
+static void add_block(stratus_context* context, const picture_case* c, const int64_t lo[3], const int64_t hi[3], cut* b)
+{
+  const int64_t* n = c->volume.dimensions;
+  const size_t size = stratus_type_size(c->volume.type);
+  stratus_volume* block = &b->volume[b->count];
+  *block = c->volume;
+  for (int axis = 0; axis < 3; ++axis) { /* cells lo..hi-1 */
+    block->dimensions[axis] = hi[axis] - lo[axis] + (c->volume.cell_centered ? 0 : 1);
+    block->origin[axis] = c->volume.origin[axis] + c->volume.spacing[axis] * (double)lo[axis];
+  }
+  char* to = malloc((size_t)(block->dimensions[0] * block->dimensions[1] * block->dimensions[2]) * size);
+  b->values[b->count] = to;
+  for (int64_t z = lo[2]; z < lo[2] + block->dimensions[2]; ++z) {
+    for (int64_t y = lo[1]; y < lo[1] + block->dimensions[1]; ++y) {
+      const size_t row = (size_t)block->dimensions[0] * size;
+      memcpy(to, (const char*)c->values + (size_t)((z * n[1] + y) * n[0] + lo[0]) * size, row);
+      to += row;
+    }
+  }
+  block->values = b->values[b->count];
+  assert_int_equal(stratus_ray_caster_create(context, &b->caster[b->count]), STRATUS_OK);
+  ++b->count;
+}
+
+/* Cuts a box of cells in two at random places until there are as many blocks as wanted; `left` of them come of this box. */
+static void cut_box(
+  stratus_context* context, const picture_case* c, const int64_t lo[3], const int64_t hi[3], int left, uint32_t* random, cut* b)
+{
+  const int axis = (int)(case_random(random) % 3);
+  const int64_t cells = hi[axis] - lo[axis];
+  if (left <= 1 || cells < 2) {
+    add_block(context, c, lo, hi, b);
+    return;
+  }
+  int64_t middle[3] = { hi[0], hi[1], hi[2] }, start[3] = { lo[0], lo[1], lo[2] };
+  middle[axis] = start[axis] = lo[axis] + 1 + (int64_t)(case_random(random) % (uint32_t)(cells - 1));
+  cut_box(context, c, lo, middle, left / 2, random, b);
+  cut_box(context, c, start, hi, left - left / 2, random, b);
+}
+
+/* Four blocks that wind around a fifth, so that no plane parts all of them. */
+static void cut_wound(stratus_context* context, const picture_case* c, cut* b)
+{
+  static const double ends[5][6] = { { 0, .6, 0, .4, 0, 1 }, { .6, 1, 0, .7, 0, 1 }, { .3, 1, .7, 1, 0, 1 }, { 0, .3, .4, 1, 0, 1 },
+    { .3, .6, .4, .7, 0, 1 } };
+  for (int i = 0; i < 5; ++i) {
+    int64_t lo[3], hi[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double cells = (double)(c->volume.dimensions[axis] - (c->volume.cell_centered ? 0 : 1));
+      lo[axis] = (int64_t)(ends[i][2 * axis] * cells);
+      hi[axis] = (int64_t)(ends[i][2 * axis + 1] * cells);
+    }
+    add_block(context, c, lo, hi, b);
+  }
+}
+
+static void cut_at_random(stratus_context* context, const picture_case* c, int count, uint32_t seed, cut* b)
+{
+  const int64_t lo[3] = { 0, 0, 0 };
+  int64_t hi[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    hi[axis] = c->volume.dimensions[axis] - (c->volume.cell_centered ? 0 : 1);
+  }
+  cut_box(context, c, lo, hi, count, &seed, b);
+}
+
+static stratus_status draw_blocks(const picture_case* c, const cut* b, picture* p, stratus_ray_cast_report* reports)
+{
+  stratus_ray_cast_input inputs[BLOCKS_MOST];
+  for (int i = 0; i < b->count || i == 0; ++i) {
+    inputs[i] =
+      (stratus_ray_cast_input){ .caster = b->caster[i], .volume = &b->volume[i], .transfer = &c->transfer, .options = &c->options };
+  }
+  const stratus_image image = {
+    .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = p->rgba, .depth = p->depth, .samples = p->samples, .opaque_depth = c->opaque_depth
+  };
+  return stratus_ray_caster_render_blocks(inputs, b->count, &c->camera, &image, reports);
+}
+
+static void destroy_blocks(cut* b)
+{
+  for (int i = 0; i < b->count; ++i) {
+    stratus_ray_caster_destroy(b->caster[i]);
+    free(b->values[i]);
+  }
+  b->count = 0;
+}
+
+static float largest_difference(void)
+{
+  float largest = 0.0f;
+  for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
+    largest = fmaxf(largest, fabsf(whole.rgba[i] - drawn.rgba[i]));
+  }
+  return largest;
+}
+
+/* ---- order */
+
+/* Where a ray enters a box and leaves it; false if it misses it. */
+static bool meets(const stratus_block_box* box, const double from[3], const double along[3], double* enter, double* leave)
+{
+  *enter = 0.0;
+  *leave = INFINITY;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = (box->lo[axis] - from[axis]) / along[axis], z = (box->hi[axis] - from[axis]) / along[axis];
+    *enter = fmax(*enter, fmin(a, z));
+    *leave = fmin(*leave, fmax(a, z));
+  }
+  return *leave > *enter + 1e-9;
+}
+
+/* Boxes of cut volumes, some left out, from eyes outside and inside: along random rays no box comes after one that lies behind it. */
+static void no_ray_meets_boxes_in_another_order(void** state)
+{
+  uint64_t pairs = 0, wrong = 0;
+  for (uint32_t seed = 0; seed < 40; ++seed) {
+    uint32_t random = seed * 7919u + 1u;
+    stratus_block_box boxes[BLOCKS_MOST];
+    stratus_block_eye eye;
+    picture_case c;
+    cut b = { .count = 0 };
+    int order[BLOCKS_MOST], place[BLOCKS_MOST], overlap[2], count = 0;
+    case_create(*state, &c, STRATUS_UINT8, 30, 26, 34, seed);
+    if (seed % 4 == 0) {
+      cut_wound(*state, &c, &b);
+    } else {
+      cut_at_random(*state, &c, 2 + (int)(seed % 60), seed, &b);
+    }
+    for (int i = 0; i < b.count; ++i) {
+      if (case_random(&random) % 5 > 0 || seed % 4 == 0) {
+        for (int axis = 0; axis < 3; ++axis) {
+          boxes[count].lo[axis] = b.volume[i].origin[axis];
+          boxes[count].hi[axis] = b.volume[i].origin[axis] + (double)(b.volume[i].dimensions[axis] - 1);
+        }
+        ++count;
+      }
+    }
+    eye.parallel = seed % 3 == 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      eye.point[axis] = eye.parallel ? case_uniform(&random, -1, 1)
+        : seed % 5 == 1              ? case_uniform(&random, 0, 30)
+                                     : case_uniform(&random, -50, 80);
+    }
+    assert_int_equal(stratus_block_order(*state, boxes, count, &eye, 1e-6, order, overlap), STRATUS_OK);
+    assert_int_equal(overlap[0], -1);
+    for (int i = 0; i < count; ++i) {
+      place[order[i]] = i;
+    }
+    for (int ray = 0; ray < 400; ++ray) {
+      double from[3], along[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        from[axis] = eye.parallel ? case_uniform(&random, 0, 30) - 100.0 * eye.point[axis] : eye.point[axis];
+        along[axis] = eye.parallel ? eye.point[axis] : case_uniform(&random, 0, 30) - from[axis];
+      }
+      for (int i = 0; i < count; ++i) {
+        for (int j = 0; j < i; ++j) {
+          double enter[2], leave[2];
+          if (meets(&boxes[i], from, along, &enter[0], &leave[0]) && meets(&boxes[j], from, along, &enter[1], &leave[1])) {
+            ++pairs;
+            wrong += enter[0] + leave[0] < enter[1] + leave[1] ? place[i] > place[j] : place[i] < place[j];
+          }
+        }
+      }
+    }
+    destroy_blocks(&b);
+    case_destroy(&c);
+  }
+  print_message("             %llu pairs of boxes along rays, %llu wrong\n", (unsigned long long)pairs, (unsigned long long)wrong);
+  assert_true(pairs > 50000);
+  assert_int_equal(wrong, 0);
+}
+
+/* ---- pictures */
+
+/* A cut moves the samples next to it, but none of rule cells, which integrates each cell by itself. What is left is that each block's table
+ * has entries of its own, for it covers the block's values alone. */
+static void blocks_draw_the_whole(void** state)
+{
+  static const double most[] = {
+    [STRATUS_SAMPLING_MIDPOINT] = 1e-3, [STRATUS_SAMPLING_PREINTEGRATED] = 2e-3, [STRATUS_SAMPLING_CELLS] = 3e-4
+  };
+  float worst[4] = { 0 };
+  for (uint32_t seed = 0; seed < 24; ++seed) {
+    picture_case c;
+    cut b = { .count = 0 };
+    case_create(*state, &c, (stratus_type)(seed % 10), 30, 26, 34, seed);
+    c.volume.spacing[1] = 1.3;
+    c.volume.cell_centered = 0;
+    const double angle = 0.3 * seed, turn[4] = { cos(angle), -sin(angle), sin(angle), cos(angle) };
+    for (int i = 0; i < 4; ++i) { /* and mirrored */
+      c.volume.matrix[4 * (i / 2) + i % 2] = turn[i] * (i % 2 && seed % 2 ? -1.0 : 1.0);
+    }
+    c.options.sampling = (stratus_sampling)(STRATUS_SAMPLING_MIDPOINT + (int)(seed % 3));
+    c.options.cell_error = 1e-4; /* so that the tolerance, which differs, has no say */
+    case_camera(*state, &c, (int)(seed % 8), (int)(seed / 8 % 2));
+    if (seed % 6 == 5) { /* from inside */
+      for (int axis = 0; axis < 3; ++axis) {
+        c.camera.eye[axis] += c.camera.forward[axis] * 40.0;
+      }
+    }
+    if (seed % 4 == 0) {
+      cut_wound(*state, &c, &b);
+    } else {
+      cut_at_random(*state, &c, 40, seed, &b);
+    }
+    case_render(*state, &c, &whole);
+    assert_int_equal(draw_blocks(&c, &b, &drawn, NULL), STRATUS_OK);
+    const float d = largest_difference();
+    worst[c.options.sampling] = fmaxf(worst[c.options.sampling], d);
+    assert_true(case_lit(&whole) > CASE_PIXELS / 20);
+    if (!(d <= most[c.options.sampling])) {
+      fail_msg("seed %u, %s, %d blocks: %g", seed, stratus_sampling_name(c.options.sampling), b.count, (double)d);
+    }
+    for (int i = 0; i < CASE_PIXELS; ++i) {
+      assert_true(isfinite(whole.depth[i]) == isfinite(drawn.depth[i]) || fabsf(whole.rgba[4 * i + 3] - drawn.rgba[4 * i + 3]) < 1e-5f);
+    }
+    destroy_blocks(&b);
+    case_destroy(&c);
+  }
+  print_message("             most of 1: midpoint %.2g, pre-integrated %.2g, cells %.2g\n", (double)worst[STRATUS_SAMPLING_MIDPOINT],
+    (double)worst[STRATUS_SAMPLING_PREINTEGRATED], (double)worst[STRATUS_SAMPLING_CELLS]);
+}
+
+/* Surfaces and solid voxels are the same; light and gradient opacity are one-sided at cuts, and left out. */
+static void other_modes_draw_the_whole(void** state)
+{
+  static const stratus_mode modes[] = { STRATUS_MODE_FIRST_HIT, STRATUS_MODE_SLICE, STRATUS_MODE_ISOSURFACE };
+  for (uint32_t seed = 0; seed < 9; ++seed) {
+    picture_case c;
+    cut b = { .count = 0 };
+    int different = 0;
+    case_create(*state, &c, STRATUS_FLOAT32, 28, 31, 25, seed);
+    c.options.mode = modes[seed % 3];
+    c.options.slice = (stratus_slice){ .center = { 12.2, 13.1, 11.4 }, .linear = { 0.3, 0.5, -0.7 } };
+    c.options.contour_count = 1;
+    c.options.contours[0] = -19.5;
+    case_camera(*state, &c, (int)(seed % 8), (int)(seed % 2));
+    cut_at_random(*state, &c, 30, seed, &b);
+    case_render(*state, &c, &whole);
+    assert_int_equal(draw_blocks(&c, &b, &drawn, NULL), STRATUS_OK);
+    assert_true(case_lit(&whole) > CASE_PIXELS / 50);
+    for (int i = 0; i < CASE_PIXELS; ++i) { /* rays along a voxel's edge may take its neighbour */
+      float d = 0.0f;
+      for (int ch = 0; ch < 4; ++ch) {
+        d = fmaxf(d, fabsf(whole.rgba[4 * i + ch] - drawn.rgba[4 * i + ch]));
+      }
+      different += d > 1e-3f;
+    }
+    print_message(
+      "             %s: %d pixels of %d differ by more than .001\n", stratus_mode_name(c.options.mode), different, case_lit(&whole));
+    assert_true(different <= CASE_PIXELS / 500);
+    destroy_blocks(&b);
+    case_destroy(&c);
+  }
+}
+
+/* Rays end at opaque geometry, and blocks behind what is opaque cost nothing. */
+static void what_is_hidden_is_not_drawn(void** state)
+{
+  static float depth[CASE_PIXELS];
+  stratus_ray_cast_report reports[BLOCKS_MOST];
+  picture_case c;
+  cut b = { .count = 0 };
+  case_create(*state, &c, STRATUS_FLOAT32, 30, 26, 34, 3);
+  const double distance = sqrt(c.camera.eye[0] * c.camera.eye[0] + c.camera.eye[1] * c.camera.eye[1] + c.camera.eye[2] * c.camera.eye[2]);
+  c.camera.near_k = 0.1 * distance;
+  c.camera.far_k = 4.0 * distance;
+  cut_at_random(*state, &c, 40, 3, &b);
+  for (int i = 0; i < CASE_PIXELS; ++i) {
+    depth[i] = 0.85f + 0.1f * (float)(i % 7) / 7.0f;
+  }
+  c.opaque_depth = depth;
+  case_render(*state, &c, &whole);
+  assert_int_equal(draw_blocks(&c, &b, &drawn, reports), STRATUS_OK);
+  assert_true(case_lit(&whole) > CASE_PIXELS / 20);
+  assert_true(largest_difference() < 1e-3f);
+  c.opaque_depth = NULL;
+  case_render(*state, &c, &drawn);
+  assert_true(largest_difference() > 0.01f); /* the depths did end rays */
+
+  const double solid[8] = { -100, 1, -20, 1, -18, 1, 0, 1 };
+  uint64_t samples = 0, hidden = 0;
+  memcpy(c.opacity, solid, sizeof solid);
+  c.options.termination = 0.0;
+  c.transfer.color_count = 1; /* a sample that a cut moves has the same colour */
+  case_render(*state, &c, &whole);
+  assert_int_equal(draw_blocks(&c, &b, &drawn, reports), STRATUS_OK);
+  assert_true(largest_difference() < 1e-3f);
+  for (int i = 0; i < b.count; ++i) {
+    samples += reports[i].samples;
+    hidden += strstr(reports[i].why, "not drawn") != NULL;
+  }
+  print_message("             %llu samples for the whole, %llu for the blocks, %llu of %d blocks hidden\n",
+    (unsigned long long)whole.report.samples, (unsigned long long)samples, (unsigned long long)hidden, b.count);
+  assert_true(samples <= 2 * whole.report.samples + CASE_PIXELS);
+  assert_true(hidden > 0);
+  destroy_blocks(&b);
+  case_destroy(&c);
+}
+
+static void what_is_no_cut_volume_is_told(void** state)
+{
+  stratus_ray_cast_report reports[BLOCKS_MOST];
+  picture_case c;
+  cut b = { .count = 0 };
+  case_create(*state, &c, STRATUS_UINT8, 20, 20, 20, 1);
+  cut_at_random(*state, &c, 4, 1, &b);
+  c.options.mode = STRATUS_MODE_MAXIMUM;
+  assert_int_equal(draw_blocks(&c, &b, &drawn, NULL), STRATUS_UNSUPPORTED);
+  assert_non_null(strstr(stratus_context_message(*state), "block 0 of 4 has mode maximum"));
+  c.options.mode = STRATUS_MODE_COMPOSITE;
+  b.volume[2].dimensions[1] = 0;
+  assert_int_not_equal(draw_blocks(&c, &b, &drawn, NULL), STRATUS_OK);
+  b.volume[2] = b.volume[1];
+  assert_int_equal(draw_blocks(&c, &b, &drawn, reports), STRATUS_OK);
+  assert_non_null(strstr(reports[1].why, "overlaps block 2"));
+  assert_non_null(strstr(reports[2].why, "overlaps block 1"));
+  stratus_ray_caster* kept = b.caster[3];
+  b.caster[3] = NULL;
+  assert_int_equal(draw_blocks(&c, &b, &drawn, NULL), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(*state), "block 3 has no ray caster"));
+  b.caster[3] = kept;
+  const int count = b.count;
+  b.count = 0;
+  assert_int_equal(draw_blocks(&c, &b, &drawn, NULL), STRATUS_INVALID_ARGUMENT);
+  b.count = count;
+  destroy_blocks(&b);
+  case_destroy(&c);
+}
+
+int test_ray_blocks(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(no_ray_meets_boxes_in_another_order),
+    cmocka_unit_test(blocks_draw_the_whole),
+    cmocka_unit_test(other_modes_draw_the_whole),
+    cmocka_unit_test(what_is_hidden_is_not_drawn),
+    cmocka_unit_test(what_is_no_cut_volume_is_told),
+  };
+  return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
+}
