@@ -2,22 +2,29 @@
  * Which sampling rules can draw a scene, and what the user leaves open. */
 #include "ray_sampling.h"
 
+#include "matrix.h"
 #include "ray_caster.h"
+#include "vector.h"
 
-/* Axes without extent limit the voxel length only if they are this many times shorter than the others. The limit bounds the length of a
- * sample along them. */
-#define FLAT_SHORTER 1000.0
+/* The length crosses at most this many layers of voxels of any axis: of axes without extent, and of layers that shear has brought together.
+ * The longest automatic step is four lengths, and ray_frame.c refuses steps that cross more than 4096 layers. */
+#define LAYERS_MOST 1000.0
 
 double stratus_ray_voxel_length(const stratus_volume* volume)
 {
-  double m[16], shortest = INFINITY, flat = INFINITY;
+  double m[16], inverse[16], shortest = INFINITY, thinnest = INFINITY;
   stratus_volume_index_to_world(volume, m);
   for (int axis = 0; axis < 3; ++axis) {
     const double length = sqrt(m[axis] * m[axis] + m[4 + axis] * m[4 + axis] + m[8 + axis] * m[8 + axis]);
-    double* least = volume->dimensions[axis] > 1 || volume->cell_centered ? &shortest : &flat;
-    *least = length < *least ? length : *least;
+    const bool extends = volume->dimensions[axis] > 1 || volume->cell_centered;
+    shortest = extends && length < shortest ? length : shortest;
   }
-  return fmin(shortest, FLAT_SHORTER * flat);
+  if (stratus_matrix_invert_affine(m, inverse)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      thinnest = fmin(thinnest, 1.0 / sqrt(stratus_vector_dot(inverse + 4 * axis, inverse + 4 * axis)));
+    }
+  }
+  return fmin(shortest, LAYERS_MOST * thinnest);
 }
 
 /* Whether gradient opacity multiplies opacities, which vary within a segment. */

@@ -39,7 +39,8 @@ static inline bool stratus_ray_visits_cells(stratus_sampling sampling)
 }
 /* Whether a rule can draw the scene at all. */
 bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling);
-double stratus_ray_voxel_length(
-  const stratus_volume* volume); /* world length of a voxel's shortest edge, among the axes along which the volume extends */
+/* Returns the world length of a voxel's shortest edge, among the axes along which the volume extends; less where that would cross a
+ * thousand layers of voxels. */
+double stratus_ray_voxel_length(const stratus_volume* volume);
 
 #endif

@@ -210,12 +210,53 @@ static void steps_in_a_dense_medium_are_short(void** state)
   random_scene_destroy(&s);
 }
 
+/* Automatic steps stay within what rays allow where layers of voxels lie close: along an axis of one value, and sheared. */
+static void steps_across_thin_layers_are_drawn(void** state)
+{
+  (void)state;
+  static const int64_t dimensions[][3] = { { 1, 1, 1 }, { 6, 6, 1 }, { 1, 6, 6 }, { 6, 6, 6 } };
+  static const double shears[] = { 0.0, 1.5, 40.0, 3000.0 }, colors[] = { 0.0, 1.0, 1.0, 1.0 };
+  static const double opacity[] = { 0.0, 0.1, 1.0, 0.2 };
+  static float rgba[4 * PIXELS], values[6 * 6 * 6];
+  for (int i = 0; i < 216; ++i) {
+    values[i] = (float)(i % 7) / 6.0f;
+  }
+  stratus_context* context = NULL;
+  assert_int_equal(stratus_context_create(NULL, &context, NULL, 0), STRATUS_OK);
+  for (int n = 0; n < 4 * 4 * 2; ++n) {
+    random_scene s = { .volume = stratus_volume_default(), .transfer = stratus_transfer_default() };
+    stratus_ray_cast_options options = stratus_ray_cast_options_default();
+    stratus_ray_cast_report report;
+    stratus_ray_caster* caster = NULL;
+    memcpy(s.volume.dimensions, dimensions[n % 4], sizeof s.volume.dimensions);
+    s.volume.values = values;
+    s.transfer.opacity = opacity;
+    s.transfer.opacity_count = 2;
+    s.transfer.color = colors;
+    s.transfer.color_count = 1;
+    s.volume.matrix[1] = s.volume.matrix[2] = shears[n / 4 % 4];
+    s.volume.spacing[2] = n < 16 ? 1.0 : 1e-4;
+    double bounds[6];
+    assert_int_equal(stratus_volume_bounds(context, &s.volume, bounds), STRATUS_OK);
+    const double focal[3] = { 0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[2] + bounds[3]), 0.5 * (bounds[4] + bounds[5]) };
+    const double eye[3] = { focal[0] + 30.0, focal[1] + 20.0, focal[2] + 10.0 }, up[3] = { 0.0, 0.0, 1.0 };
+    assert_int_equal(stratus_camera_perspective(context, eye, focal, up, 30.0, 1.0, &s.camera), STRATUS_OK);
+    assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+    draw(context, caster, &s, &options, rgba, &report);
+    const double layers = report.sample_distance * sqrt(1.0 + 2.0 * shears[n / 4 % 4] * shears[n / 4 % 4]); /* of x */
+    assert_true(report.sample_distance > 0.0 && layers <= 4096.0);
+    stratus_ray_caster_destroy(caster);
+  }
+  stratus_context_destroy(context);
+}
+
 int test_ray_tolerance(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(random_scenes_keep_the_tolerance),
     cmocka_unit_test(a_probe_comes_with_data_function_and_tolerance_alone),
     cmocka_unit_test(steps_in_a_dense_medium_are_short),
+    cmocka_unit_test(steps_across_thin_layers_are_drawn),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
