@@ -36,6 +36,9 @@ uniform sampler2D depths;
 #endif
 uniform vec2 scaleBias; // final colour window and level
 uniform vec2 in_inverseWindowSize;
+#ifdef FRONT
+uniform sampler2D soFar; // colours in front of the peels, with the volumes that were drawn between them
+#endif
 const float g_opacityThreshold = 1.0;
 //VTK::DepthPeeling::Dec
 void initializeRayCast() {}
@@ -63,14 +66,21 @@ vec4 castRay(const float zStart, const float zEnd)
 void main()
 {
 //VTK::CallWorker::Impl
+#ifdef FRONT
+  vec4 front = texture(lastFrontColorTex, gl_FragCoord.xy * in_inverseWindowSize);
+  vec4 now = texture(soFar, gl_FragCoord.xy * in_inverseWindowSize);
+  vec4 added = gl_FragData[1] - front; // this volume's colour, by the share of light that the colours in front let through
+  float alpha = front.a < 1.0 ? added.a / (1.0 - front.a) : 0.0;
+  gl_FragData[1] = now + added - alpha * (now - front);
+#endif
 #ifdef DEPTHS
   gl_FragData[0] = texCoord.x < -1.0 ? vec4(0.0) : ranges; // never: the quad wants its coordinates read
 #endif
 }
 )";
 // The uniforms that the pass declares are the only sign of its stage.
-const char* const FrontOfPeels = "lastFrontColorTex"; // while it peels: the colours in front, from the peels so far
-const char* const RestOfPeels = "depthRangeTex";      // after the last peel
+const char* const FrontOfPeels = "uniform sampler2D lastFrontColorTex"; // while it peels: the colours in front, from the peels so far
+const char* const RestOfPeels = "uniform sampler2D depthRangeTex";      // after the last peel
 
 bool Declares(const std::string& shader, const char* uniform)
 {
@@ -141,9 +151,9 @@ vtkStratusPeels::Draw vtkStratusPeels::Begin(vtkProp* prop, vtkAbstractMapper* m
   return Declares(this->Shader, FrontOfPeels) || Declares(this->Shader, RestOfPeels) ? LATER : FIRST;
 }
 
-// Copies the colours in front of the peels. The pass's code puts castRay()'s colour under the colours of a texture, and the pass would
-// blend the results of several volumes by their maximum. To composite volumes over one another, that texture must hold what the previous
-// volume has left in the buffer, so it is a copy of the buffer.
+// Copies the colours that the previous volumes have left in front of the peels. The pass's code puts castRay()'s colour under the colours
+// of before all volumes, and the pass would blend the results of several volumes by their maximum. The shader puts each volume over those
+// before it, as in the other ranges of depth, where the frame buffer blends.
 bool vtkStratusPeels::CopyFront(vtkOpenGLRenderWindow* window, const int size[2])
 {
   const unsigned int width = static_cast<unsigned int>(size[0]), height = static_cast<unsigned int>(size[1]);
@@ -168,10 +178,11 @@ bool vtkStratusPeels::CopyFront(vtkOpenGLRenderWindow* window, const int size[2]
 // Returns a quad whose program is ready and has the pass's parameters, or nullptr.
 vtkOpenGLQuadHelper* vtkStratusPeels::PrepareQuad(vtkOpenGLRenderWindow* window, Kind kind)
 {
-  std::string shader = this->Shader;
-  if (kind != WHOLE) { // the #version replaces the first line, and a #define must follow it
-    shader.insert(shader.find('\n') + 1, kind == DEPTHS ? "#define DEPTHS\n" : "#define PARTS\n");
+  std::string shader = this->Shader, defines = kind == DEPTHS ? "#define DEPTHS\n" : kind == PARTS ? "#define PARTS\n" : "";
+  if (kind != DEPTHS && Declares(shader, FrontOfPeels)) {
+    defines += "#define FRONT\n";
   }
+  shader.insert(shader.find('\n') + 1, defines); // the #version replaces the first line, and a #define must follow it
   std::unique_ptr<vtkOpenGLQuadHelper>& quad = this->Quads[shader];
   if (!quad) {
     quad.reset(new vtkOpenGLQuadHelper(window, nullptr, shader.c_str(), ""));
@@ -308,7 +319,7 @@ bool vtkStratusPeels::Render(vtkOpenGLRenderWindow* window, const Picture& pictu
   quad->Program->SetUniform2f("scaleBias", scaleBias);
   quad->Program->SetUniform2f("in_inverseWindowSize", inverseSize);
   if (peels) {
-    quad->Program->SetUniformi(FrontOfPeels, this->Front->GetTextureUnit());
+    quad->Program->SetUniformi("soFar", this->Front->GetTextureUnit());
     glDisablei(GL_BLEND, 1); // the shader's second output already includes the colours in front
   }
   quad->Render();

@@ -316,9 +316,9 @@ void ManySheets(bool parallel)
   }
 }
 
-// Two volumes, one before the other, in either order, a sheet between them and others around: neither ends the other's rays, whatever the
-// samples.
-void TwoVolumes(bool shared)
+// Two volumes, one before the other, in either order: neither ends the other's rays, whatever the samples. A sheet lies between them and
+// others around; or both lie between the same two, which are the foremost of four, the middle ones, or the hindmost.
+void TwoVolumes(bool shared, const std::vector<double>& around = {})
 {
   for (int samples : { 0, 4 }) {
     for (double z : { 30.0, -30.0 }) {
@@ -333,7 +333,7 @@ void TwoVolumes(bool shared)
       scene.Renderer->AddVolume(other);
       Sheets sheets;
       int n = 0;
-      for (double at : { 62.0, z > 0 ? 28.0 : -1.0, -33.0 }) {
+      for (double at : around.empty() ? std::vector<double>{ 62.0, z > 0 ? 28.0 : -1.0, -33.0 } : around) {
         sheets.emplace_back(new Sheet(scene, at, n == 1 ? 100 : 10 + 5 * n, n == 0, n == 1, n == 2, 0.3));
         ++n;
       }
@@ -463,6 +463,9 @@ int main()
   ManySheets(true);
   TwoVolumes(false);
   TwoVolumes(true);
+  TwoVolumes(false, { 62.0, -34.0, -36.0, -38.0 });
+  TwoVolumes(false, { 66.0, 62.0, -34.0, -36.0 });
+  TwoVolumes(false, { 70.0, 66.0, 62.0, -34.0 });
   OtherPictures();
   Tetrahedra();
   Fog();
