@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * First-hit pictures: batches of camera rays find their first effective voxel, which is then shaded.
  *
- * Rays are in index coordinates; the camera's k is the ray parameter t. The tree or the walk yields only the voxel. Entry point and colour
- * are computed from ray and voxel, so that every structure gives the same picture. */
+ * Rays are in index coordinates, of the mean spacing where it changes; the camera's k is the ray parameter t. The tree or the walk yields
+ * only the voxel. Entry point and colour are computed from ray and voxel, so that every structure gives the same picture. */
 #include "first_hit_picture.h"
 
 #include "camera.h"
+#include "first_hit_stretched_rays.h"
 #include "lights.h"
 #include "matrix.h"
 #include "picture.h"
@@ -209,13 +210,15 @@ static stratus_status draw_batch(
   if (count == 0) {
     return STRATUS_OK;
   }
-  if (frame->scene.tree) {
+  if (frame->scene.tree && frame->scene.borders) {
+    TRY(stratus_tree_first_voxels_between(context, frame->scene.tree, frame->scene.borders, frame->rays, count, frame->hits));
+  } else if (frame->scene.tree) {
     TRY(stratus_tree_first_hit(context, frame->scene.tree, frame->rays, count, frame->hits));
   } else {
-    TRY(stratus_voxels_first_hit(context, frame->scene.voxels, frame->rays, count, frame->hits));
+    TRY(stratus_voxels_first_hit_between(context, frame->scene.voxels, frame->scene.borders, frame->rays, count, frame->hits));
   }
   if (frame->plain_hits) {
-    TRY(stratus_voxels_first_hit(context, frame->scene.voxels, frame->rays, count, frame->plain_hits));
+    TRY(stratus_voxels_first_hit_between(context, frame->scene.voxels, frame->scene.borders, frame->rays, count, frame->plain_hits));
   }
   shade_batch(context, frame, count, report);
   return STRATUS_OK;
@@ -265,7 +268,10 @@ static void set_limits(const stratus_volume* volume, const double index_to_world
 {
   const double half = volume->cell_centered ? 0.5 : 0.0;
   for (int side = 0; side < 6; ++side) {
-    frame->crop[side] = (frame->options->crop_bounds[side] - volume->origin[side / 2]) / volume->spacing[side / 2] - half;
+    const double spacing = stratus_volume_spacing(volume, side / 2);
+    const double begin = volume->origin[side / 2] + stratus_volume_begin(volume, side / 2);
+    const int from = spacing < 0.0 ? side ^ 1 : side; /* falling coordinates turn the sides round */
+    frame->crop[side] = (frame->options->crop_bounds[from] - begin) / spacing - half;
   }
   for (int p = 0; p < frame->options->clip_plane_count; ++p) {
     const double* plane = frame->options->clip_planes[p];
@@ -288,38 +294,31 @@ static void set_window(first_hit_frame* frame)
   }
 }
 
-stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+static stratus_status render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_voxel_borders* borders, first_hit_frame* frame, stratus_ray_cast_report* report)
 {
   stratus_context* context = caster->context;
-  first_hit_frame frame = { .options = options, .image = image, .camera = camera };
+  const stratus_camera* camera = frame->camera;
+  const stratus_ray_cast_options* options = frame->options;
   double index_to_world[16], world_to_index[16];
-  TRY(stratus_camera_check(context, camera, image));
-  if (stratus_volume_is_stretched(volume)) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED,
-      "first hits of a volume with coordinates (a rectilinear grid): they know boxes of equal spacing only; isosurface draws it");
-  }
-  if (options->shading.on) {
-    TRY(stratus_shading_check(context, &options->shading));
-  }
   stratus_volume_index_to_world(volume, index_to_world);
   if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the volume's matrix has no inverse");
   }
-  TRY(stratus_first_hit_update(caster, volume, transfer, options->structure, options->audit != 0, &frame.scene, report));
+  TRY(stratus_first_hit_update(caster, volume, transfer, borders, options->structure, options->audit != 0, &frame->scene, report));
   const double start = stratus_now_ms();
-  stratus_matrix_point(world_to_index, camera->eye, frame.eye);
-  stratus_matrix_vector(world_to_index, camera->forward, frame.forward);
-  stratus_matrix_vector(world_to_index, camera->right, frame.right);
-  stratus_matrix_vector(world_to_index, camera->up, frame.up);
-  set_limits(volume, index_to_world, &frame);
-  set_window(&frame);
-  stratus_shader_set(&frame.shader, volume, transfer, camera, options, index_to_world, world_to_index);
-  stratus_image_clear(image);
-  TRY(draw(context, &frame, report));
+  stratus_matrix_point(world_to_index, camera->eye, frame->eye);
+  stratus_matrix_vector(world_to_index, camera->forward, frame->forward);
+  stratus_matrix_vector(world_to_index, camera->right, frame->right);
+  stratus_matrix_vector(world_to_index, camera->up, frame->up);
+  set_limits(volume, index_to_world, frame);
+  set_window(frame);
+  stratus_shader_set(&frame->shader, volume, borders, transfer, camera, options, index_to_world, world_to_index);
+  stratus_image_clear(frame->image);
+  TRY(draw(context, frame, report));
   const int64_t* n = volume->dimensions;
   report->blocks = (uint64_t)((n[0] + 3) / 4) * (uint64_t)((n[1] + 3) / 4) * (uint64_t)((n[2] + 3) / 4);
-  memcpy(report->window, frame.window, sizeof report->window);
+  memcpy(report->window, frame->window, sizeof report->window);
   report->occupancy_builds = caster->occupancy_builds;
   report->structure_builds = caster->structure_builds;
   report->range_builds = caster->range_builds;
@@ -327,4 +326,24 @@ stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratu
   report->uploads = caster->uploads;
   report->cast_ms = stratus_now_ms() - start;
   return STRATUS_OK;
+}
+
+stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+{
+  stratus_context* context = caster->context;
+  first_hit_frame frame = { .options = options, .image = image, .camera = camera };
+  stratus_voxel_borders borders;
+  void* memory = NULL;
+  const bool stretched = stratus_volume_is_stretched(volume);
+  TRY(stratus_camera_check(context, camera, image));
+  if (options->shading.on) {
+    TRY(stratus_shading_check(context, &options->shading));
+  }
+  if (stretched) {
+    TRY(stratus_first_hit_borders(context, volume, &borders, &memory));
+  }
+  const stratus_status status = render(caster, volume, transfer, stretched ? &borders : NULL, &frame, report);
+  stratus_release(context, memory);
+  return status;
 }

@@ -6,6 +6,7 @@
 
 #include "ray_caster.h"
 #include "tree.h"
+#include "voxels.h"
 
 /* Voxels and tree lie in index coordinates, voxel (i,j,k) centred at (i,j,k), so that a change of geometry does not make them stale. */
 struct stratus_first_hit {
@@ -30,11 +31,19 @@ typedef struct stratus_first_hit_scene {
   const stratus_voxels* voxels; /* may be NULL while an offered tree serves */
   double lo[3], hi[3];          /* bounds of all effective voxels, index coordinates; lo > hi: there is none */
   stratus_structure used;
+  const stratus_voxel_borders* borders; /* NULL: the volume has no coordinates */
 } stratus_first_hit_scene;
 
-/* first_hit_scene.c: rebuilds only what changed. plain: scene->voxels is needed even if an offered tree serves. */
+/* first_hit_scene.c: finds where voxels begin along axes that have coordinates: values in the middle between neighbours, cells at their
+ * first coordinate. The caller releases *memory. */
+stratus_status stratus_first_hit_borders(
+  stratus_context* context, const stratus_volume* volume, stratus_voxel_borders* borders, void** memory);
+
+/* Rebuilds only what changed. borders: NULL if the volume has no coordinates. plain: scene->voxels is needed even if an offered tree
+ * serves. */
 stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  stratus_structure structure, bool plain, stratus_first_hit_scene* scene, stratus_ray_cast_report* report);
+  const stratus_voxel_borders* borders, stratus_structure structure, bool plain, stratus_first_hit_scene* scene,
+  stratus_ray_cast_report* report);
 
 /* The surface at which a ray begins. A voxel that it cuts open takes its normal. */
 enum {
@@ -53,7 +62,8 @@ typedef struct stratus_shader {
   const stratus_volume* volume;
   const stratus_transfer* transfer;
   const stratus_ray_cast_options* options;
-  double bias; /* stratus_volume_bias() */
+  const stratus_voxel_borders* borders; /* NULL: the volume has no coordinates */
+  double bias;                          /* stratus_volume_bias() */
   double index_to_world[16], world_to_index[16];
   double face[3][3];                        /* world normal of a voxel's upper face along each index axis */
   double plane[STRATUS_CLIP_PLANES_MAX][3]; /* world normals, pointing away from the kept side */
@@ -61,9 +71,10 @@ typedef struct stratus_shader {
   int light_count;
 } stratus_shader;
 
-/* first_hit_shading.c */
-void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_camera* camera, const stratus_ray_cast_options* options, const double index_to_world[16], const double world_to_index[16]);
+/* first_hit_shading.c; borders: as in stratus_shader */
+void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_voxel_borders* borders,
+  const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const double index_to_world[16],
+  const double world_to_index[16]);
 /* Computes colour (alpha 1) and world distance of a hit from ray and voxel alone, so that every structure gives the same bits. */
 void stratus_shader_apply(
   const stratus_shader* shader, const stratus_ray* ray, uint32_t cut, const int32_t voxel[3], float rgba[4], float* depth);

@@ -83,10 +83,52 @@ static stratus_volume in_index_coordinates(const stratus_volume* volume)
   for (int axis = 0; axis < 3; ++axis) {
     plain.origin[axis] = volume->cell_centered ? -0.5 : 0.0;
     plain.spacing[axis] = 1.0;
+    plain.coordinates[axis] = NULL;
   }
   memcpy(plain.direction, defaults.direction, sizeof plain.direction);
   memcpy(plain.matrix, defaults.matrix, sizeof plain.matrix);
   return plain;
+}
+
+/* ---- borders */
+
+/* Sets the borders of n voxels, at[-1] .. at[STRATUS_BORDERS_BEYOND(n)]. x: coordinates of n values, or of n + 1 borders of cells. */
+static void set_borders(const double* x, int64_t n, bool cells, double* at)
+{
+  const double whole = cells ? (double)n : (double)(n - 1), per_unit = whole / (x[cells ? n : n - 1] - x[0]);
+  for (int64_t i = 0; i <= n; ++i) {
+    const int64_t below = i > 0 ? i - 1 : 0, above = i < n ? i : n - 1;
+    const double middle = 0.5 * ((x[below] - x[0]) + (x[above] - x[0]));
+    const double outwards = i == 0 ? 0.5 * (x[0] - x[1])
+      : i == n                     ? 0.5 * (x[n - 1] - x[n - 2])
+                                   : 0.0; /* the ends reach as far as inwards */
+    at[i] = cells ? (x[i] - x[0]) * per_unit : (middle + outwards) * per_unit + 0.5;
+  }
+  at[-1] = at[0] - 1.0;
+  for (int64_t i = n + 1; i <= STRATUS_BORDERS_BEYOND(n); ++i) {
+    at[i] = at[i - 1] + 1.0;
+  }
+}
+
+stratus_status stratus_first_hit_borders(
+  stratus_context* context, const stratus_volume* volume, stratus_voxel_borders* borders, void** memory)
+{
+  const int64_t* n = volume->dimensions;
+  size_t count = 0;
+  *borders = (stratus_voxel_borders){ { NULL, NULL, NULL } };
+  for (int axis = 0; axis < 3; ++axis) {
+    count += (size_t)STRATUS_BORDERS_BEYOND(n[axis]) + 2;
+  }
+  TRY(stratus_allocate(context, count, sizeof(double), memory));
+  double* at = *memory;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (volume->coordinates[axis]) {
+      set_borders(volume->coordinates[axis], n[axis], volume->cell_centered != 0, at + 1);
+      borders->at[axis] = at + 1;
+    }
+    at += STRATUS_BORDERS_BEYOND(n[axis]) + 2;
+  }
+  return STRATUS_OK;
 }
 
 /* ---- building */
@@ -135,9 +177,20 @@ static void bounds_of(const stratus_tree* tree, const stratus_voxels* voxels, st
     }
   }
   for (int axis = 0; axis < 3; ++axis) { /* an empty box becomes reversed: lo > hi */
-    scene->lo[axis] = (double)lo[axis] - 0.5;
-    scene->hi[axis] = lo[axis] < hi[axis] ? (double)hi[axis] - 0.5 : -1.0;
+    const bool any = lo[axis] < hi[axis];
+    scene->lo[axis] = any ? stratus_voxel_border(scene->borders, axis, lo[axis]) - 0.5 : -0.5;
+    scene->hi[axis] = any ? stratus_voxel_border(scene->borders, axis, hi[axis]) - 0.5 : -1.0;
   }
+}
+
+/* Why a structure is used, in words. */
+static const char* reason_of(const stratus_first_hit_scene* scene, stratus_structure wanted, bool offered)
+{
+  const bool other = scene->borders && wanted == STRATUS_STRUCTURE_HYBRID;
+  return offered                       ? "that comes with the data"
+    : other                            ? "for the spacing changes"
+    : wanted == STRATUS_STRUCTURE_AUTO ? "by default"
+                                       : "as asked";
 }
 
 static void tell(const stratus_first_hit_scene* scene, stratus_structure wanted, bool offered, stratus_ray_cast_report* report)
@@ -153,14 +206,12 @@ static void tell(const stratus_first_hit_scene* scene, stratus_structure wanted,
     report->occupied_blocks = (uint64_t)scene->voxels->brick_count;
   }
   snprintf(report->why, sizeof report->why, "first hits, %s %s%s%.150s", stratus_structure_name(scene->used),
-    offered                              ? "that comes with the data"
-      : wanted == STRATUS_STRUCTURE_AUTO ? "by default"
-                                         : "as asked",
-    statistics.why[0] ? ": " : "", statistics.why);
+    reason_of(scene, wanted, offered), statistics.why[0] ? ": " : "", statistics.why);
 }
 
 stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  stratus_structure structure, bool plain, stratus_first_hit_scene* scene, stratus_ray_cast_report* report)
+  const stratus_voxel_borders* borders, stratus_structure structure, bool plain, stratus_first_hit_scene* scene,
+  stratus_ray_cast_report* report)
 {
   static const stratus_tree_method methods[] = { [STRATUS_STRUCTURE_AUTO] = STRATUS_TREE_AUTO,
     [STRATUS_STRUCTURE_BLOCK] = STRATUS_TREE_DISTANCE,
@@ -176,7 +227,12 @@ stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratu
   struct stratus_first_hit* kept = caster->first_hit;
   criterion.transfer = transfer;
   memset(scene, 0, sizeof *scene);
+  scene->borders = borders;
   scene->used = structure == STRATUS_STRUCTURE_AUTO ? STRATUS_STRUCTURE_HYBRID : structure;
+  if (borders && scene->used == STRATUS_STRUCTURE_HYBRID) { /* rays among voxels of any widths know one field */
+    scene->used = STRATUS_STRUCTURE_OCTANT;
+  }
+  const stratus_tree_method method = methods[borders ? scene->used : structure];
   if (scene->used == STRATUS_STRUCTURE_HYBRID) {
     TRY(stratus_ray_tree_serves_first_hits(caster, &in_index, &criterion, &offered, &report->structure_ms));
   }
@@ -187,7 +243,7 @@ stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratu
   if (offered) {
     scene->tree = caster->offered;
   } else if (scene->used != STRATUS_STRUCTURE_NONE) {
-    TRY(update_tree(caster, methods[structure], report));
+    TRY(update_tree(caster, method, report));
     scene->tree = kept->tree;
     if (structure == STRATUS_STRUCTURE_AUTO && scene->tree->statistics.method == STRATUS_TREE_OCTANT) {
       scene->used = STRATUS_STRUCTURE_OCTANT;

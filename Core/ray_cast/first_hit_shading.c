@@ -30,11 +30,13 @@ static void set_lights(stratus_shader* shader, const stratus_camera* camera, con
   }
 }
 
-void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_camera* camera, const stratus_ray_cast_options* options, const double index_to_world[16], const double world_to_index[16])
+void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_voxel_borders* borders,
+  const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const double index_to_world[16],
+  const double world_to_index[16])
 {
   memset(shader, 0, sizeof *shader);
   shader->volume = volume;
+  shader->borders = borders;
   shader->transfer = transfer;
   shader->options = options;
   shader->bias = stratus_volume_bias(volume);
@@ -86,25 +88,40 @@ static double value_at(const stratus_shader* shader, const int64_t at[3])
 
 /* ---- normals: outward, in world coordinates, of length 1 */
 
-/* Computes the normal by central differences, one-sided where a neighbour is missing or not finite. Returns false if the gradient is 0. */
+/* Returns the distance from a value to the next one along an axis, in mean spacings. */
+static double step_from(const stratus_volume* volume, int axis, int64_t at)
+{
+  const double* x = volume->coordinates[axis];
+  const double step = !x ? 1.0 : volume->cell_centered ? 0.5 * (x[at + 2] - x[at]) : x[at + 1] - x[at];
+  return x ? step / stratus_volume_spacing(volume, axis) : step;
+}
+
+/* Returns the slope along an axis at a value: of the line to the only neighbour, or of the parabola through both. NAN: no neighbour. */
+static double slope_at(const stratus_volume* volume, int axis, int64_t at, double below, double value, double above)
+{
+  if (!volume->coordinates[axis]) {
+    const int apart = isfinite(below) + isfinite(above);
+    return apart ? ((isfinite(above) ? above : value) - (isfinite(below) ? below : value)) / apart : 0.0;
+  }
+  const double back = isfinite(below) ? step_from(volume, axis, at - 1) : 0.0, ahead = isfinite(above) ? step_from(volume, axis, at) : 0.0;
+  const double left = back > 0.0 ? (value - below) / back : 0.0, right = ahead > 0.0 ? (above - value) / ahead : 0.0;
+  return back > 0.0 && ahead > 0.0 ? (left * ahead + right * back) / (back + ahead) : left + right;
+}
+
+/* Computes the normal by differences, one-sided where a neighbour is missing or not finite. Returns false if the gradient is 0. */
 static bool gradient_normal(const stratus_shader* shader, const int32_t voxel[3], const double direction[3], double normal[3])
 {
   const int64_t here[3] = { voxel[0], voxel[1], voxel[2] };
   const double value = value_at(shader, here);
   double world[3] = { 0.0, 0.0, 0.0 };
   for (int axis = 0; axis < 3; ++axis) {
-    double side[2] = { value, value };
-    int apart = 0;
+    double side[2];
     for (int s = 0; s < 2; ++s) {
       int64_t at[3] = { here[0], here[1], here[2] };
       at[axis] += s ? 1 : -1;
-      const double there = at[axis] >= 0 && at[axis] < shader->volume->dimensions[axis] ? value_at(shader, at) : NAN;
-      if (isfinite(there)) {
-        side[s] = there;
-        ++apart;
-      }
+      side[s] = at[axis] >= 0 && at[axis] < shader->volume->dimensions[axis] ? value_at(shader, at) : NAN;
     }
-    const double slope = apart ? (side[1] - side[0]) / apart : 0.0;
+    const double slope = slope_at(shader->volume, axis, here[axis], side[0], value, side[1]);
     for (int row = 0; row < 3; ++row) {
       world[row] += slope * shader->world_to_index[4 * axis + row];
     }
@@ -129,14 +146,14 @@ static void cut_normal(const stratus_shader* shader, uint32_t cut, const double 
 }
 
 /* Returns t where the ray enters the voxel. *face: 2*axis + upper, or -1 if the ray begins inside. */
-static double entry(const stratus_ray* ray, const int32_t voxel[3], int* face)
+static double entry(const stratus_voxel_borders* borders, const stratus_ray* ray, const int32_t voxel[3], int* face)
 {
   double t = ray->t_min;
   *face = -1;
   for (int axis = 0; axis < 3; ++axis) {
     const double d = ray->direction[axis];
     if (d != 0.0) {
-      const double at = ((double)voxel[axis] + (d > 0.0 ? -0.5 : 0.5) - ray->origin[axis]) / d;
+      const double at = (stratus_voxel_border(borders, axis, voxel[axis] + (d < 0.0)) - 0.5 - ray->origin[axis]) / d;
       if (at > t || (at == t && *face >= 0)) { /* ties go to the last axis, as in first_hit_exact.c */
         t = at;
         *face = 2 * axis + (d < 0.0);
@@ -200,7 +217,7 @@ void stratus_shader_apply(
   const int64_t at[3] = { voxel[0], voxel[1], voxel[2] };
   double direction[3], rgb[3], index[3], point[3], normal[3];
   int face;
-  const double t = entry(ray, voxel, &face);
+  const double t = entry(shader->borders, ray, voxel, &face);
   stratus_matrix_vector(shader->index_to_world, ray->direction, direction);
   const double length = sqrt(stratus_vector_dot(direction, direction));
   color_at(shader->transfer, value_at(shader, at) + shader->bias, rgb);

@@ -14,7 +14,8 @@
 
 typedef struct walk {
   const stratus_voxels* voxels;
-  double origin[3], direction[3]; /* in the frame where voxel (i,j,k) fills [i,i+1] */
+  const stratus_voxel_borders* borders; /* may be NULL */
+  double origin[3], direction[3];       /* in the frame where voxel (i,j,k) fills [i,i+1], or what lies between its borders */
   double t_min, t_max;
 } walk;
 
@@ -31,7 +32,7 @@ static bool is_after(double t, int axis, crossing than)
 
 static double time_of(const walk* w, int axis, int64_t plane)
 {
-  return ((double)plane - w->origin[axis]) / w->direction[axis];
+  return (stratus_voxel_border(w->borders, axis, plane) - w->origin[axis]) / w->direction[axis];
 }
 
 /* The n-th of the planes lo .. hi along an axis, in the order in which the ray crosses them. */
@@ -47,8 +48,9 @@ static bool enter_box(const walk* w, crossing* entry)
   *entry = (crossing){ w->t_min, 3 };
   for (int a = 0; a < 3; ++a) {
     if (w->direction[a] == 0.0) {
-      const double place = floor(w->origin[a]);
-      if (!(place >= (double)w->voxels->lo[a] && place < (double)w->voxels->hi[a])) {
+      const double place = w->origin[a];
+      if (!(place >= stratus_voxel_border(w->borders, a, w->voxels->lo[a]) &&
+            place < stratus_voxel_border(w->borders, a, w->voxels->hi[a]))) {
         return false;
       }
     } else {
@@ -66,7 +68,16 @@ static bool enter_box(const walk* w, crossing* entry)
 static int64_t place_after(const walk* w, int axis, crossing entry)
 {
   if (w->direction[axis] == 0.0) {
-    return (int64_t)floor(w->origin[axis]);
+    int64_t first = w->voxels->lo[axis], last = w->voxels->hi[axis] - 1;
+    while (first < last) {
+      const int64_t middle = first + (last - first + 1) / 2;
+      if (stratus_voxel_border(w->borders, axis, middle) <= w->origin[axis]) {
+        first = middle;
+      } else {
+        last = middle - 1;
+      }
+    }
+    return first;
   }
   int64_t from = 0, to = w->voxels->hi[axis] - w->voxels->lo[axis] + 1; /* the answer is in from .. to */
   while (from < to) {
@@ -215,6 +226,12 @@ static void set_normal(const double world_to_index[16], const stratus_ray* ray, 
 stratus_status stratus_voxels_first_hit(
   stratus_context* context, const stratus_voxels* voxels, const stratus_ray* rays, size_t count, stratus_hit* hits)
 {
+  return stratus_voxels_first_hit_between(context, voxels, NULL, rays, count, hits);
+}
+
+stratus_status stratus_voxels_first_hit_between(stratus_context* context, const stratus_voxels* voxels,
+  const stratus_voxel_borders* borders, const stratus_ray* rays, size_t count, stratus_hit* hits)
+{
   if (!context) {
     return STRATUS_INVALID_ARGUMENT;
   }
@@ -230,7 +247,7 @@ stratus_status stratus_voxels_first_hit(
   brick_cache cache = { { -1, -1, -1 }, 0 };
   for (size_t r = 0; r < count; ++r) {
     stratus_hit hit = { .t = INFINITY, .voxel = { -1, -1, -1 }, .face = -1 };
-    walk w = { .voxels = voxels, .t_min = rays[r].t_min, .t_max = rays[r].t_max };
+    walk w = { .voxels = voxels, .borders = borders, .t_min = rays[r].t_min, .t_max = rays[r].t_max };
     stratus_matrix_point(corner, rays[r].origin, w.origin);
     stratus_matrix_vector(corner, rays[r].direction, w.direction);
     walk_ray(&w, &cache, &hit);

@@ -29,6 +29,20 @@ struct stratus_voxels {
   stratus_origin origin;
 };
 
+/* Where voxels begin along each axis whose spacing changes, in voxel coordinates of the mean spacing: voxel i fills at[i] .. at[i + 1]. The
+ * borders rise strictly, from number -1 to STRATUS_BORDERS_BEYOND(voxels). NULL: voxel i fills i .. i + 1. */
+typedef struct stratus_voxel_borders {
+  const double* at[3];
+} stratus_voxel_borders;
+
+/* Number of the last border along an axis of n voxels: bricks reach beyond the voxels. */
+#define STRATUS_BORDERS_BEYOND(n) (((n) + STRATUS_BRICK - 1) / STRATUS_BRICK * STRATUS_BRICK + 1)
+
+static inline double stratus_voxel_border(const stratus_voxel_borders* borders, int axis, int64_t voxel)
+{
+  return borders && borders->at[axis] ? borders->at[axis][voxel] : (double)voxel;
+}
+
 /* ---- voxels.c */
 
 /* Mask of brick (i,j,k), found by bisection; 0 if there is no such brick. */
@@ -40,6 +54,9 @@ uint64_t stratus_voxels_mask(const stratus_voxels* voxels, int64_t i, int64_t j,
 
 /* True if a ray can be followed among voxels. All methods of first hits ask this function, so that they agree. */
 bool stratus_ray_usable(const double to_voxels[16], const stratus_ray* ray);
+/* stratus_voxels_first_hit() among voxels of these borders; borders may be NULL. */
+stratus_status stratus_voxels_first_hit_between(stratus_context* context, const stratus_voxels* voxels,
+  const stratus_voxel_borders* borders, const stratus_ray* rays, size_t count, stratus_hit* hits);
 /* Reports why a ray cannot be followed. */
 stratus_status stratus_ray_refuse(stratus_context* context, const double to_voxels[16], const stratus_ray* ray, size_t index);
 

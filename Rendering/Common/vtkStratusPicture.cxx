@@ -91,7 +91,7 @@ void PlaceRays(vtkMatrix4x4* view, const ViewRays& rays, const double center[2],
   camera.far_k = rays.Far;
 }
 
-// Finds the drawn box along the grid's axes, as origin + spacing * index. `margin` is in voxels.
+// Finds the drawn box along the grid's axes, as origin + spacing * index. `margin` is in voxels, of the first and last spacing.
 void LocalBox(const stratus_volume& volume, const double* crop, double margin, double box[6])
 {
   for (int a = 0; a < 3; ++a) {
@@ -100,8 +100,13 @@ void LocalBox(const stratus_volume& volume, const double* crop, double margin, d
     const double last = x ? x[static_cast<size_t>(cells)] : 0.0;
     const double begin = volume.origin[a] + (x ? std::min(x[0], last) : 0.0);
     const double spacing = x ? std::fabs(last - x[0]) / cells : volume.spacing[a];
-    box[2 * a] = begin - spacing * margin;
-    box[2 * a + 1] = begin + spacing * (cells + margin);
+    const size_t end = static_cast<size_t>(cells);
+    double below = x ? std::fabs(x[1] - x[0]) : spacing, above = x ? std::fabs(x[end] - x[end - 1]) : spacing;
+    if (x && last < x[0]) {
+      std::swap(below, above);
+    }
+    box[2 * a] = begin - below * margin;
+    box[2 * a + 1] = begin + spacing * cells + above * margin;
     if (crop) {
       box[2 * a] = std::max(box[2 * a], crop[2 * a]);
       box[2 * a + 1] = std::min(box[2 * a + 1], crop[2 * a + 1]);

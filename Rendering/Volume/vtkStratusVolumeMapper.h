@@ -37,12 +37,12 @@
  * Lights of all kinds shine, with attenuation and cones (vtkLight; a ConeAngle of 90 and more is none). Maximum, minimum, average and
  * additive draw each of 2 to 4 independent components by itself, and add their weighted colours, as VTK's mappers do.
  *
- * All else (shaders of the prop's own, other data than these two, first hits of a vtkRectilinearGrid) is refused by an error, and nothing
- * is drawn. docs/vtk-parity.md has a table.
+ * All else (shaders of the prop's own, other data than these two) is refused by an error, and nothing is drawn. docs/vtk-parity.md has a
+ * table.
  *
  * RenderModeToFirstHit draws voxels of opacity > 0 as solids in the light of the renderer, and writes their depth. The property's Shade,
- * Ambient, Diffuse, Specular and SpecularPower apply. A voxel of point data is a cube about its point, so that the mapper's bounds extend
- * half a voxel farther.
+ * Ambient, Diffuse, Specular and SpecularPower apply. A voxel of point data is a box about its point, halfway to the next ones, so that
+ * the mapper's bounds extend half a voxel farther.
  *
  * The tree of an image that carries one (vtkStratusHybridTreeFilter) is used if it serves the transfer function: by first hits and by
  * HYBRID_STRUCTURE always, by AUTO_STRUCTURE where it is faster.

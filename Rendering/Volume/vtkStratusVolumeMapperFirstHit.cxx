@@ -8,6 +8,7 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkRenderer.h"
 #include "vtkVolumeProperty.h"
 
@@ -46,18 +47,34 @@ bool vtkStratusVolumeMapper::Internals::SetShading(
   return vtkStratusSetShading(renderer, property, first, shading, error);
 }
 
+// Voxels of values reach halfway beyond the first and the last one.
 void vtkStratusVolumeMapper::Internals::WidenBounds(double bounds[6]) const
 {
   vtkStratusVolumeMapper* mapper = this->Mapper;
-  vtkImageData* image = vtkImageData::SafeDownCast(mapper->GetInput());
-  if (!this->IsFirstHit() || !image || !(bounds[0] <= bounds[1])) {
+  vtkDataSet* input = vtkStratusAsImage(mapper->GetDataObjectInput());
+  if (!this->IsFirstHit() || !input || !(bounds[0] <= bounds[1])) {
     return;
   }
   int cells = 0;
-  if (!vtkAbstractMapper::GetScalars(image, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells) ||
+  if (!vtkAbstractMapper::GetScalars(input, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells) ||
     cells) {
     return;
   }
+  if (vtkRectilinearGrid* grid = vtkRectilinearGrid::SafeDownCast(input)) {
+    vtkDataArray* const axes[3] = { grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates() };
+    for (int a = 0; a < 3; ++a) {
+      const vtkIdType n = axes[a] ? axes[a]->GetNumberOfTuples() : 0;
+      if (n > 1) { // the first may be the greatest
+        const double first = axes[a]->GetComponent(0, 0), last = axes[a]->GetComponent(n - 1, 0);
+        const double begin = first + 0.5 * (first - axes[a]->GetComponent(1, 0));
+        const double end = last + 0.5 * (last - axes[a]->GetComponent(n - 2, 0));
+        bounds[2 * a] = std::min(bounds[2 * a], std::min(begin, end));
+        bounds[2 * a + 1] = std::max(bounds[2 * a + 1], std::max(begin, end));
+      }
+    }
+    return;
+  }
+  vtkImageData* image = vtkImageData::SafeDownCast(input);
   const double* direction = image->GetDirectionMatrix()->GetData();
   const double* spacing = image->GetSpacing();
   for (int a = 0; a < 3; ++a) {

@@ -178,10 +178,6 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
       : std::string("there is no input, a vtkImageData or vtkRectilinearGrid is needed");
     return false;
   }
-  if (this->IsFirstHit() && !vtkImageData::SafeDownCast(image)) {
-    error = "first hits of a vtkRectilinearGrid are not supported: they know boxes of equal spacing only; blend mode isosurface (5) is";
-    return false;
-  }
   if (image->GetNumberOfPoints() < 1) {
     error = "the input image is empty, it needs at least one point";
     return false;

@@ -8,7 +8,20 @@
 
 static picture on_host, on_device;
 
-typedef enum grid_look { MIDPOINT, PREINTEGRATED, CELLS, LOCAL, MAXIMUM, ADDITIVE, ISOSURFACE, LIT, NEAREST_CELLS, LOOKS } grid_look;
+typedef enum grid_look {
+  MIDPOINT,
+  PREINTEGRATED,
+  CELLS,
+  LOCAL,
+  MAXIMUM,
+  ADDITIVE,
+  ISOSURFACE,
+  LIT,
+  NEAREST_CELLS,
+  FIRST_HIT,
+  FIRST_HIT_CELLS,
+  LOOKS
+} grid_look;
 
 static void make_look(stratus_context* context, grid_look look, picture_case* c, grid_case* grid)
 {
@@ -27,12 +40,13 @@ static void make_look(stratus_context* context, grid_look look, picture_case* c,
   c->options.mode = look == MAXIMUM ? STRATUS_MODE_MAXIMUM
     : look == ADDITIVE              ? STRATUS_MODE_ADDITIVE
     : look == ISOSURFACE            ? STRATUS_MODE_ISOSURFACE
+    : look >= FIRST_HIT             ? STRATUS_MODE_FIRST_HIT
                                     : STRATUS_MODE_COMPOSITE;
   c->options.interpolation = look == NEAREST_CELLS ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   c->options.shade = look == LIT || look == ISOSURFACE;
   c->options.contour_count = look == ISOSURFACE;
   c->options.contours[0] = base + 0.2 * scale;
-  c->options.structure = STRATUS_STRUCTURE_DISTANCE;
+  c->options.structure = look == FIRST_HIT ? STRATUS_STRUCTURE_OCTANT : STRATUS_STRUCTURE_DISTANCE;
   c->options.audit = 1;
   grid_case_set(c, grid, look == LOCAL ? GRID_RANDOM : GRID_GEOMETRIC, look == LOCAL ? 7 : 1 + (int)look % 7, -3.0, 1.0,
     look == LOCAL ? 8.0 : 100.0, &random);
@@ -50,7 +64,9 @@ static void compare(bool one_ray)
     grid_case grid;
     make_look(host, (grid_look)look, &c, &grid);
     case_render(host, &c, &on_host);
+    const uint64_t launched = device->report.launched;
     case_render(device, &c, &on_device);
+    assert_true(device->report.launched > launched);
     int differing = 0;
     for (int i = 0; i < CASE_PIXELS; ++i) {
       differing += memcmp(on_host.rgba + 4 * i, on_device.rgba + 4 * i, 4 * sizeof(float)) != 0 || on_host.depth[i] != on_device.depth[i];

@@ -335,10 +335,53 @@ void BadGrids()
   scene.Mapper->SetInputData(flat);
   CHECK(scene.Picture().empty() && scene.Errors->Has("flat"), "a flat grid: '%s'", scene.Errors->Text.c_str());
   scene.Mapper->SetInputData(scene.Grid);
-  scene.Mapper->SetRenderModeToFirstHit();
-  CHECK(scene.Picture().empty() && scene.Errors->Has("first hits of a vtkRectilinearGrid"), "first hits: '%s'", scene.Errors->Text.c_str());
-  scene.Mapper->SetRenderModeToComposite();
-  CHECK(scene.Picture() == picture, "after first hits the picture is another");
+  CHECK(scene.Picture() == picture, "after a flat grid the picture is another");
+}
+
+// Solid voxels: halfway to the neighbours, on both ends too, so that bounds and pictures reach beyond the grid; of equal spacing the
+// image's.
+void FirstHits()
+{
+  for (bool cells : { false, true }) {
+    GridScene even(1.0, cells), stretched(0.05, cells, -3.0);
+    Scene image;
+    if (cells) {
+      image.Image->GetPointData()->Initialize();
+      image.Image->GetCellData()->ShallowCopy(even.Image->GetCellData());
+    }
+    for (Scene* scene : { static_cast<Scene*>(&even), static_cast<Scene*>(&stretched), &image }) {
+      scene->Mapper->SetRenderModeToFirstHit();
+      scene->Volume->GetProperty()->ShadeOn();
+      scene->Look(35, 20);
+    }
+    const std::vector<float> picture = even.Picture();
+    CHECK(Largest(picture, image.Picture()) <= 1e-5 && LightOf(picture) > 1000.0, "first hits of equal spacing: %g from the image's",
+      Largest(picture, image.Picture()));
+    const double* inner = stretched.Grid->GetBounds();
+    const double* outer = stretched.Mapper->GetBounds();
+    const double first = 0.5 * (stretched.Grid->GetXCoordinates()->GetComponent(1, 0) - inner[0]);
+    CHECK(std::fabs(inner[0] - outer[0] - (cells ? 0.0 : first)) < 1e-9, "bounds begin at %g, the grid at %g", outer[0], inner[0]);
+    // The first voxels along x are long: seen along z, their outer half lies beyond the grid.
+    stretched.Volume->GetProperty()->GetScalarOpacity()->RemoveAllPoints();
+    stretched.Volume->GetProperty()->GetScalarOpacity()->AddPoint(0.0, 1.0); // all show
+    vtkCamera* camera = stretched.Renderer->GetActiveCamera();
+    camera->ParallelProjectionOn();
+    camera->SetFocalPoint(inner[0], 0.5 * (inner[2] + inner[3]), 0.5 * (inner[4] + inner[5]));
+    camera->SetPosition(inner[0], 0.5 * (inner[2] + inner[3]), inner[5] + 100.0);
+    camera->SetViewUp(0, 1, 0);
+    camera->SetParallelScale(4.0 * first);
+    stretched.Renderer->ResetCameraClippingRange();
+    stretched.Render();
+    const int* size = stretched.Renderer->GetSize();
+    const std::vector<unsigned char> bytes = stretched.Bytes();
+    const auto shown = [&](double x) { // in halves of the first voxel from the grid's border
+      const int column = static_cast<int>(std::floor(0.5 * size[0] + x / 8.0 * size[1]));
+      const unsigned char* pixel = &bytes[4 * (static_cast<size_t>(size[1] / 2) * static_cast<size_t>(size[0]) + column)];
+      return pixel[0] + pixel[1] + pixel[2] > 0;
+    };
+    CHECK(shown(0.2) && shown(-0.8) == !cells && !shown(-1.2), "%s: the first voxel's border is elsewhere", cells ? "cells" : "points");
+    CHECK(even.Errors->Count + stretched.Errors->Count == 0, "first hits: '%s'", stretched.Errors->Text.c_str());
+  }
 }
 } // namespace
 
@@ -353,5 +396,6 @@ int main()
   Picking();
   Filters();
   BadGrids();
+  FirstHits();
   return Failures ? 1 : 0;
 }

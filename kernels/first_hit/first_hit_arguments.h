@@ -13,6 +13,14 @@ typedef struct stratus_hit_arguments {
   float slack;
 } stratus_hit_arguments;
 
+/* The same of a batch among voxels of any widths, through one field of bricks. */
+typedef struct stratus_stretched_arguments {
+  int at[3], cells[3];
+  int border_at[3]; /* where border 0 of an axis is in borders[]; -1: voxel i fills i .. i + 1 */
+  int octants, entry_bytes;
+  int count; /* of rays */
+} stratus_stretched_arguments;
+
 /* What became of a ray: results of the kernel. */
 #define STRATUS_HIT_NONE 0
 #define STRATUS_HIT_VOXEL 1

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First-hit pictures compared with brute force over all voxels. */
-#include "picture_case.h"
+ * First-hit pictures compared with brute force over all voxels, of equal spacing and of coordinates. */
+#include "grid_case.h"
 
 #include "volume.h"
 
@@ -11,7 +11,7 @@ static picture second;
 
 typedef struct oracle {
   const picture_case* c;
-  double world_to_index[16];
+  double world_to_local[16]; /* local: along the grid's axes, from its origin, in the data's own lengths */
   uint8_t* effective;
 } oracle;
 
@@ -33,10 +33,16 @@ static double opacity_of(const stratus_transfer* transfer, double x)
 
 static void oracle_begin(const picture_case* c, oracle* o)
 {
-  double index_to_world[16];
+  double local_to_world[16];
   const int64_t* n = c->volume.dimensions;
-  stratus_volume_index_to_world(&c->volume, index_to_world);
-  assert_true(stratus_matrix_invert_affine(index_to_world, o->world_to_index));
+  stratus_volume plain = c->volume;
+  plain.cell_centered = 0;
+  for (int a = 0; a < 3; ++a) {
+    plain.spacing[a] = 1.0;
+    plain.coordinates[a] = NULL;
+  }
+  stratus_volume_index_to_world(&plain, local_to_world);
+  assert_true(stratus_matrix_invert_affine(local_to_world, o->world_to_local));
   o->c = c;
   o->effective = calloc((size_t)(n[0] * n[1] * n[2]), 1);
   for (size_t at = 0; at < (size_t)(n[0] * n[1] * n[2]); ++at) {
@@ -69,6 +75,24 @@ static void oracle_ray(const oracle* o, int x, int y, double from[3], double alo
   }
 }
 
+/* Where voxel i ends along an axis: a value's halfway to its neighbours, a cell's at its coordinates. */
+static void edges(const stratus_volume* v, int axis, int64_t i, double* lo, double* hi)
+{
+  const double* x = v->coordinates[axis];
+  const int64_t last = v->dimensions[axis] - 1;
+  if (!x) {
+    *lo = v->spacing[axis] * ((double)i - (v->cell_centered ? 0.0 : 0.5));
+    *hi = v->spacing[axis] * ((double)i + (v->cell_centered ? 1.0 : 0.5));
+  } else if (v->cell_centered) {
+    *lo = x[i];
+    *hi = x[i + 1];
+  } else {
+    const double below = i > 0 ? x[i] - x[i - 1] : x[1] - x[0], above = i < last ? x[i + 1] - x[i] : x[last] - x[last - 1];
+    *lo = x[i] - 0.5 * below;
+    *hi = x[i] + 0.5 * above;
+  }
+}
+
 /* Cuts begin..end to the box; returns false if nothing is left. */
 static bool slabs(const double from[3], const double along[3], const double lo[3], const double hi[3], double* begin, double* end)
 {
@@ -85,17 +109,17 @@ static bool slabs(const double from[3], const double along[3], const double lo[3
 static double oracle_hit(const oracle* o, int x, int y, size_t* voxel, bool* doubtful)
 {
   const int64_t* n = o->c->volume.dimensions;
-  const double half = o->c->volume.cell_centered ? 0.5 : 0.0, near = 1e-7;
+  const double near = 1e-7;
   double world[3], toward[3], from[3], along[3], begin, end, best = INFINITY, next = INFINITY;
   oracle_ray(o, x, y, world, toward, &begin, &end);
-  stratus_matrix_point(o->world_to_index, world, from);
-  stratus_matrix_vector(o->world_to_index, toward, along);
+  stratus_matrix_point(o->world_to_local, world, from);
+  stratus_matrix_vector(o->world_to_local, toward, along);
   *doubtful = false;
   if (o->c->options.crop) {
     double lo[3], hi[3];
     for (int a = 0; a < 3; ++a) {
-      lo[a] = (o->c->options.crop_bounds[2 * a] - o->c->volume.origin[a]) / o->c->volume.spacing[a] - half;
-      hi[a] = (o->c->options.crop_bounds[2 * a + 1] - o->c->volume.origin[a]) / o->c->volume.spacing[a] - half;
+      lo[a] = o->c->options.crop_bounds[2 * a] - o->c->volume.origin[a];
+      hi[a] = o->c->options.crop_bounds[2 * a + 1] - o->c->volume.origin[a];
     }
     if (!slabs(from, along, lo, hi, &begin, &end)) {
       return INFINITY;
@@ -103,10 +127,11 @@ static double oracle_hit(const oracle* o, int x, int y, size_t* voxel, bool* dou
   }
   for (size_t at = 0; at < (size_t)(n[0] * n[1] * n[2]); ++at) {
     if (o->effective[at]) {
-      const double center[3] = { (double)((int64_t)at % n[0]), (double)((int64_t)at / n[0] % n[1]), (double)((int64_t)at / n[0] / n[1]) };
-      const double lo[3] = { center[0] - 0.5, center[1] - 0.5, center[2] - 0.5 };
-      const double hi[3] = { center[0] + 0.5, center[1] + 0.5, center[2] + 0.5 };
-      double t0 = begin, t1 = end;
+      const int64_t i[3] = { (int64_t)at % n[0], (int64_t)at / n[0] % n[1], (int64_t)at / n[0] / n[1] };
+      double lo[3], hi[3], t0 = begin, t1 = end;
+      for (int a = 0; a < 3; ++a) {
+        edges(&o->c->volume, a, i[a], &lo[a], &hi[a]);
+      }
       const bool met = slabs(from, along, lo, hi, &t0, &t1);
       *doubtful |= fabs(t1 - t0) < near * (1.0 + fabs(t0)) && t0 < best;
       if (met && t0 < best) {
@@ -226,6 +251,139 @@ static void pixels_show_the_first_voxel_of_brute_force(void** state)
   stratus_context_destroy(context);
 }
 
+/* Spacings up to 200:1, rising and falling, of values and cells, along one axis or all; in every structure, and the plain walk agrees. */
+static void voxels_of_stretched_grids_are_met_where_they_are(void** state)
+{
+  (void)state;
+  stratus_context* contexts[2] = { case_context("host", 2), case_context("host", 1) };
+  int hits = 0, doubts = 0, falling = 0;
+  for (uint32_t seed = 1; seed <= 80; ++seed) {
+    picture_case c;
+    grid_case grid;
+    create_case(contexts[0], seed, &c);
+    grid_case_set_random(contexts[0], seed, &c, &grid);
+    for (int a = 0; a < 3; ++a) {
+      falling += c.volume.coordinates[a] && c.volume.coordinates[a][0] > c.volume.coordinates[a][1];
+    }
+    c.options.structure = STRATUS_STRUCTURE_NONE;
+    case_render(contexts[0], &c, &first);
+    compare(&c, &first, seed, &hits, &doubts);
+    c.options.audit = 1;
+    for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
+      c.options.structure = (stratus_structure)structure;
+      case_render(contexts[structure % 2], &c, &second);
+      assert_int_equal(second.report.differing_pixels, 0);
+      assert_memory_equal(first.rgba, second.rgba, sizeof first.rgba);
+      assert_memory_equal(first.depth, second.depth, sizeof first.depth);
+    }
+    case_destroy(&c);
+  }
+  print_message("             %d hits, %d doubtful, %d axes fall\n", hits, doubts, falling);
+  assert_true(hits > 20000 && doubts < hits / 50 && falling > 10);
+  stratus_context_destroy(contexts[0]);
+  stratus_context_destroy(contexts[1]);
+}
+
+/* Coordinates that halve are exact in doubles, so that not a bit of unlit pictures may differ; of lit ones, roundings. */
+static void equal_coordinates_draw_the_picture_of_the_image(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  for (int kind = 0; kind < 8; ++kind) {
+    uint32_t none = 0;
+    picture_case c;
+    grid_case grid;
+    case_create(context, &c, STRATUS_INT16, 12, 11, 10, 5);
+    c.options.mode = STRATUS_MODE_FIRST_HIT;
+    c.volume.cell_centered = kind & 1;
+    c.options.shading.on = kind >> 1 & 1;
+    c.options.normals = kind >> 2 ? STRATUS_NORMALS_GRADIENT : STRATUS_NORMALS_FACES;
+    for (int a = 0; a < 3; ++a) {
+      c.volume.spacing[a] = 0.5;
+    }
+    case_camera(context, &c, kind, kind & 1);
+    case_render(context, &c, &first);
+    grid_case_set(&c, &grid, GRID_EQUAL, kind & 1 ? 7 : 5, 0.0, 0.5, 1.0, &none);
+    case_render(context, &c, &second);
+    assert_true(case_lit(&first) > 300);
+    assert_memory_equal(first.depth, second.depth, sizeof first.depth);
+    for (int at = 0; at < 4 * CASE_PIXELS; ++at) {
+      assert_true(fabsf(first.rgba[at] - second.rgba[at]) <= (c.options.shading.on ? 1e-5f : 0.0f));
+    }
+    case_destroy(&c);
+  }
+  stratus_context_destroy(context);
+}
+
+/* Differences of a square polynomial are exact on any spacing, so that light tells the field's own gradient. */
+static void gradients_are_those_of_the_field(void** state)
+{
+  (void)state;
+  enum { N = 12 };
+  static double values[N * N * N];
+  static const double opacity[] = { 6.0, 1.0, 6.0, 0.0 }, color[] = { 0.0, 1.0, 1.0, 1.0 };
+  stratus_context* context = case_context("host", 2);
+  for (int cells = 0; cells < 2; ++cells) {
+    uint32_t none = 0;
+    picture_case c;
+    grid_case grid;
+    oracle o;
+    double at[3][N];
+    int judged = 0;
+    case_create(context, &c, STRATUS_FLOAT64, N, N, N, 5);
+    c.volume.cell_centered = cells;
+    c.volume.values = values;
+    c.options.mode = STRATUS_MODE_FIRST_HIT;
+    c.options.normals = STRATUS_NORMALS_GRADIENT;
+    c.options.shading = (stratus_shading){ .on = 1, .diffuse = 1.0, .specular_power = 1.0, .light_count = 1 };
+    c.options.shading.lights[0] = (stratus_light){ .vector = { 0.48, 0.64, 0.6 }, .color = { 1.0, 1.0, 1.0 } };
+    c.transfer.opacity = opacity;
+    c.transfer.opacity_count = 2;
+    c.transfer.color = color;
+    c.transfer.color_count = 1;
+    grid_case_set(&c, &grid, GRID_GEOMETRIC, 7, -4.0, 1.0, 30.0, &none);
+    for (int a = 0; a < 3; ++a) {
+      for (int i = 0; i < N; ++i) {
+        at[a][i] = cells ? 0.5 * (grid.of[a][i] + grid.of[a][i + 1]) : grid.of[a][i];
+      }
+    }
+    for (int i = 0; i < N * N * N; ++i) {
+      const double x = at[0][i % N], y = at[1][i / N % N], z = at[2][i / N / N];
+      values[i] = x * x + 0.5 * y * y + 2.0 * z * z - x; /* an ellipsoid shows */
+    }
+    case_camera(context, &c, 3, 0);
+    case_render(context, &c, &first);
+    oracle_begin(&c, &o);
+    for (int pixel = 0; pixel < CASE_PIXELS; ++pixel) {
+      bool doubtful = false;
+      size_t voxel = 0;
+      const double k = oracle_hit(&o, pixel % CASE_WIDTH, pixel / CASE_WIDTH, &voxel, &doubtful);
+      const size_t i[3] = { voxel % N, voxel / N % N, voxel / N / N };
+      const bool inner = i[0] % (N - 1) && i[1] % (N - 1) && i[2] % (N - 1);
+      if (!isfinite(k) || doubtful || !inner) {
+        continue;
+      }
+      double world[3], toward[3], begin, end, length = 0.0, facing = 0.0, cosine = 0.0;
+      oracle_ray(&o, pixel % CASE_WIDTH, pixel / CASE_WIDTH, world, toward, &begin, &end);
+      const double slope[3] = { 2.0 * at[0][i[0]] - 1.0, at[1][i[1]], 4.0 * at[2][i[2]] };
+      for (int a = 0; a < 3; ++a) {
+        length += slope[a] * slope[a];
+        facing += slope[a] * toward[a];
+        cosine += slope[a] * c.options.shading.lights[0].vector[a];
+      }
+      const double expected = fmax(0.0, (facing > 0.0 ? -cosine : cosine) / sqrt(length));
+      assert_true(fabs((double)first.rgba[4 * pixel] - expected) < 2e-6); /* values are read as floats */
+      judged += expected > 0.1;
+    }
+    print_message("             %s: %d pixels\n", cells ? "cells" : "values", judged);
+    assert_true(judged > 50);
+    free(o.effective);
+    c.volume.values = c.values;
+    case_destroy(&c);
+  }
+  stratus_context_destroy(context);
+}
+
 static void opaque_depth_ends_rays(void** state)
 {
   (void)state;
@@ -268,6 +426,9 @@ int test_first_hit_picture(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(pixels_show_the_first_voxel_of_brute_force),
+    cmocka_unit_test(voxels_of_stretched_grids_are_met_where_they_are),
+    cmocka_unit_test(equal_coordinates_draw_the_picture_of_the_image),
+    cmocka_unit_test(gradients_are_those_of_the_field),
     cmocka_unit_test(opaque_depth_ends_rays),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -401,25 +401,18 @@ static void what_is_no_grid_is_refused(void** state)
   case_destroy(&c);
 }
 
-/* Structures of voxels know equal spacing only, and say so. */
-static void first_hits_and_voxels_are_refused(void** state)
+/* Sets of voxels for users' own rays know equal spacing only, and say so. */
+static void voxels_are_refused(void** state)
 {
   uint32_t none = 0;
   picture_case c;
   grid_case grid;
-  stratus_ray_caster* caster = NULL;
   stratus_voxels* voxels = NULL;
   const stratus_criterion criterion = stratus_criterion_default();
   case_create(*state, &c, STRATUS_FLOAT32, 9, 9, 9, 7);
   grid_case_set(&c, &grid, GRID_EQUAL, 4, 0.0, 1.0, 1.0, &none);
-  c.options.mode = STRATUS_MODE_FIRST_HIT;
-  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
-  assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
-  assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_UNSUPPORTED);
-  assert_non_null(strstr(stratus_context_message(*state), "rectilinear"));
   assert_int_equal(stratus_voxels_create(*state, &c.volume, &criterion, &voxels), STRATUS_UNSUPPORTED);
   assert_non_null(strstr(stratus_context_message(*state), "rectilinear"));
-  stratus_ray_caster_destroy(caster);
   case_destroy(&c);
 }
 
@@ -457,7 +450,7 @@ int test_ray_grid(void)
     cmocka_unit_test(far_and_falling_coordinates_draw_the_same),
     cmocka_unit_test(the_least_grids_are_drawn),
     cmocka_unit_test(what_is_no_grid_is_refused),
-    cmocka_unit_test(first_hits_and_voxels_are_refused),
+    cmocka_unit_test(voxels_are_refused),
     cmocka_unit_test(other_coordinates_under_the_same_pointers_are_seen),
   };
   return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
