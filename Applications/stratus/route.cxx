@@ -175,7 +175,7 @@ void join(vtkCompositeDataSet* whole, const std::string& path, const std::string
     }
     return values;
   };
-  if (!blocks.Set(whole, find, error)) {
+  if (!blocks.Set(whole, find, error, false)) {
     throw cli::failure("'" + path + "': " + error + (first ? "; the first part's arrays are: " + names_of(first) : std::string()));
   }
   if (!blocks.GetGrid()) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Checks and clears the pictures that renderers fill. */
+ * Checks, clears and adds the pictures that renderers fill. */
 #include "picture.h"
 
 #include <string.h>
@@ -30,5 +30,66 @@ void stratus_image_clear(const stratus_image* image)
   }
   if (image->rgba8) {
     memset(image->rgba8, 0, pixels * 4);
+  }
+}
+
+void stratus_image_part_destroy(stratus_context* context, stratus_image* part)
+{
+  stratus_release(context, part->rgba);
+  stratus_release(context, part->depth);
+  stratus_release(context, part->samples);
+  part->rgba = part->depth = NULL;
+  part->samples = NULL;
+}
+
+stratus_status stratus_image_part_create(stratus_context* context, const stratus_image* image, stratus_image* part)
+{
+  const size_t pixels = (size_t)image->width * (size_t)image->height;
+  stratus_status status;
+  void* memory = NULL;
+  *part = *image;
+  part->rgba = part->depth = NULL;
+  part->samples = NULL;
+  part->rgba8 = NULL;
+  TRY_CLEANUP(stratus_allocate(context, pixels, 4 * sizeof(float), &memory));
+  part->rgba = memory;
+  if (image->depth) {
+    TRY_CLEANUP(stratus_allocate(context, pixels, sizeof(float), &memory));
+    part->depth = memory;
+  }
+  if (image->samples) {
+    TRY_CLEANUP(stratus_allocate(context, pixels, sizeof(uint32_t), &memory));
+    part->samples = memory;
+  }
+  return STRATUS_OK;
+cleanup:
+  stratus_image_part_destroy(context, part);
+  return status;
+}
+
+void stratus_image_add(const stratus_image* sum, const stratus_image* part, float weight, bool opaque)
+{
+  const size_t pixels = (size_t)sum->width * (size_t)sum->height;
+  for (size_t i = 0; i < pixels; ++i) {
+    float* to = sum->rgba + 4 * i;
+    const float* from = part->rgba + 4 * i;
+    for (size_t k = 0; k < 3; ++k) {
+      to[k] = fminf(to[k] + weight * from[k], 1.0f);
+    }
+    to[3] = opaque ? fmaxf(to[3], from[3]) : fminf(to[3] + weight * from[3], 1.0f);
+    if (sum->depth) {
+      sum->depth[i] = fminf(sum->depth[i], part->depth[i]);
+    }
+    if (sum->samples) {
+      sum->samples[i] += part->samples[i];
+    }
+  }
+}
+
+void stratus_image_fill_bytes(const stratus_image* image)
+{
+  const size_t values = 4 * (size_t)image->width * (size_t)image->height;
+  for (size_t i = 0; image->rgba8 && i < values; ++i) {
+    image->rgba8[i] = (uint8_t)(image->rgba[i] * 255.0f + 0.5f);
   }
 }

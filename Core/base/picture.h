@@ -10,4 +10,14 @@ stratus_status stratus_image_check(stratus_context* context, const stratus_image
 /* Sets all pixels to transparent, their depth to INFINITY and their samples to 0. */
 void stratus_image_clear(const stratus_image* image);
 
+/* Pictures of parts, which are drawn one after the other and added. */
+/* Makes room for a part of the image: colours in float and, where the image has them, depth and samples. */
+stratus_status stratus_image_part_create(stratus_context* context, const stratus_image* image, stratus_image* part);
+void stratus_image_part_destroy(stratus_context* context, stratus_image* part);
+/* Adds a part's premultiplied colours times weight, up to 1; its alpha likewise or, where pictures are opaque, the larger one. The nearer
+ * depth stays. Samples add up. The sum's bytes are left as they are. */
+void stratus_image_add(const stratus_image* sum, const stratus_image* part, float weight, bool opaque);
+/* Sets the bytes, if there are any, from the colours in float. */
+void stratus_image_fill_bytes(const stratus_image* image);
+
 #endif

@@ -63,6 +63,9 @@ static stratus_status check_counts(stratus_context* context, const stratus_mesh*
   if (mesh->cell_count < 0 || mesh->cell_count > CELLS_MAX) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh cell_count %lld outside 0..%lld", (long long)mesh->cell_count, CELLS_MAX);
   }
+  if (mesh->block_count != 0) {
+    return STRATUS_OK;
+  }
   if (stratus_mesh_is_lattice(mesh)) {
     return check_lattice(context, mesh);
   }
@@ -88,10 +91,10 @@ static stratus_status check_values(stratus_context* context, const stratus_mesh*
   if (mesh->components < 0 || mesh->components > 4) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh components %d outside 1..4", mesh->components);
   }
-  if (mesh->value_stride < 1) {
+  if (mesh->block_count == 0 && mesh->value_stride < 1) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh value_stride %lld, must be at least 1", (long long)mesh->value_stride);
   }
-  if (mesh->value_stride < mesh->components) {
+  if (mesh->block_count == 0 && mesh->value_stride < mesh->components) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh value_stride %lld, must be at least its %d components",
       (long long)mesh->value_stride, mesh->components);
   }
@@ -103,6 +106,49 @@ static stratus_status check_values(stratus_context* context, const stratus_mesh*
   }
   const int64_t count = mesh->cell_values ? mesh->cell_count : mesh->point_count;
   return stratus_product(context, "mesh bytes (values, stride, size)", (size_t)count, (size_t)mesh->value_stride, size, &bytes);
+}
+
+static stratus_status check_block(stratus_context* context, const stratus_mesh* mesh, int n)
+{
+  const stratus_mesh* block = mesh->blocks + n;
+  if (block->block_count != 0 || !stratus_mesh_is_lattice(block)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh block %d is no lattice, must be one", n);
+  }
+  if (block->type != mesh->type || block->components != mesh->components || block->cell_values != mesh->cell_values ||
+    !block->values != !mesh->blocks->values) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "mesh block %d has type %d, %d components, cell_values %d and %s values, must have the mesh's %d, %d and %d, as all blocks", n,
+      (int)block->type, block->components, block->cell_values, block->values ? "some" : "no", (int)mesh->type, mesh->components,
+      mesh->cell_values);
+  }
+  TRY(check_counts(context, block));
+  return check_values(context, block);
+}
+
+/* Blocks: each a lattice, of what the mesh says of all. */
+static stratus_status check_blocks(stratus_context* context, const stratus_mesh* mesh)
+{
+  int64_t points = 0, cells = 0;
+  const int32_t* n = mesh->lattice;
+  if (mesh->block_count < 0 || !mesh->blocks) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh block_count %d with blocks %s, must be at least 1 with blocks",
+      mesh->block_count, mesh->blocks ? "there" : "NULL");
+  }
+  if (mesh->points || mesh->float_points || mesh->vertices || mesh->values || mesh->hidden || n[0] != 0 || n[1] != 0 || n[2] != 0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "mesh of %d blocks with points, vertices, values, hidden flags or a lattice of its own, must have none", mesh->block_count);
+  }
+  for (int b = 0; b < mesh->block_count; ++b) {
+    TRY(check_block(context, mesh, b));
+    points += mesh->blocks[b].point_count;
+    cells += mesh->blocks[b].cell_count;
+  }
+  if (mesh->point_count != points || mesh->cell_count != cells) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "mesh of %d blocks with a point_count of %lld and a cell_count of %lld, must be %lld and %lld", mesh->block_count,
+      (long long)mesh->point_count, (long long)mesh->cell_count, (long long)points, (long long)cells);
+  }
+  return STRATUS_OK;
 }
 
 /* Reports the first wrong point, so that the message does not depend on the number of threads. */
@@ -168,6 +214,9 @@ stratus_status stratus_mesh_check(stratus_context* context, const stratus_mesh* 
   TRY(check_counts(context, mesh));
   TRY(check_values(context, mesh));
   TRY(check_matrix(context, mesh));
+  if (mesh->block_count != 0) {
+    TRY(check_blocks(context, mesh));
+  }
   if (stratus_mesh_is_lattice(mesh)) {
     return STRATUS_OK; /* points that are not finite hide their hexahedra */
   }
@@ -178,6 +227,9 @@ stratus_status stratus_mesh_check(stratus_context* context, const stratus_mesh* 
 stratus_status stratus_mesh_check_listed(stratus_context* context, const stratus_mesh* mesh)
 {
   TRY(stratus_mesh_check(context, mesh));
+  if (mesh->block_count != 0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh has %d blocks, its cells must be listed in vertices", mesh->block_count);
+  }
   return stratus_mesh_is_lattice(mesh)
     ? stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh is a lattice of %d x %d x %d points, its cells must be listed in vertices",
         (int)mesh->lattice[0], (int)mesh->lattice[1], (int)mesh->lattice[2])

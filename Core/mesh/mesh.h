@@ -29,9 +29,21 @@ stratus_volume stratus_mesh_values(const stratus_mesh* mesh);
 /* stratus_mesh_check(), which also refuses lattices. */
 stratus_status stratus_mesh_check_listed(stratus_context* context, const stratus_mesh* mesh);
 
+/* Whether it is a lattice, or several. */
 static inline bool stratus_mesh_is_lattice(const stratus_mesh* mesh)
 {
-  return mesh->lattice[0] != 0 || mesh->lattice[1] != 0 || mesh->lattice[2] != 0;
+  return mesh->lattice[0] != 0 || mesh->lattice[1] != 0 || mesh->lattice[2] != 0 || mesh->block_count != 0;
+}
+
+/* The parts of a mesh with points and values of their own: its blocks, or the mesh itself. */
+static inline int stratus_mesh_part_count(const stratus_mesh* mesh)
+{
+  return mesh->block_count > 0 ? mesh->block_count : 1;
+}
+
+static inline const stratus_mesh* stratus_mesh_part(const stratus_mesh* mesh, int part)
+{
+  return mesh->block_count > 0 ? mesh->blocks + part : mesh;
 }
 
 static inline void stratus_mesh_point(const stratus_mesh* mesh, int64_t point, double at[3])

@@ -5,41 +5,11 @@
 #include "ray_caster.h"
 #include "ray_shading_table.h"
 
-#include <string.h>
-
 static bool draws_parts(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   const bool one_value = options->mode == STRATUS_MODE_MAXIMUM || options->mode == STRATUS_MODE_MINIMUM ||
     options->mode == STRATUS_MODE_AVERAGE || options->mode == STRATUS_MODE_ADDITIVE;
   return one_value && stratus_volume_components(volume) > 1 && !options->dependent;
-}
-
-/* Adds a component's picture. Sums and means are opaque wherever one of them is; the alphas of extremes add up, as their colours do. */
-static void add_picture(const stratus_image* sum, const stratus_image* part, float weight, bool opaque)
-{
-  const size_t pixels = (size_t)sum->width * (size_t)sum->height;
-  for (size_t i = 0; i < pixels; ++i) {
-    float* to = sum->rgba + 4 * i;
-    const float* from = part->rgba + 4 * i;
-    for (size_t k = 0; k < 3; ++k) {
-      to[k] = fminf(to[k] + weight * from[k], 1.0f);
-    }
-    to[3] = opaque ? fmaxf(to[3], from[3]) : fminf(to[3] + weight * from[3], 1.0f);
-    if (sum->depth) {
-      sum->depth[i] = fminf(sum->depth[i], part->depth[i]);
-    }
-    if (sum->samples) {
-      sum->samples[i] += part->samples[i];
-    }
-  }
-}
-
-static void fill_bytes(const stratus_image* image)
-{
-  const size_t values = 4 * (size_t)image->width * (size_t)image->height;
-  for (size_t i = 0; image->rgba8 && i < values; ++i) {
-    image->rgba8[i] = (uint8_t)(image->rgba[i] * 255.0f + 0.5f);
-  }
 }
 
 /* Widens a window of pixels, x0, x1, y0, y1, by another; either may be empty. */
@@ -89,22 +59,10 @@ static void add_report(stratus_ray_cast_report* sum, const stratus_ray_cast_repo
 static stratus_status draw_parts(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
 {
-  const size_t pixels = (size_t)image->width * (size_t)image->height;
   const bool opaque = options->mode == STRATUS_MODE_AVERAGE || options->mode == STRATUS_MODE_ADDITIVE;
-  stratus_image part = *image;
-  void *rgba = NULL, *depth = NULL, *samples = NULL;
-  stratus_status status;
-  part.rgba8 = NULL;
-  TRY_CLEANUP(stratus_allocate(caster->context, pixels, 4 * sizeof(float), &rgba));
-  part.rgba = rgba;
-  if (image->depth) {
-    TRY_CLEANUP(stratus_allocate(caster->context, pixels, sizeof(float), &depth));
-    part.depth = depth;
-  }
-  if (image->samples) {
-    TRY_CLEANUP(stratus_allocate(caster->context, pixels, sizeof(uint32_t), &samples));
-    part.samples = samples;
-  }
+  stratus_image part;
+  stratus_status status = STRATUS_OK;
+  TRY(stratus_image_part_create(caster->context, image, &part));
   stratus_image_clear(image);
   for (int c = 0; c < stratus_volume_components(volume); ++c) {
     const stratus_volume view = stratus_volume_component(volume, c);
@@ -113,18 +71,16 @@ static stratus_status draw_parts(stratus_ray_caster* caster, const stratus_volum
       TRY_CLEANUP(stratus_ray_caster_create(caster->context, &caster->parts[c]));
     }
     TRY_CLEANUP(stratus_ray_render_one(caster->parts[c], &view, transfer + c, camera, options, &part, &mine));
-    add_picture(image, &part, (float)transfer[c].weight, opaque);
+    stratus_image_add(image, &part, (float)transfer[c].weight, opaque);
     if (c == 0) {
       *report = mine;
     } else {
       add_report(report, &mine);
     }
   }
-  fill_bytes(image);
+  stratus_image_fill_bytes(image);
 cleanup:
-  stratus_release(caster->context, rgba);
-  stratus_release(caster->context, depth);
-  stratus_release(caster->context, samples);
+  stratus_image_part_destroy(caster->context, &part);
   return status;
 }
 

@@ -33,6 +33,12 @@ typedef struct stratus_mesh {
    * value or a coordinate that is not finite, is transparent as a whole. Corners may coincide. Only casters take lattices. */
   int32_t lattice[3];
   const float* float_points; /* the points of a lattice whose `points` is NULL; else NULL */
+  /* Several lattices as one mesh. Rays pass from one to the next where a face of both has the same corners and the same diagonal. Each
+   * block is a view of a lattice, with values of the mesh's type, components and cell_values; its matrix and revision are not read. The
+   * mesh's point_count and cell_count are the sums of theirs, its points, float_points, vertices, values and hidden are NULL, its lattice
+   * is 0, and its value_stride is not read. Default NULL, 0. Only casters take blocks. */
+  const struct stratus_mesh* blocks;
+  int block_count;
 } stratus_mesh;
 
 STRATUS_API stratus_mesh stratus_mesh_default(void);

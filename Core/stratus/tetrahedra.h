@@ -86,11 +86,18 @@ typedef struct stratus_tetra_options {
    * the world. Finite. A spacing is the edge of a cube that six cells of the mean volume fill. The gradient's magnitude is in values per
    * spacing, whatever the mesh's matrix. */
   double gradient_distance;
-  /* Meshes whose values have several components, which composite alone draws, by marching, without light and gradient opacity. 0 (default):
-   * each component is a medium with a transfer function of its own; optical depths, times the functions' weights, and emitted light add
-   * up. 1: they are one medium of one function. Of 2 components the first has the colour and the second the opacity. Of 4
-   * (STRATUS_UINT8 only) the first three are red, green and blue in 0..255, and the fourth has the opacity. */
+  /* Meshes whose values have several components, which all modes but isosurface draw, by marching; dependent ones composite
+   * alone. A value that is not finite in any component hides its cells. In modes other than composite each
+   * independent component is drawn by itself; then their premultiplied colours, times the functions' weights, add up to at most 1, and so
+   * do the alphas of extremes. Composite, 0 (default): each component is a medium with a transfer function of its own; optical depths,
+   * times the functions' weights, and emitted light add up. 1: they are one medium of one function. Of 2 components the first has the
+   * colour and the second the opacity. Of 4 (STRATUS_UINT8 only) the first three are red, green and blue in 0..255, and the fourth has the
+   * opacity. */
   int dependent;
+  /* Composite, independent components: a material for each, which holds in place of `shade` and of the material in `shading`; its lights
+   * are read if one of them has shade. NULL (default): all have those of `shading`. Each component is lit, and thinned, by its own
+   * gradient; dependent ones by that of the last. Borrowed during the render. */
+  const stratus_material* materials;
   /* Independent components; 1: each counts by its share of the optical depth, as in stratus_ray_cast_options. Default 0. */
   int mean_components;
 } stratus_tetra_options;
@@ -146,12 +153,12 @@ STRATUS_API void stratus_tetra_caster_destroy(stratus_tetra_caster* caster);
 
 /* Draws a picture. transfer: one function, or one for each independent component. Both methods use the context's device, or the host if
  * there is none or the mesh is too large for it; projection finds the cells of each tile on the host. The mesh must have values. The caster
- * reads it again when its pointers, counts, type, stride or revision differ from the last call's, else only its matrix. A lattice marches
- * by its points' numbers, and keeps some 21 bytes for each point and 56 for each face at the border; where it is to be projected, or its
- * cells turn both ways (a layer that lies partly below the one beneath), its tetrahedra are listed first. Opacity is per world length. In
- * image, samples receives the number of segments in the pixel, and depth the world distance to the first segment that contributes (maximum:
- * to the largest value). options and report may be NULL. A failed call leaves the picture undefined, and the caster ready for the next
- * call. More than INT32_MAX/8 cells, INT32_MAX/4 points or INT32_MAX/8 faces at the border give STRATUS_UNSUPPORTED. */
+ * reads it again when its pointers, counts, type, stride or revision differ from the last call's, else only its matrix. A lattice, or
+ * several, marches by its points' numbers, and keeps some 21 bytes for each point and 56 for each face at the border; where it is to be
+ * projected, or its cells turn both ways (a layer that lies partly below the one beneath), its tetrahedra are listed first. Opacity is per
+ * world length. In image, samples receives the number of segments in the pixel, and depth the world distance to the first segment that
+ * contributes (maximum: to the largest value). options and report may be NULL. A failed call leaves the picture undefined, and the caster
+ * ready for the next call. More than INT32_MAX/8 cells, INT32_MAX/4 points or INT32_MAX/8 faces at the border give STRATUS_UNSUPPORTED. */
 STRATUS_API stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image,
   stratus_tetra_report* report);

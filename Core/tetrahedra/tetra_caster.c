@@ -13,9 +13,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Entries of the table. Segments end at any value, which is rounded to an entry: the error of light falls with the width of entries. */
-#define ENTRIES 32768
-
 stratus_tetra_options stratus_tetra_options_default(void)
 {
   return (stratus_tetra_options){
@@ -42,12 +39,7 @@ static void drop_table(stratus_tetra_caster* caster)
 {
   stratus_tetra_device_drop_table(caster->device);
   stratus_tetra_light_drop_factors(caster);
-  stratus_table_destroy(caster->table);
-  stratus_release(caster->context, caster->march_sums);
-  stratus_release(caster->context, caster->transfer);
-  caster->table = NULL;
-  caster->march_sums = NULL;
-  caster->transfer = NULL;
+  stratus_tetra_look_drop(caster->context, &caster->look);
 }
 
 static void drop_mesh(stratus_tetra_caster* caster)
@@ -55,6 +47,7 @@ static void drop_mesh(stratus_tetra_caster* caster)
   drop_table(caster); /* the table spans the mesh's values */
   stratus_tetra_light_drop(caster);
   stratus_tetra_components_drop(caster);
+  stratus_tetra_parts_drop(caster);
   stratus_tetra_device_destroy(caster->context, caster->device); /* the device may read the mesh in place */
   caster->device = NULL;
   stratus_tetra_projector_destroy(caster->projector);
@@ -107,7 +100,7 @@ static bool same_mesh(const stratus_mesh* a, const stratus_mesh* b)
   return a->points == b->points && a->point_count == b->point_count && a->vertices == b->vertices && a->cell_count == b->cell_count &&
     a->float_points == b->float_points && memcmp(a->lattice, b->lattice, sizeof a->lattice) == 0 && a->values == b->values &&
     a->type == b->type && a->value_stride == b->value_stride && a->components == b->components && a->cell_values == b->cell_values &&
-    a->hidden == b->hidden && a->revision == b->revision;
+    a->hidden == b->hidden && a->blocks == b->blocks && a->block_count == b->block_count && a->revision == b->revision;
 }
 
 /* Takes other values of the same points and cells; neighbours, and the order of cells, stay. *taken false: it is another mesh, or other
@@ -222,51 +215,18 @@ static stratus_status update(
   return STRATUS_OK;
 }
 
-/* Updates the table. Composite: running sums per world unit. Other modes: colour and alpha over one unit distance, and sums where values
- * are added. */
 static stratus_status update_table(
   stratus_tetra_caster* caster, const stratus_transfer* transfer, const stratus_tetra_options* options, double* ms)
 {
-  const stratus_tetra_mode mode = options->mode;
-  static const double all[2] = { -(double)INFINITY, (double)INFINITY };
-  const bool adds = mode == STRATUS_TETRA_AVERAGE || mode == STRATUS_TETRA_ADDITIVE;
-  const double* range = mode == STRATUS_TETRA_AVERAGE ? options->average_range : all;
   const double start = stratus_now_ms();
-  const stratus_tetra_mesh* mesh = caster->mesh;
-  const bool any = mesh->low <= mesh->high;
-  stratus_table* table = NULL;
-  int32_t* sums = NULL;
-  stratus_transfer* copy = NULL;
-  if (caster->table && stratus_transfer_same_table(caster->transfer, transfer) && caster->mode == mode &&
-    memcmp(caster->average_range, range, sizeof caster->average_range) == 0) {
-    return STRATUS_OK;
+  stratus_tetra_look made;
+  TRY(stratus_tetra_look_update(caster, transfer, options, &made));
+  if (made.table) {
+    drop_table(caster);
+    caster->look = made;
+    ++caster->table_builds;
+    *ms = stratus_now_ms() - start;
   }
-  TRY(stratus_transfer_copy(caster->context, transfer, 1, &copy));
-  const stratus_volume view = stratus_mesh_values(&caster->view);
-  const stratus_table_values values = { .fetching = { mesh->bias, stratus_type_is_wide(view.type), stratus_type_is_integer(view.type) },
-    .lo = any ? mesh->low : 0.0f,
-    .hi = any ? mesh->high : 0.0f,
-    .uniform = true };
-  stratus_status status = stratus_table_create_fine(caster->context, transfer, &values,
-    mode == STRATUS_TETRA_COMPOSITE ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT,
-    mode == STRATUS_TETRA_COMPOSITE ? 1.0 : transfer->unit_distance, ENTRIES, &table);
-  if (status == STRATUS_OK) {
-    status =
-      adds ? stratus_tetra_value_sums(caster->context, table, mesh, range, &sums) : stratus_tetra_sums(caster->context, table, &sums);
-  }
-  if (status != STRATUS_OK) {
-    stratus_table_destroy(table);
-    stratus_release(caster->context, copy);
-    return status;
-  }
-  drop_table(caster);
-  caster->table = table;
-  caster->march_sums = sums;
-  caster->mode = mode;
-  memcpy(caster->average_range, range, sizeof caster->average_range);
-  caster->transfer = copy;
-  ++caster->table_builds;
-  *ms = stratus_now_ms() - start;
   return STRATUS_OK;
 }
 
@@ -275,7 +235,7 @@ static stratus_status update_table(
 static stratus_tetra_device_source device_source(const stratus_tetra_caster* caster)
 {
   return (stratus_tetra_device_source){ caster->mesh_builds, caster->value_builds, caster->table_builds, caster->view.cell_count,
-    caster->view.point_count, caster->mesh->cell_ints, caster->mesh->value_count, caster->gradient_builds, caster->component_builds };
+    caster->mesh->point_count, caster->mesh->cell_ints, caster->mesh->value_count, caster->gradient_builds, caster->component_builds };
 }
 
 /* Marches on the device if there is one and it can, else on the host. */
@@ -332,13 +292,13 @@ static stratus_status project(stratus_tetra_caster* caster, const stratus_mesh* 
   return stratus_tetra_project(caster->projector, mesh, frame, leaves, project_tiles, caster, report);
 }
 
-static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
 {
   stratus_tetra_frame frame;
   const double start = stratus_now_ms();
   const bool adds = options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE; /* black where nothing shows */
-  const bool shows = caster->components.count > 0 ? caster->components.shown : caster->table->shown > 0;
+  const bool shows = stratus_tetra_mixes(mesh, options) ? caster->components.shown : caster->look.table->shown > 0;
   if ((!shows && !adds && options->mode != STRATUS_TETRA_ISOSURFACE) || caster->mesh->face_count == 0) {
     report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
     snprintf(report->why, sizeof report->why, "nothing to draw: no cell, or none that shows");
@@ -348,15 +308,58 @@ static stratus_status draw(stratus_tetra_caster* caster, const stratus_mesh* mes
   TRY(stratus_tetra_choose(caster, mesh, transfer, camera, options, image, report));
   const bool marches = report->method == STRATUS_TETRA_METHOD_MARCH;
   TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, image, marches, &caster->buffers, &frame));
-  frame.table = caster->table;
-  frame.march_sums = caster->march_sums;
+  frame.table = caster->look.table;
+  frame.march_sums = caster->look.sums;
   stratus_tetra_frame_shade(&frame, options);
-  stratus_tetra_frame_contours(&frame, caster->mesh, caster->transfer, options);
+  stratus_tetra_frame_contours(&frame, caster->mesh, caster->look.transfer, options);
   stratus_tetra_frame_clip(&frame, mesh, options);
   stratus_tetra_frame_light(&frame, caster, mesh, transfer, options);
   stratus_tetra_frame_components(&frame, caster, options);
   report->transform_ms = stratus_now_ms() - start;
   return marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report);
+}
+
+/* In the report, counts and times are sums, the method is that of all. */
+static void add_report(stratus_tetra_report* sum, const stratus_tetra_report* part)
+{
+  sum->method = part->method;
+  memcpy(sum->why, part->why, sizeof sum->why);
+  sum->rays += part->rays;
+  sum->entries += part->entries;
+  sum->segments += part->segments;
+  sum->stuck += part->stuck;
+  sum->transform_ms += part->transform_ms;
+  sum->entries_ms += part->entries_ms;
+  sum->march_ms += part->march_ms;
+}
+
+/* Draws each component by itself and adds the pictures. */
+static stratus_status draw_parts(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfers,
+  const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
+{
+  const bool opaque = options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE;
+  stratus_image part;
+  stratus_status status = STRATUS_OK;
+  TRY(stratus_image_part_create(caster->context, image, &part));
+  stratus_image_clear(image);
+  for (int c = 0; c < mesh->components; ++c) {
+    stratus_tetra_report mine = { 0 };
+    stratus_tetra_part* other = c > 0 ? caster->parts + c - 1 : NULL;
+    if (other) {
+      stratus_tetra_part_swap(caster, other);
+    }
+    status = draw_one(caster, mesh, transfers + c, camera, options, &part, &mine);
+    if (other) {
+      stratus_tetra_part_swap(caster, other);
+    }
+    TRY_CLEANUP(status);
+    stratus_image_add(image, &part, (float)transfers[c].weight, opaque);
+    add_report(report, &mine);
+  }
+  stratus_image_fill_bytes(image);
+cleanup:
+  stratus_image_part_destroy(caster->context, &part);
+  return status;
 }
 
 static void fill_report(const stratus_tetra_caster* caster, stratus_tetra_report* report)
@@ -396,17 +399,18 @@ static stratus_status take(stratus_tetra_caster* caster, const stratus_tetra_sub
     TRY(stratus_mesh_check(caster->context, mesh));
   }
   const int64_t values = mesh->cell_values ? mesh->cell_count : mesh->point_count;
-  if (!mesh->values && values > 0) {
+  if (!(mesh->block_count > 0 ? mesh->blocks->values : mesh->values) && values > 0) {
     return stratus_fail(caster->context, STRATUS_INVALID_ARGUMENT, "mesh values is NULL, with %lld to be drawn", (long long)values);
   }
   TRY(stratus_tetra_modes_check(caster->context, of->options, mesh));
-  TRY(stratus_tetra_light_check(caster->context, of->transfer, of->options));
+  TRY(stratus_tetra_light_check(caster->context, mesh, of->transfer, of->options));
   TRY(stratus_tetra_components_check(caster->context, mesh, of->transfer, of->options));
   TRY(update(caster, mesh, of->options, drawn, &report->build_ms));
   memcpy(caster->view.matrix, mesh->matrix, sizeof mesh->matrix);
   TRY(update_table(caster, of->transfer, of->options, &report->table_ms));
   TRY(stratus_tetra_light_update(caster, *drawn, of->transfer, of->options, &report->build_ms));
-  return stratus_tetra_components_update(caster, *drawn, of->transfer, of->options, &report->build_ms);
+  TRY(stratus_tetra_components_update(caster, *drawn, of->transfer, of->options, &report->build_ms));
+  return stratus_tetra_parts_update(caster, *drawn, of->transfer, of->options, &report->build_ms);
 }
 
 stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera,
@@ -415,11 +419,11 @@ stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const 
   const stratus_mesh* drawn = NULL;
   stratus_tetra_counts counts = { 0 };
   TRY(take(caster, of, camera, image, &drawn, report));
-  *shows = caster->table->shown > 0 && caster->mesh->face_count > 0;
+  *shows = caster->look.table->shown > 0 && caster->mesh->face_count > 0;
   if (*shows) {
     TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, drawn, camera, image, true, &caster->buffers, frame));
-    frame->table = caster->table;
-    frame->march_sums = caster->march_sums;
+    frame->table = caster->look.table;
+    frame->march_sums = caster->look.sums;
     stratus_tetra_frame_shade(frame, of->options);
     stratus_tetra_frame_clip(frame, drawn, of->options);
     TRY(stratus_tetra_count_entries(caster->context, frame, &caster->buffers, &counts));
@@ -440,7 +444,7 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   options = options ? options : &defaults;
   const stratus_tetra_subject of = { mesh, transfer, options };
   TRY(take(caster, &of, camera, image, &drawn, &mine));
-  TRY(draw(caster, drawn, transfer, camera, options, image, &mine));
+  TRY((stratus_tetra_draws_parts(drawn, options) ? draw_parts : draw_one)(caster, drawn, transfer, camera, options, image, &mine));
   fill_report(caster, &mine);
   if (report) {
     *report = mine;

@@ -17,7 +17,10 @@ typedef enum stratus_tetra_show {
 /* A mesh as rays read it, made once for all views. Only shown cells are linked to each other. */
 struct stratus_tetra_mesh {
   stratus_context* context;
-  int32_t lattice[3]; /* stratus_mesh.lattice */
+  /* Of lattices the number of each one's first point, and last the end; NULL: cells are listed. Between two lattices there may be numbers
+   * of no point. */
+  int64_t* first;
+  int lattices;
   /* TETRA_CELL ints per cell, in the order of stratus_tetra_places; of a lattice a bit per point: its hexahedron shows */
   int32_t* cells;
   size_t cell_ints, value_count; /* ints of `cells`; of values */
@@ -33,15 +36,20 @@ struct stratus_tetra_mesh {
   double lo[3], hi[3]; /* bounds of the points that shown cells use, in local coordinates */
   float low, high;     /* range of the fetched values of shown cells; low > high: there is none */
   double bias;
-  int64_t cell_count, point_count, shown_cells, blanked, repeated, flat, inverted, broken, folded;
+  int64_t cell_count, point_count; /* of lattices also the numbers of no point */
+  int64_t shown_cells, blanked, repeated, flat, inverted, broken, folded;
   uint64_t geometry; /* hash of points and vertices */
   size_t bytes;
 };
 
 /* Gradients at points, made when light or gradient opacity first asks for them, and dropped with the values. */
 typedef struct stratus_tetra_gradients {
-  float* vectors;       /* in local coordinates, four floats a point in the order of `names`, the fourth 0; NULL: none */
-  double unit, spacing; /* by what they are multiplied; the edge of a cube that six cells of the mean volume fill */
+  /* in local coordinates, four floats a point in the order of `names`, the fourth 0, set after set; NULL: none */
+  float* vectors;
+  unsigned mask;                         /* bit c: component c has a set */
+  int sets, set[STRATUS_COMPONENTS_MAX]; /* of a component, -1: none */
+  double unit[STRATUS_COMPONENTS_MAX];   /* by what a component's are multiplied */
+  double spacing;                        /* the edge of a cube that six cells of the mean volume fill */
   size_t bytes;
 } stratus_tetra_gradients;
 
@@ -60,6 +68,26 @@ typedef struct stratus_tetra_components {
   uint64_t values; /* the caster's value_builds */
 } stratus_tetra_components;
 
+/* How values are drawn: the tables of a transfer function. */
+typedef struct stratus_tetra_look {
+  stratus_transfer* transfer; /* a copy */
+  stratus_tetra_mode mode;    /* what the tables are made for, as the next */
+  double average_range[2];
+  stratus_table* table; /* NULL: none yet */
+  int32_t* sums;        /* stratus_tetra_sums(), or stratus_tetra_value_sums() */
+} stratus_tetra_look;
+
+#define STRATUS_TETRA_PARTS 3 /* components beyond the first */
+
+/* Another component than the first, where each is drawn by itself: what takes the place of the same of a stratus_tetra_mesh and a caster.
+ */
+typedef struct stratus_tetra_part {
+  float* values; /* NULL: none yet */
+  float low, high;
+  double bias;
+  stratus_tetra_look look;
+} stratus_tetra_part;
+
 typedef struct stratus_tetra_costs stratus_tetra_costs; /* tetra_costs.h */
 typedef struct stratus_tetra_list stratus_tetra_list;   /* tetra_lattice.h */
 
@@ -70,16 +98,16 @@ struct stratus_tetra_caster {
   uint64_t mixed;           /* stratus_tetra_hash() of the last lattice whose cells turn both ways; 0: none */
   stratus_tetra_mesh* mesh;
   stratus_tetra_projector* projector; /* NULL until something is projected */
-  stratus_transfer* transfer;         /* a copy; NULL: none yet */
-  stratus_tetra_mode mode;            /* of the table, as the next */
-  double average_range[2];
-  stratus_table* table;
-  int32_t* march_sums;          /* stratus_tetra_sums(), or stratus_tetra_value_sums() */
+  stratus_tetra_look look;            /* of the first component */
+  stratus_tetra_part parts[STRATUS_TETRA_PARTS];
+  uint64_t part_values;         /* `value_builds` that the parts were made from */
   stratus_tetra_device* device; /* buffers on the OpenCL device; NULL: none */
   stratus_tetra_buffers buffers;
   stratus_tetra_gradients gradients;
-  float* factors; /* the gradient opacity of `transfer`, STRATUS_SHADING_FACTORS + 2; NULL: none */
-  float factor_scale;
+  float* factors;                     /* the gradient opacities of components, STRATUS_SHADING_FACTORS + 2 each; NULL: none */
+  stratus_transfer* factor_transfers; /* copies of what they were made from */
+  int factor_count;                   /* of these */
+  float factor_scale[STRATUS_COMPONENTS_MAX];
   stratus_tetra_components components;
   uint64_t mesh_builds, value_builds, table_builds, gradient_builds, component_builds;
   const stratus_tetra_costs* costs; /* taken instead of what was measured, for tests; NULL: none */
@@ -136,18 +164,21 @@ stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus
 /* Whether nothing but marching draws with these options. */
 bool stratus_tetra_modes_march(const stratus_tetra_options* options);
 /* Sums for average and additive in the layout of stratus_tetra_sums(): of opacity times value, of opacity, nothing, and of what counts. A
- * value is a fraction of the mesh's range. */
+ * value is a fraction of the range of `values`. */
 stratus_status stratus_tetra_value_sums(
-  stratus_context* context, const stratus_table* table, const stratus_tetra_mesh* mesh, const double range[2], int32_t** sums);
+  stratus_context* context, const stratus_table* table, const stratus_table_values* values, const double range[2], int32_t** sums);
 /* Sets mode, contours and planes of a frame whose table is set. */
 void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options);
 void stratus_tetra_frame_contours(
   stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer, const stratus_tetra_options* options);
 void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);
 /* tetra_light.c: light and gradient opacity. */
-stratus_status stratus_tetra_light_check(stratus_context* context, const stratus_transfer* transfer, const stratus_tetra_options* options);
-/* Whether the gradient decides how cells look. */
+stratus_status stratus_tetra_light_check(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
+/* Whether the gradient decides how cells of one component look. */
 bool stratus_tetra_light_wanted(const stratus_transfer* transfer, const stratus_tetra_options* options);
+/* Bit c where component c's gradient decides how cells look. */
+unsigned stratus_tetra_light_mask(const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
 /* Makes what is needed of gradients and factors. */
 stratus_status stratus_tetra_light_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   const stratus_tetra_options* options, double* ms);
@@ -156,16 +187,26 @@ void stratus_tetra_light_drop_factors(stratus_tetra_caster* caster);
 /* Sets the arguments of a frame that stratus_tetra_frame_prepare() has prepared. */
 void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_tetra_options* options);
-/* tetra_components.c: values of several components. */
-int stratus_tetra_component_count(const stratus_mesh* mesh);
+/* tetra_components.c: values of several components that mix along rays. */
+bool stratus_tetra_mixes(const stratus_mesh* mesh, const stratus_tetra_options* options);
 stratus_status stratus_tetra_components_check(
   stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
 stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfers,
   const stratus_tetra_options* options, double* ms);
 void stratus_tetra_components_drop(stratus_tetra_caster* caster);
 void stratus_tetra_frame_components(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_tetra_options* options);
-/* Fetches the first component of a value; NAN where another component is not finite, so that its cells do not show. */
-float stratus_tetra_fetch(const stratus_mesh* mesh, const stratus_volume* volume, double bias, size_t value);
+/* tetra_parts.c: makes the tables of the caster's mesh where its look is not that of this function, mode and range; else made->table is
+ * NULL. */
+stratus_status stratus_tetra_look_update(
+  stratus_tetra_caster* caster, const stratus_transfer* transfer, const stratus_tetra_options* options, stratus_tetra_look* made);
+void stratus_tetra_look_drop(stratus_context* context, stratus_tetra_look* look);
+/* Whether each component has a picture of its own. */
+bool stratus_tetra_draws_parts(const stratus_mesh* mesh, const stratus_tetra_options* options);
+stratus_status stratus_tetra_parts_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfers,
+  const stratus_tetra_options* options, double* ms);
+void stratus_tetra_parts_drop(stratus_tetra_caster* caster);
+/* Exchanges what a part and the caster hold. */
+void stratus_tetra_part_swap(stratus_tetra_caster* caster, stratus_tetra_part* part);
 /* tetra_method.c: sets the report's method, march or project, and the reason. */
 stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);

@@ -4,34 +4,16 @@
 
 #include "mesh.h"
 #include "table_fill.h"
-#include "tetra_lattice.h"
+#include "tetra_cells.h"
 
 #include <string.h>
 
 /* Entries of a table, as of one component (tetra_caster.c). */
 #define ENTRIES 32768
 
-int stratus_tetra_component_count(const stratus_mesh* mesh)
+bool stratus_tetra_mixes(const stratus_mesh* mesh, const stratus_tetra_options* options)
 {
-  return mesh->components > 1 ? mesh->components : 1;
-}
-
-/* A mesh's component as values of one. */
-static stratus_volume component_of(const stratus_mesh* mesh, int c)
-{
-  stratus_volume volume = stratus_mesh_values(mesh);
-  volume.values = (const char*)volume.values + (size_t)c * stratus_type_size(mesh->type);
-  return volume;
-}
-
-float stratus_tetra_fetch(const stratus_mesh* mesh, const stratus_volume* volume, double bias, size_t value)
-{
-  bool finite = true;
-  for (int c = 1; c < mesh->components; ++c) {
-    const stratus_volume other = component_of(mesh, c);
-    finite = finite && isfinite(stratus_volume_fetch(&other, bias, value));
-  }
-  return finite ? stratus_volume_fetch(volume, bias, value) : NAN;
+  return stratus_tetra_component_count(mesh) > 1 && options->mode == STRATUS_TETRA_COMPOSITE;
 }
 
 stratus_status stratus_tetra_components_check(
@@ -41,8 +23,11 @@ stratus_status stratus_tetra_components_check(
   if (count == 1) {
     return STRATUS_OK;
   }
-  if (options->mode != STRATUS_TETRA_COMPOSITE) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "values of %d components are not supported in mode %s, only in composite", count,
+  if (options->mode == STRATUS_TETRA_ISOSURFACE) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "isosurfaces of %d components are not supported, only of one", count);
+  }
+  if (options->dependent && options->mode != STRATUS_TETRA_COMPOSITE) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "%d dependent components are not supported in mode %s, only in composite", count,
       stratus_tetra_mode_name(options->mode));
   }
   if (options->method == STRATUS_TETRA_METHOD_PROJECT) {
@@ -53,13 +38,8 @@ stratus_status stratus_tetra_components_check(
     return stratus_fail(context, STRATUS_UNSUPPORTED,
       "%d dependent components of type %d are not supported, only 2 of any type, or 4 of unsigned bytes", count, (int)mesh->type);
   }
-  const int functions = options->dependent ? 1 : count;
-  for (int c = 0; c < functions; ++c) {
+  for (int c = 0; c < (options->dependent ? 1 : count); ++c) {
     TRY(stratus_transfer_check(context, transfers + c));
-    if (transfers[c].gradient_count > 0 || options->shade) {
-      return stratus_fail(
-        context, STRATUS_UNSUPPORTED, "light and gradient opacity of %d components are not supported, only of one", count);
-    }
   }
   return STRATUS_OK;
 }
@@ -77,16 +57,20 @@ void stratus_tetra_components_drop(stratus_tetra_caster* caster)
 /* ---- tables */
 
 /* The finite fetched values of a component, from lo to hi. */
-static stratus_table_values values_of(const stratus_mesh* mesh, const stratus_volume* component, double bias)
+static stratus_table_values values_of(const stratus_mesh* mesh, int c, double bias)
 {
-  const int64_t count = mesh->cell_values ? mesh->cell_count : mesh->point_count;
   float lo = INFINITY, hi = -INFINITY;
-  for (int64_t i = 0; i < count; ++i) {
-    const float value = stratus_volume_fetch(component, bias, (size_t)i);
-    lo = isfinite(value) ? fminf(lo, value) : lo;
-    hi = isfinite(value) ? fmaxf(hi, value) : hi;
+  for (int p = 0; p < stratus_mesh_part_count(mesh); ++p) {
+    const stratus_mesh* part = stratus_mesh_part(mesh, p);
+    const stratus_volume component = stratus_tetra_component(part, c);
+    const int64_t count = part->cell_values ? part->cell_count : part->point_count;
+    for (int64_t i = 0; i < count; ++i) {
+      const float value = stratus_volume_fetch(&component, bias, (size_t)i);
+      lo = isfinite(value) ? fminf(lo, value) : lo;
+      hi = isfinite(value) ? fmaxf(hi, value) : hi;
+    }
   }
-  return (stratus_table_values){ .fetching = { bias, stratus_type_is_wide(component->type), stratus_type_is_integer(component->type) },
+  return (stratus_table_values){ .fetching = { bias, stratus_type_is_wide(mesh->type), stratus_type_is_integer(mesh->type) },
     .lo = lo <= hi ? lo : 0.0f,
     .hi = lo <= hi ? hi : 0.0f,
     .uniform = true };
@@ -97,7 +81,6 @@ typedef struct components_build {
   const stratus_mesh* mesh;
   const stratus_transfer* transfers;
   stratus_tetra_components made;
-  stratus_volume component[4];
   double bias[4];
   float scale[4], offset[4]; /* from a fetched value to its place */
 } components_build;
@@ -122,7 +105,7 @@ static stratus_status add_table(components_build* b, int c)
 {
   stratus_context* context = b->caster->context;
   stratus_tetra_components* m = &b->made;
-  const stratus_table_values values = values_of(b->mesh, &b->component[c], b->bias[c]);
+  const stratus_table_values values = values_of(b->mesh, c, b->bias[c]);
   double half[2];
   const stratus_transfer function = function_of(b, c, half);
   stratus_table* table = NULL;
@@ -155,37 +138,29 @@ static stratus_status add_table(components_build* b, int c)
 
 /* ---- places */
 
-/* The number of a value in the mesh for each slot of a tetra_mesh's values; -1: none. */
-static int64_t value_at(const components_build* b, int64_t slot)
-{
-  const stratus_tetra_mesh* tetra = b->caster->mesh;
-  const int32_t* n = b->mesh->lattice;
-  if (tetra->names) {
-    return b->mesh->cell_values ? (int64_t)tetra->at[slot] : slot;
-  }
-  const int64_t i = slot % n[0], j = slot / n[0] % n[1], k = slot / n[0] / n[1];
-  if (!b->mesh->cell_values) {
-    return slot;
-  }
-  return i < n[0] - 1 && j < n[1] - 1 && k < n[2] - 1 ? (k * (n[1] - 1) + j) * (n[0] - 1) + i : -1;
-}
-
 static stratus_status fill_places(components_build* b)
 {
   stratus_tetra_components* m = &b->made;
   const stratus_tetra_mesh* tetra = b->caster->mesh;
-  const int64_t count = (int64_t)tetra->value_count;
+  const stratus_tetra_cells cells = stratus_tetra_cells_of(tetra, b->mesh);
   void* memory = NULL;
-  TRY(stratus_allocate_zero(b->caster->context, (size_t)count, 4 * sizeof(float), &memory));
+  TRY(stratus_allocate_zero(b->caster->context, tetra->value_count, 4 * sizeof(float), &memory));
   m->places = memory;
-  m->value_count = (size_t)count;
+  m->value_count = tetra->value_count;
+  for (int part = 0; part < stratus_mesh_part_count(b->mesh); ++part) {
+    const stratus_tetra_slots slots = stratus_tetra_slots_of(&cells, part);
+    stratus_volume component[4];
+    for (int c = 0; c < m->count; ++c) {
+      component[c] = stratus_tetra_component(slots.mesh, c);
+    }
 #pragma omp parallel for num_threads(b->caster->context->threads)
-  for (int64_t slot = 0; slot < count; ++slot) {
-    const int64_t value = value_at(b, slot);
-    float* place = m->places + 4 * (tetra->names && !b->mesh->cell_values ? tetra->names[slot] : slot);
-    for (int c = 0; c < m->count && value >= 0; ++c) {
-      const float fetched = stratus_volume_fetch(&b->component[c], b->bias[c], (size_t)value);
-      place[c] = isfinite(fetched) ? fetched * b->scale[c] + b->offset[c] : 0.0f;
+    for (int64_t slot = 0; slot < slots.count; ++slot) {
+      const int64_t value = stratus_tetra_value_at(&cells, &slots, slot);
+      float* place = m->places + 4 * (tetra->names && !b->mesh->cell_values ? tetra->names[slot] : slots.first + slot);
+      for (int c = 0; c < m->count && value >= 0; ++c) {
+        const float fetched = stratus_volume_fetch(&component[c], b->bias[c], (size_t)value);
+        place[c] = isfinite(fetched) ? fetched * b->scale[c] + b->offset[c] : 0.0f;
+      }
     }
   }
   return STRATUS_OK;
@@ -195,8 +170,7 @@ static stratus_status build(components_build* b)
 {
   stratus_tetra_components* m = &b->made;
   for (int c = 0; c < m->count; ++c) {
-    b->component[c] = component_of(b->mesh, c);
-    b->bias[c] = stratus_volume_bias(&b->component[c]);
+    b->bias[c] = stratus_tetra_bias(b->mesh, c);
     if (m->dependent && m->count == 4 && c < 3) { /* red, green and blue are what they are */
       b->scale[c] = 1.0f / 255.0f;
       b->offset[c] = (float)b->bias[c] * b->scale[c];
@@ -216,6 +190,8 @@ stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, con
   components_build b = { .caster = caster, .mesh = mesh, .transfers = transfers };
   if (count == 1) {
     stratus_tetra_components_drop(caster);
+  }
+  if (!stratus_tetra_mixes(mesh, options)) {
     return STRATUS_OK;
   }
   b.made = (stratus_tetra_components){
@@ -244,7 +220,7 @@ void stratus_tetra_frame_components(stratus_tetra_frame* frame, const stratus_te
 {
   const stratus_tetra_components* m = &caster->components;
   stratus_tetra_media_arguments* a = &frame->arguments.media;
-  if (m->count == 0) {
+  if (m->count == 0 || options->mode != STRATUS_TETRA_COMPOSITE) {
     return;
   }
   frame->lit = true;
@@ -259,5 +235,7 @@ void stratus_tetra_frame_components(stratus_tetra_frame* frame, const stratus_te
     a->last[c] = m->last[c];
     a->depth_scale[c] = m->depth_scale[c];
     a->has_opaque[c] = m->has_opaque[c];
+    a->weight[c] = m->dependent ? 1.0f : (float)m->transfers[c].weight;
+    a->way_scale[c] = a->weight[c] > 0.0f ? m->depth_scale[c] / a->weight[c] * frame->arguments.factor_way : 0.0f;
   }
 }

@@ -180,21 +180,25 @@ static void place_point(const frame_build* build, const double at[3], float valu
   point[3] = isfinite(value) ? value : 0.0f;
 }
 
-/* The points of a lattice keep their numbers. No cell that shows has a point beyond the bounds, but floats cannot hold all of those. */
-static stratus_status place_lattice(frame_build* build, stratus_tetra_buffers* buffers)
+/* The points of lattices keep their order. No cell that shows has a point beyond the bounds, but floats cannot hold all of those. */
+static stratus_status place_lattices(frame_build* build, stratus_tetra_buffers* buffers)
 {
-  const stratus_mesh* mesh = build->mesh;
   const stratus_tetra_mesh* tetra = build->tetra;
-  TRY(stratus_tetra_reserve(build->context, &buffers->places, (size_t)mesh->point_count, 4 * sizeof(float)));
+  TRY(stratus_tetra_reserve(build->context, &buffers->places, (size_t)tetra->point_count, 4 * sizeof(float)));
   float* places = buffers->places.memory;
+  for (int part = 0; part < tetra->lattices; ++part) {
+    const stratus_mesh* mesh = stratus_mesh_part(build->mesh, part);
+    const int64_t first = tetra->first[part], beyond = first + mesh->point_count;
 #pragma omp parallel for num_threads(build->context->threads)
-  for (int64_t i = 0; i < mesh->point_count; ++i) {
-    double p[3];
-    stratus_mesh_point(mesh, i, p);
-    for (int axis = 0; axis < 3; ++axis) { /* also where p is not a number */
-      p[axis] = p[axis] > tetra->lo[axis] ? (p[axis] < tetra->hi[axis] ? p[axis] : tetra->hi[axis]) : tetra->lo[axis];
+    for (int64_t i = first; i < beyond; ++i) {
+      double p[3];
+      stratus_mesh_point(mesh, i - first, p);
+      for (int axis = 0; axis < 3; ++axis) { /* also where p is not a number */
+        p[axis] = p[axis] > tetra->lo[axis] ? (p[axis] < tetra->hi[axis] ? p[axis] : tetra->hi[axis]) : tetra->lo[axis];
+      }
+      place_point(build, p, tetra->values ? tetra->values[i] : 0.0f, places + 4 * i);
     }
-    place_point(build, p, tetra->values ? tetra->values[i] : 0.0f, places + 4 * i);
+    memset(places + 4 * beyond, 0, (size_t)(tetra->first[part + 1] - beyond) * 4 * sizeof *places); /* numbers of no point */
   }
   build->frame->places = places;
   return STRATUS_OK;
@@ -204,7 +208,7 @@ static stratus_status place_points(frame_build* build, stratus_tetra_buffers* bu
 {
   const stratus_mesh* mesh = build->mesh;
   if (!build->tetra->names) {
-    return place_lattice(build, buffers);
+    return place_lattices(build, buffers);
   }
   TRY(stratus_tetra_reserve(build->context, &buffers->points, (size_t)mesh->point_count, 4 * sizeof(float)));
   TRY(stratus_tetra_reserve(build->context, &buffers->places, (size_t)mesh->point_count, 4 * sizeof(float)));

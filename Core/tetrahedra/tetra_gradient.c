@@ -4,7 +4,6 @@
  * way. */
 #include "tetra_gradient.h"
 
-#include "tetra_lattice.h"
 #include "vector.h"
 
 #include <string.h>
@@ -12,37 +11,13 @@
 /* What a range of points gathers. Threads share the points, not the cells, and each point adds its cells in their order: the result does
  * not depend on the number of threads. */
 typedef struct gradient_build {
+  stratus_tetra_cells cells;
   const stratus_tetra_mesh* tetra;
   const stratus_mesh* mesh;
   const float* values;  /* of points, or of cells */
-  int64_t step[3];      /* of a lattice */
-  int64_t count;        /* of tetrahedra, those that do not show included */
   double* point_values; /* values of cells, averaged at the points; NULL: values belong to points */
   double* sums;         /* four a point: weighted gradients or values, and last the sum of the weights */
 } gradient_build;
-
-/* A tetrahedron: numbers of its points in the mesh, and where its own value stands. Returns false if it does not show. */
-static bool cell_at(const gradient_build* b, int64_t number, int32_t v[4], int64_t* value)
-{
-  const stratus_tetra_mesh* tetra = b->tetra;
-  if (tetra->names) {
-    const int64_t cell = tetra->at ? (int64_t)tetra->at[number] : number;
-    memcpy(v, b->mesh->vertices + 4 * cell, 4 * sizeof *v);
-    *value = number;
-    return tetra->shown[cell] == STRATUS_TETRA_SHOWN;
-  }
-  const int64_t first = number / 6;
-  const int way = (int)(number % 6);
-  v[0] = (int32_t)first;
-  *value = first;
-  if (!((uint32_t)tetra->cells[first / 32] >> (first % 32) & 1)) {
-    return false;
-  }
-  for (int i = 0; i < 3; ++i) {
-    v[i + 1] = v[i] + (int32_t)b->step[stratus_lattice_ways[way][i]];
-  }
-  return true;
-}
 
 static int64_t name_of(const gradient_build* b, int32_t point)
 {
@@ -54,7 +29,7 @@ static double cell_edges(const gradient_build* b, const int32_t v[4], double edg
 {
   double p[4][3], normal[3];
   for (int i = 0; i < 4; ++i) {
-    stratus_mesh_point(b->mesh, v[i], p[i]);
+    stratus_tetra_point_at(&b->cells, v[i], p[i]);
   }
   for (int i = 0; i < 3; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -85,11 +60,11 @@ static void weigh_gradient(const gradient_build* b, const int32_t v[4], const do
 /* Adds what all cells give to the points named first..beyond-1: gradients, or values of cells. */
 static void gather(const gradient_build* b, int64_t first, int64_t beyond, bool gradients)
 {
-  for (int64_t number = 0; number < b->count; ++number) {
+  for (int64_t number = 0; number < b->cells.count; ++number) {
     int32_t v[4];
     int64_t value, name[4];
     bool mine = false;
-    if (!cell_at(b, number, v, &value)) {
+    if (!stratus_tetra_cell_at(&b->cells, number, v, &value)) {
       continue;
     }
     for (int i = 0; i < 4; ++i) {
@@ -119,7 +94,7 @@ static void gather(const gradient_build* b, int64_t first, int64_t beyond, bool 
   }
 }
 
-static void gather_all(const gradient_build* b, bool gradients)
+static stratus_status gather_all(const gradient_build* b, bool gradients)
 {
   const int parts = b->tetra->context->threads;
   const int64_t points = b->tetra->point_count;
@@ -128,6 +103,7 @@ static void gather_all(const gradient_build* b, bool gradients)
   for (int part = 0; part < parts; ++part) {
     gather(b, points * part / parts, points * (part + 1) / parts, gradients);
   }
+  return stratus_tetra_join_sums(&b->cells, b->tetra->values ? b->values : NULL, b->sums);
 }
 
 /* The mean of what a point has gathered; 0 where no cell shows. */
@@ -164,11 +140,11 @@ static double store(const gradient_build* b, float* out)
 static double spacing_of(const gradient_build* b)
 {
   double sum = 0.0, cells = 0.0;
-  for (int64_t number = 0; number < b->count; ++number) { /* one after the other: a sum's rounding depends on its order */
+  for (int64_t number = 0; number < b->cells.count; ++number) { /* one after the other: a sum's rounding depends on its order */
     int32_t v[4];
     int64_t value;
     double edge[3][3];
-    if (cell_at(b, number, v, &value)) {
+    if (stratus_tetra_cell_at(&b->cells, number, v, &value)) {
       const double volume = fabs(cell_edges(b, v, edge));
       sum += isfinite(volume) ? volume : 0.0;
       cells += volume > 0.0 ? 1.0 : 0.0;
@@ -177,43 +153,76 @@ static double spacing_of(const gradient_build* b)
   return cells > 0.0 ? cbrt(sum / cells) : 0.0;
 }
 
-static stratus_status make(gradient_build* b, stratus_tetra_gradients* gradients)
+/* Values of cells, averaged at the points. */
+static stratus_status average(gradient_build* b)
 {
-  stratus_context* context = b->tetra->context;
   const size_t points = (size_t)b->tetra->point_count;
-  void* memory = NULL;
-  TRY(stratus_allocate(context, points, 4 * sizeof(double), &memory));
-  b->sums = memory;
-  if (!b->tetra->values) {
-    TRY(stratus_allocate(context, points, sizeof(double), &memory));
-    double* averaged = memory;
-    gather_all(b, false);
-    for (size_t i = 0; i < points; ++i) {
-      averaged[i] = mean_of(b->sums + 4 * i, 0);
-    }
-    b->point_values = averaged;
+  void* memory = b->point_values;
+  if (!memory) {
+    TRY(stratus_allocate(b->tetra->context, points, sizeof(double), &memory));
   }
-  gather_all(b, true);
-  TRY(stratus_allocate(context, points, 4 * sizeof(float), &memory));
-  gradients->vectors = memory;
-  gradients->unit = store(b, gradients->vectors);
-  gradients->spacing = spacing_of(b);
-  gradients->bytes = points * 4 * sizeof(float);
+  b->point_values = memory;
+  TRY(gather_all(b, false));
+  for (size_t i = 0; i < points; ++i) {
+    b->point_values[i] = mean_of(b->sums + 4 * i, 0);
+  }
   return STRATUS_OK;
 }
 
-stratus_status stratus_tetra_gradients_create(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, stratus_tetra_gradients* gradients)
+static stratus_status make_set(gradient_build* b, int c, stratus_tetra_gradients* gradients)
 {
-  gradient_build b = { .tetra = tetra, .mesh = mesh, .values = tetra->values ? tetra->values : tetra->cell_values };
+  const size_t points = (size_t)b->tetra->point_count, values = 4 * points;
+  float* fetched = NULL;
+  double bias;
+  stratus_status status = STRATUS_OK;
+  b->values = b->tetra->values ? b->tetra->values : b->tetra->cell_values;
+  if (c > 0) {
+    TRY(stratus_tetra_fetch_component(&b->cells, c, &bias, &fetched));
+    b->values = fetched;
+  }
+  if (!b->tetra->values) {
+    TRY_CLEANUP(average(b));
+  }
+  TRY_CLEANUP(gather_all(b, true));
+  gradients->unit[c] = store(b, gradients->vectors + (size_t)gradients->sets * values);
+  gradients->set[c] = gradients->sets++;
+cleanup:
+  stratus_release(b->tetra->context, fetched);
+  return status;
+}
+
+static stratus_status make(gradient_build* b, unsigned mask, stratus_tetra_gradients* gradients)
+{
+  stratus_context* context = b->tetra->context;
+  const size_t points = (size_t)b->tetra->point_count;
+  size_t sets = 0;
+  void* memory = NULL;
+  for (int c = 0; c < STRATUS_COMPONENTS_MAX; ++c) {
+    sets += mask >> c & 1;
+    gradients->set[c] = -1;
+  }
+  TRY(stratus_allocate(context, points, 4 * sizeof(double), &memory));
+  b->sums = memory;
+  TRY(stratus_allocate(context, points, sets * 4 * sizeof(float), &memory));
+  gradients->vectors = memory;
+  gradients->mask = mask;
+  gradients->bytes = points * sets * 4 * sizeof(float);
+  gradients->spacing = spacing_of(b);
+  for (int c = 0; c < STRATUS_COMPONENTS_MAX; ++c) {
+    if (mask >> c & 1) {
+      TRY(make_set(b, c, gradients));
+    }
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_tetra_gradients_create(
+  const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, unsigned mask, stratus_tetra_gradients* gradients)
+{
+  gradient_build b = { .cells = stratus_tetra_cells_of(tetra, mesh), .tetra = tetra, .mesh = mesh };
   stratus_context* context = tetra->context;
   const stratus_stage stage = stratus_stage_begin(context);
-  if (tetra->names) {
-    b.count = tetra->cell_count;
-  } else {
-    stratus_lattice_steps(mesh, b.step);
-    b.count = 6 * tetra->point_count;
-  }
-  const stratus_status status = make(&b, gradients);
+  const stratus_status status = make(&b, mask, gradients);
   stratus_release(context, b.sums);
   stratus_release(context, b.point_values);
   if (status == STRATUS_OK) {

@@ -3,10 +3,15 @@
 #ifndef STRATUS_TETRA_GRADIENT_H
 #define STRATUS_TETRA_GRADIENT_H
 
-#include "tetra_caster.h"
+#include "tetra_cells.h"
 
-/* Fills *gradients from the values of a mesh whose form for rays is `tetra`. The caller releases gradients->vectors. */
+/* Fills *gradients from the values of a mesh whose form for rays is `tetra`. mask: bit c where component c's are wanted. The caller
+ * releases gradients->vectors, also after a failure. */
 stratus_status stratus_tetra_gradients_create(
-  const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, stratus_tetra_gradients* gradients);
+  const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, unsigned mask, stratus_tetra_gradients* gradients);
+
+/* tetra_seams.c: gives points of several lattices that lie in one place and have one value the sum of all their sums, four for each point.
+ * values: of points; NULL: the place alone counts. */
+stratus_status stratus_tetra_join_sums(const stratus_tetra_cells* cells, const float* values, double* sums);
 
 #endif

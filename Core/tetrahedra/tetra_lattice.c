@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Converts a lattice of hexahedra to the form that rays read. Rays find a cell's neighbours by the numbers of its points
+ * Converts lattices of hexahedra to the form that rays read. Rays find a cell's neighbours by the numbers of its points
  * (tetra_lattice_next() in kernels/tetrahedra/tetra_march.h), so that of cells only a bit for each hexahedron is kept, whether it shows. A
  * hexahedron is named by its first corner; the bits of points that are nobody's first corner stay 0, and so end the lattice on all sides.
- */
+ * Several lattices have the numbers of their points one after the other. A ray that leaves one by its border enters the next as it enters
+ * the mesh: a face of both is passed by the same rays, as its points are the same floats. */
 #include "tetra_lattice.h"
 
 #include <string.h>
@@ -10,33 +11,57 @@
 #define POINTS_MOST (INT32_MAX / TETRA_CELL) /* cells of rays are TETRA_CELL times a point's number, as are those of lists */
 #define WORD 32                              /* bits of a word */
 
-/* The axes along which a tetrahedron goes from the first corner of its hexahedron to the last. */
-const int stratus_lattice_ways[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 0, 2, 1 }, { 1, 0, 2 }, { 2, 1, 0 } };
-
-void stratus_lattice_steps(const stratus_mesh* mesh, int64_t step[3])
-{
-  step[0] = 1;
-  step[1] = mesh->lattice[0];
-  step[2] = step[1] * mesh->lattice[1];
-}
-
+/* A lattice, its numbers counted from its own first point. */
 typedef struct lattice_build {
   stratus_tetra_mesh* tetra;
   const stratus_mesh* mesh;
-  stratus_volume volume; /* the mesh's values */
+  stratus_volume volume; /* the lattice's values */
   int64_t step[3], corner[8];
+  int64_t first, words; /* the number of its first point; its words of bits */
   uint32_t* bits;
-  int64_t words;
+  float* values;
+  bool left; /* its tetrahedra turn the other way */
 } lattice_build;
 
-static lattice_build build_of(stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
+static lattice_build build_of(stratus_tetra_mesh* tetra, const stratus_mesh* whole, int part, uint32_t* bits, float* values)
 {
-  lattice_build b = { .tetra = tetra, .mesh = mesh, .volume = stratus_mesh_values(mesh), .words = (mesh->point_count + WORD - 1) / WORD };
+  const stratus_mesh* mesh = stratus_mesh_part(whole, part);
+  lattice_build b = { .tetra = tetra, .mesh = mesh, .volume = stratus_mesh_values(mesh), .first = tetra->first[part] };
+  b.words = (mesh->point_count + WORD - 1) / WORD;
+  b.bits = bits + b.first / WORD;
+  b.values = values + b.first;
   stratus_lattice_steps(mesh, b.step);
   for (int corner = 0; corner < 8; ++corner) {
     b.corner[corner] = (corner & 1) * b.step[0] + (corner >> 1 & 1) * b.step[1] + (corner >> 2) * b.step[2];
   }
   return b;
+}
+
+/* Numbers the points of all lattices. A hexahedron behind the lower end of a lattice would be named by a point up to a layer before the
+ * first: there lie points of the layer that ends the lattice before, or no points at all. Lattices begin at whole words of bits. */
+static stratus_status number_points(stratus_tetra_mesh* tetra, const stratus_mesh* whole)
+{
+  const int count = stratus_mesh_part_count(whole);
+  int64_t end = 0, layer = 0;
+  void* memory = NULL;
+  TRY(stratus_allocate(tetra->context, (size_t)count + 1, sizeof *tetra->first, &memory));
+  tetra->first = memory;
+  tetra->lattices = count;
+  for (int part = 0; part <= count; ++part) {
+    const stratus_mesh* mesh = part < count ? stratus_mesh_part(whole, part) : NULL;
+    const int64_t own = mesh ? (int64_t)mesh->lattice[0] * mesh->lattice[1] : 0;
+    end += part > 0 && own > layer ? own - layer : 0;
+    tetra->first[part] = mesh ? (end + WORD - 1) / WORD * WORD : end;
+    end = tetra->first[part] + (mesh ? mesh->point_count : 0);
+    layer = own;
+    if (end > POINTS_MOST) {
+      return stratus_fail(tetra->context, STRATUS_UNSUPPORTED,
+        "lattices of %lld cells and more than %d points, with those between them, are too large to draw", (long long)whole->cell_count,
+        POINTS_MOST);
+    }
+  }
+  tetra->point_count = end;
+  return STRATUS_OK;
 }
 
 /* A point's place in the lattice; a hexahedron is that of its first corner. */
@@ -83,12 +108,12 @@ bool stratus_lattice_shows(const stratus_mesh* mesh, const int64_t corner[8], in
 }
 
 /* Whether the hexahedron shows, by flags and coordinates and by its values. range: their least and greatest. */
-static bool shows(const lattice_build* b, const float* values, int64_t first, int64_t cell, float range[2])
+static bool shows(const lattice_build* b, int64_t first, int64_t cell, float range[2])
 {
   range[0] = INFINITY;
   range[1] = -INFINITY;
   for (int i = 0; i < (b->mesh->cell_values ? 1 : 8); ++i) {
-    const float value = values[first + b->corner[i]];
+    const float value = b->values[first + b->corner[i]];
     if (!isfinite(value)) {
       return false;
     }
@@ -99,30 +124,32 @@ static bool shows(const lattice_build* b, const float* values, int64_t first, in
 }
 
 /* Fetches a value for each point. Those of cells stand at their first corners. */
-static stratus_status fetch_values(const lattice_build* b, double bias, float** out)
+static void fetch_values(const lattice_build* b, double bias)
 {
   const stratus_mesh* mesh = b->mesh;
-  void* memory = NULL;
-  TRY(stratus_allocate_zero(b->tetra->context, (size_t)mesh->point_count, sizeof(float), &memory));
-  float* values = memory;
 #pragma omp parallel for num_threads(b->tetra->context->threads)
   for (int64_t word = 0; word < b->words; ++word) {
     lattice_place at = place_of(mesh, WORD * word);
     for (int bit = 0; bit < WORD && at.point < mesh->point_count; ++bit, next_place(mesh, &at)) {
       const int64_t from = mesh->cell_values ? hexahedron_at(mesh, &at) : at.point;
-      values[at.point] = from < 0 ? 0.0f : stratus_tetra_fetch(mesh, &b->volume, bias, (size_t)from);
+      b->values[at.point] = from < 0 ? 0.0f : stratus_tetra_fetch(mesh, &b->volume, bias, (size_t)from);
     }
   }
-  *out = values;
-  return STRATUS_OK;
 }
 
-/* Sets the bits of hexahedra that show, and what is counted of them. Returns how many bits differ from those before. */
-static int64_t find_shown(lattice_build* b, const float* values, const uint32_t* before)
+/* What lattices show. */
+typedef struct lattice_counts {
+  int64_t shown, hidden, changed; /* hexahedra; words of bits that differ from those before */
+  float low, high;
+} lattice_counts;
+
+/* Sets the bits of hexahedra that show, and adds what is counted of them. before: the bits of all lattices before; NULL: there were none.
+ */
+static void find_shown(lattice_build* b, const uint32_t* before, lattice_counts* counts)
 {
   const stratus_mesh* mesh = b->mesh;
   int64_t shown = 0, hidden = 0, changed = 0;
-  float low = INFINITY, high = -INFINITY;
+  float low = counts->low, high = counts->high;
   const int threads = b->tetra->context->threads;
 #pragma omp parallel for num_threads(threads) reduction(+ : shown, hidden, changed) reduction(min : low) reduction(max : high)
   for (int64_t word = 0; word < b->words; ++word) {
@@ -132,23 +159,25 @@ static int64_t find_shown(lattice_build* b, const float* values, const uint32_t*
       const int64_t cell = hexahedron_at(mesh, &at);
       float range[2];
       hidden += cell >= 0 && mesh->hidden && mesh->hidden[cell];
-      if (cell >= 0 && shows(b, values, at.point, cell, range)) {
+      if (cell >= 0 && shows(b, at.point, cell, range)) {
         bits |= 1u << bit;
         ++shown;
         low = fminf(low, range[0]);
         high = fmaxf(high, range[1]);
       }
     }
-    changed += before && before[word] != bits;
+    changed += before && before[b->first / WORD + word] != bits;
     b->bits[word] = bits;
   }
-  if (changed == 0) {
-    b->tetra->low = low;
-    b->tetra->high = high;
-    b->tetra->shown_cells = 6 * shown;
-    b->tetra->blanked = 6 * (mesh->cell_count - shown - hidden);
-  }
-  return changed;
+  *counts = (lattice_counts){ counts->shown + shown, counts->hidden + hidden, counts->changed + changed, low, high };
+}
+
+static void keep_counts(stratus_tetra_mesh* tetra, const stratus_mesh* whole, const lattice_counts* counts)
+{
+  tetra->low = counts->low;
+  tetra->high = counts->high;
+  tetra->shown_cells = 6 * counts->shown;
+  tetra->blanked = 6 * (whole->cell_count - counts->shown - counts->hidden);
 }
 
 static bool has_bit(const lattice_build* b, int64_t point)
@@ -171,12 +200,14 @@ static int own_orientation(int way)
   return way < 3 ? 1 : -1;
 }
 
-/* Finds which way the hexahedra turn, and their bounds. *mixed: tetrahedra turn both ways, so that some overlap. */
-static void find_orientation(const lattice_build* b, bool* mixed)
+/* Finds which way the hexahedra turn, and adds their bounds. Returns true where tetrahedra turn both ways, so that some overlap. */
+static bool find_orientation(lattice_build* b)
 {
   const stratus_mesh* mesh = b->mesh;
   int64_t right = 0, left = 0, flat = 0;
-  double lo[3] = { INFINITY, INFINITY, INFINITY }, hi[3] = { -INFINITY, -INFINITY, -INFINITY };
+  double lo[3], hi[3];
+  memcpy(lo, b->tetra->lo, sizeof lo);
+  memcpy(hi, b->tetra->hi, sizeof hi);
   const int threads = b->tetra->context->threads;
 #pragma omp parallel for num_threads(threads) reduction(+ : right, left, flat) reduction(min : lo[:3]) reduction(max : hi[:3])
   for (int64_t word = 0; word < b->words; ++word) {
@@ -202,17 +233,19 @@ static void find_orientation(const lattice_build* b, bool* mixed)
       }
     }
   }
-  *mixed = right > 0 && left > 0;
-  b->tetra->flat = flat;
-  b->tetra->inverted = left;
+  b->left = left > 0;
+  b->tetra->flat += flat;
+  b->tetra->inverted += left;
   memcpy(b->tetra->lo, lo, sizeof lo);
   memcpy(b->tetra->hi, hi, sizeof hi);
+  return right > 0 && left > 0;
 }
 
 /* Lists the faces between hexahedra that show and what does not, unless faces is NULL, and returns their count. */
 static size_t list_faces(const lattice_build* b, stratus_tetra_face* faces)
 {
-  const int hand = b->tetra->inverted > 0 ? -1 : 1;
+  const int hand = b->left ? -1 : 1;
+  const int32_t base = (int32_t)b->first;
   size_t count = 0;
   for (int64_t first = 0; first < b->mesh->point_count; ++first) {
     if (first % WORD == 0 && b->bits[first / WORD] == 0) {
@@ -229,9 +262,9 @@ static size_t list_faces(const lattice_build* b, stratus_tetra_face* faces)
           }
           if (faces) {
             int32_t v[4], p[3];
-            tetrahedron(b->step, first, way, v);
+            tetrahedron(b->step, b->first + first, way, v);
             const bool right = stratus_face_points(v, f, p) * own_orientation(way) * hand > 0;
-            faces[count] = (stratus_tetra_face){ { p[0], p[right ? 1 : 2], p[right ? 2 : 1] }, v[f], (int32_t)(TETRA_CELL * first) };
+            faces[count] = (stratus_tetra_face){ { p[0], p[right ? 1 : 2], p[right ? 2 : 1] }, v[f], TETRA_CELL * (base + (int32_t)first) };
           }
           ++count;
         }
@@ -241,47 +274,64 @@ static size_t list_faces(const lattice_build* b, stratus_tetra_face* faces)
   return count;
 }
 
-static stratus_status make_faces(const lattice_build* b)
+static stratus_status make_faces(stratus_tetra_mesh* tetra, const lattice_build* builds)
 {
-  stratus_tetra_mesh* tetra = b->tetra;
   void* memory = NULL;
-  tetra->face_count = list_faces(b, NULL);
-  if (tetra->face_count > INT32_MAX / TETRA_FACE) {
-    return stratus_fail(tetra->context, STRATUS_UNSUPPORTED, "mesh with %zu border faces is too large to draw: at most %d",
-      tetra->face_count, INT32_MAX / TETRA_FACE);
+  size_t count = 0;
+  for (int part = 0; part < tetra->lattices; ++part) {
+    count += list_faces(builds + part, NULL);
   }
-  TRY(stratus_allocate(tetra->context, tetra->face_count, sizeof(stratus_tetra_face), &memory));
+  if (count > INT32_MAX / TETRA_FACE) {
+    return stratus_fail(
+      tetra->context, STRATUS_UNSUPPORTED, "mesh with %zu border faces is too large to draw: at most %d", count, INT32_MAX / TETRA_FACE);
+  }
+  TRY(stratus_allocate(tetra->context, count, sizeof(stratus_tetra_face), &memory));
   tetra->faces = memory;
-  (void)list_faces(b, tetra->faces);
+  for (int part = 0; part < tetra->lattices; ++part) {
+    tetra->face_count += list_faces(builds + part, tetra->faces + tetra->face_count);
+  }
   return STRATUS_OK;
 }
 
-static stratus_status build(lattice_build* b, bool* mixed)
+/* builds: room for one of each lattice. */
+static stratus_status build(stratus_tetra_mesh* tetra, const stratus_mesh* whole, lattice_build* builds, bool* mixed)
 {
-  stratus_tetra_mesh* tetra = b->tetra;
+  stratus_context* context = tetra->context;
+  const size_t points = (size_t)tetra->point_count;
+  lattice_counts counts = { .low = INFINITY, .high = -INFINITY };
   void* memory = NULL;
-  float* values = NULL;
-  tetra->bias = stratus_volume_bias(&b->volume);
-  TRY(stratus_allocate(tetra->context, (size_t)b->words, sizeof *b->bits, &memory));
+  tetra->bias = stratus_tetra_bias(whole, 0);
+  tetra->cell_ints = (points + WORD - 1) / WORD;
+  tetra->value_count = points;
+  TRY(stratus_allocate_zero(context, tetra->cell_ints, sizeof *tetra->cells, &memory));
   tetra->cells = memory;
-  tetra->cell_ints = (size_t)b->words;
-  b->bits = memory;
-  TRY(fetch_values(b, tetra->bias, &values));
-  *(b->mesh->cell_values ? &tetra->cell_values : &tetra->values) = values;
-  tetra->value_count = (size_t)b->mesh->point_count;
-  (void)find_shown(b, values, NULL);
-  find_orientation(b, mixed);
+  TRY(stratus_allocate_zero(context, points, sizeof(float), &memory));
+  *(whole->cell_values ? &tetra->cell_values : &tetra->values) = memory;
+  for (int axis = 0; axis < 3; ++axis) {
+    tetra->lo[axis] = INFINITY;
+    tetra->hi[axis] = -INFINITY;
+  }
+  *mixed = false;
+  for (int part = 0; part < tetra->lattices; ++part) {
+    lattice_build* b = builds + part;
+    *b = build_of(tetra, whole, part, (uint32_t*)tetra->cells, memory);
+    fetch_values(b, tetra->bias);
+    find_shown(b, NULL, &counts);
+    *mixed = find_orientation(b) || *mixed;
+  }
+  keep_counts(tetra, whole, &counts);
   if (*mixed) {
     return STRATUS_OK;
   }
-  TRY(make_faces(b));
-  tetra->bytes = tetra->cell_ints * sizeof *tetra->cells + tetra->value_count * sizeof *values + tetra->face_count * sizeof *tetra->faces;
+  TRY(make_faces(tetra, builds));
+  tetra->bytes = tetra->cell_ints * sizeof *tetra->cells + points * sizeof(float) + tetra->face_count * sizeof *tetra->faces;
   return STRATUS_OK;
 }
 
 stratus_status stratus_tetra_lattice_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out, bool* mixed)
 {
-  void* memory = NULL;
+  void *memory = NULL, *builds = NULL;
+  stratus_status status;
   if (mesh->point_count > POINTS_MOST || mesh->cell_count > INT32_MAX / TETRA_CELL) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "lattice of %lld cells and %lld points is too large to draw: at most %d points",
       (long long)mesh->cell_count, (long long)mesh->point_count, POINTS_MOST);
@@ -291,41 +341,45 @@ stratus_status stratus_tetra_lattice_create(stratus_context* context, const stra
   stratus_tetra_mesh* tetra = memory;
   tetra->context = context;
   tetra->cell_count = 6 * mesh->cell_count;
-  tetra->point_count = mesh->point_count;
-  memcpy(tetra->lattice, mesh->lattice, sizeof tetra->lattice);
+  TRY_CLEANUP(number_points(tetra, mesh));
+  TRY_CLEANUP(stratus_allocate_zero(context, (size_t)tetra->lattices, sizeof(lattice_build), &builds));
   tetra->geometry = stratus_tetra_hash(context, mesh);
-  lattice_build b = build_of(tetra, mesh);
-  const stratus_status status = build(&b, mixed);
-  if (status != STRATUS_OK) {
-    stratus_tetra_mesh_destroy(tetra);
-    return status;
-  }
+  TRY_CLEANUP(build(tetra, mesh, builds, mixed));
   stratus_stage_end(context, &stage, "bits and border", tetra->bytes);
   *out = tetra;
-  return STRATUS_OK;
+  tetra = NULL;
+
+cleanup:
+  stratus_release(context, builds);
+  stratus_tetra_mesh_destroy(tetra);
+  return status;
 }
 
 stratus_status stratus_tetra_lattice_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken)
 {
-  stratus_status status = STRATUS_OK;
-  lattice_build b = build_of(tetra, mesh);
-  const double bias = stratus_volume_bias(&b.volume);
-  float* values = NULL;
-  void* memory = NULL;
-  TRY(fetch_values(&b, bias, &values));
-  TRY_CLEANUP(stratus_allocate(tetra->context, (size_t)b.words, sizeof *b.bits, &memory));
-  b.bits = memory;
-  *taken = find_shown(&b, values, (const uint32_t*)tetra->cells) == 0;
+  const double bias = stratus_tetra_bias(mesh, 0);
+  lattice_counts counts = { .low = INFINITY, .high = -INFINITY };
+  void *values = NULL, *bits = NULL;
+  stratus_status status;
+  TRY_CLEANUP(stratus_allocate_zero(tetra->context, tetra->value_count, sizeof(float), &values));
+  TRY_CLEANUP(stratus_allocate_zero(tetra->context, tetra->cell_ints, sizeof *tetra->cells, &bits));
+  for (int part = 0; part < tetra->lattices; ++part) {
+    lattice_build b = build_of(tetra, mesh, part, bits, values);
+    fetch_values(&b, bias);
+    find_shown(&b, (const uint32_t*)tetra->cells, &counts);
+  }
+  *taken = counts.changed == 0;
   if (*taken) {
     float** old = mesh->cell_values ? &tetra->cell_values : &tetra->values;
     float* outdated = *old;
     *old = values;
     values = outdated;
     tetra->bias = bias;
+    keep_counts(tetra, mesh, &counts);
   }
 
 cleanup:
-  stratus_release(tetra->context, memory);
+  stratus_release(tetra->context, bits);
   stratus_release(tetra->context, values);
   return status;
 }

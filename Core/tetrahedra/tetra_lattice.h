@@ -4,12 +4,9 @@
 #define STRATUS_TETRA_LATTICE_H
 
 #include "mesh.h"
-#include "tetra_caster.h"
+#include "tetra_cells.h"
 
 /* tetra_lattice.c */
-extern const int stratus_lattice_ways[6][3];
-/* The distances between the numbers of points that are neighbours along i, j and k. */
-void stratus_lattice_steps(const stratus_mesh* mesh, int64_t step[3]);
 /* Whether a hexahedron shows by its flag and coordinates, whatever its values. first: its first corner; corner: distances of all from it.
  */
 bool stratus_lattice_shows(const stratus_mesh* mesh, const int64_t corner[8], int64_t first, int64_t cell);

@@ -1,37 +1,41 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Lists the tetrahedra of a lattice, for projection and for lattices whose cells turn both ways. */
+ * Lists the tetrahedra of lattices, for projection and for lattices whose cells turn both ways. */
 #include "tetra_lattice.h"
 
 #include <string.h>
 
+/* A lattice whose tetrahedra are listed behind those of the ones before. */
 typedef struct list_build {
   stratus_tetra_list* list;
   const stratus_mesh* lattice;
   int64_t step[3], corner[8];
+  int64_t first_point, first_cell; /* in the list, tetrahedra from 6 first_cell on */
 } list_build;
 
-/* Copies points that are floats. Those that are not finite become 0: their hexahedra are hidden. */
-static stratus_status copy_points(const list_build* b)
+/* Copies points that are floats, or those of several lattices. Those that are not finite become 0: their hexahedra are hidden. */
+static stratus_status copy_points(stratus_tetra_list* list, const stratus_mesh* whole)
 {
-  const stratus_mesh* lattice = b->lattice;
-  const int64_t count = 3 * lattice->point_count;
+  const int64_t count = 3 * whole->point_count;
   int64_t wrong = 0;
-  for (int64_t i = 0; i < count && lattice->points; ++i) {
-    wrong += !isfinite(lattice->points[i]);
+  for (int64_t i = 0; i < count && whole->points; ++i) {
+    wrong += !isfinite(whole->points[i]);
   }
-  b->list->mesh.points = lattice->points;
-  if (lattice->points && wrong == 0) {
+  list->mesh.points = whole->points;
+  if (whole->points && wrong == 0) {
     return STRATUS_OK;
   }
-  TRY(stratus_allocate(b->list->context, (size_t)count, sizeof(double), &b->list->points));
-  double* points = b->list->points;
-  for (int64_t i = 0; i < lattice->point_count; ++i) {
-    stratus_mesh_point(lattice, i, points + 3 * i);
-    for (int axis = 0; axis < 3; ++axis) {
-      points[3 * i + axis] = isfinite(points[3 * i + axis]) ? points[3 * i + axis] : 0.0;
+  TRY(stratus_allocate(list->context, (size_t)count, sizeof(double), &list->points));
+  double* at = list->points;
+  for (int part = 0; part < stratus_mesh_part_count(whole); ++part) {
+    const stratus_mesh* lattice = stratus_mesh_part(whole, part);
+    for (int64_t i = 0; i < lattice->point_count; ++i, at += 3) {
+      stratus_mesh_point(lattice, i, at);
+      for (int axis = 0; axis < 3; ++axis) {
+        at[axis] = isfinite(at[axis]) ? at[axis] : 0.0;
+      }
     }
   }
-  b->list->mesh.points = points;
+  list->mesh.points = list->points;
   return STRATUS_OK;
 }
 
@@ -46,49 +50,73 @@ static bool is_finite(const list_build* b, const stratus_volume* values, double 
   return finite;
 }
 
+/* Copies a value of the lattice to the list. */
+static void copy_value(const list_build* b, int64_t from, size_t to)
+{
+  const size_t one = stratus_type_size(b->lattice->type), size = (size_t)stratus_tetra_component_count(b->lattice) * one;
+  memcpy((char*)b->list->values + size * to, (const char*)b->lattice->values + one * (size_t)(b->lattice->value_stride * from), size);
+}
+
 static void list_cell(const list_build* b, const stratus_volume* values, double bias, int64_t first, int64_t cell)
 {
   const stratus_mesh* lattice = b->lattice;
-  const size_t components = (size_t)stratus_tetra_component_count(lattice), size = components * stratus_type_size(lattice->type);
   const bool shows = stratus_lattice_shows(lattice, b->corner, first, cell) && is_finite(b, values, bias, first, cell);
   for (int way = 0; way < 6; ++way) {
-    const size_t part = 6 * (size_t)cell + (size_t)way;
+    const size_t part = 6 * (size_t)(b->first_cell + cell) + (size_t)way;
     int32_t* v = (int32_t*)b->list->vertices + 4 * part;
-    v[0] = (int32_t)first;
+    v[0] = (int32_t)(b->first_point + first);
     for (int i = 0; i < 3; ++i) {
       v[i + 1] = v[i] + (int32_t)b->step[stratus_lattice_ways[way][i]];
     }
     ((uint8_t*)b->list->hidden)[part] = shows ? 0 : 1;
     if (lattice->cell_values) {
-      memcpy((char*)b->list->values + size * part,
-        (const char*)lattice->values + stratus_type_size(lattice->type) * (size_t)(lattice->value_stride * cell), size);
+      copy_value(b, cell, part);
     }
   }
 }
 
-static stratus_status fill(list_build* b)
+static void list_lattice(const list_build* b, double bias)
 {
-  stratus_tetra_list* list = b->list;
   const stratus_mesh* lattice = b->lattice;
   const stratus_volume values = stratus_mesh_values(lattice);
-  const double bias = stratus_volume_bias(&values);
   const int32_t* n = lattice->lattice;
-  const size_t parts = 6 * (size_t)lattice->cell_count;
-  TRY(copy_points(b));
-  TRY(stratus_allocate(list->context, parts, 4 * sizeof(int32_t), &list->vertices));
-  TRY(stratus_allocate(list->context, parts, 1, &list->hidden));
-  if (lattice->cell_values) {
-    const int components = stratus_tetra_component_count(lattice);
-    TRY(stratus_allocate(list->context, parts, (size_t)components * stratus_type_size(lattice->type), &list->values));
-    list->mesh.values = list->values;
-    list->mesh.value_stride = components;
+  const int64_t points = b->list->values && !lattice->cell_values ? lattice->point_count : 0;
+  for (int64_t i = 0; i < points; ++i) {
+    copy_value(b, i, (size_t)(b->first_point + i));
   }
-#pragma omp parallel for num_threads(list->context->threads)
+#pragma omp parallel for num_threads(b->list->context->threads)
   for (int64_t row = 0; row < (int64_t)(n[1] - 1) * (n[2] - 1); ++row) {
     const int64_t j = row % (n[1] - 1), k = row / (n[1] - 1);
     for (int64_t i = 0; i < n[0] - 1; ++i) {
       list_cell(b, &values, bias, i + j * b->step[1] + k * b->step[2], row * (n[0] - 1) + i);
     }
+  }
+}
+
+static stratus_status fill(stratus_tetra_list* list, const stratus_mesh* whole)
+{
+  const size_t cells = 6 * (size_t)whole->cell_count;
+  const double bias = stratus_tetra_bias(whole, 0);
+  TRY(copy_points(list, whole));
+  TRY(stratus_allocate(list->context, cells, 4 * sizeof(int32_t), &list->vertices));
+  TRY(stratus_allocate(list->context, cells, 1, &list->hidden));
+  if (whole->cell_values || whole->block_count > 0) {
+    const int components = stratus_tetra_component_count(whole);
+    TRY(stratus_allocate(list->context, whole->cell_values ? cells : (size_t)whole->point_count,
+      (size_t)components * stratus_type_size(whole->type), &list->values));
+    list->mesh.values = list->values;
+    list->mesh.value_stride = components;
+  }
+  list_build b = { .list = list };
+  for (int part = 0; part < stratus_mesh_part_count(whole); ++part) {
+    b.lattice = stratus_mesh_part(whole, part);
+    stratus_lattice_steps(b.lattice, b.step);
+    for (int corner = 0; corner < 8; ++corner) {
+      b.corner[corner] = (corner & 1) * b.step[0] + (corner >> 1 & 1) * b.step[1] + (corner >> 2) * b.step[2];
+    }
+    list_lattice(&b, bias);
+    b.first_point += b.lattice->point_count;
+    b.first_cell += b.lattice->cell_count;
   }
   list->mesh.vertices = list->vertices;
   list->mesh.hidden = list->hidden;
@@ -109,13 +137,10 @@ stratus_status stratus_tetra_list_create(stratus_context* context, const stratus
   list->source = list->mesh = *lattice;
   memset(list->mesh.lattice, 0, sizeof list->mesh.lattice);
   list->mesh.float_points = NULL;
+  list->mesh.blocks = NULL;
+  list->mesh.block_count = 0;
   list->mesh.cell_count = 6 * lattice->cell_count;
-  list_build b = { .list = list, .lattice = lattice };
-  stratus_lattice_steps(lattice, b.step);
-  for (int corner = 0; corner < 8; ++corner) {
-    b.corner[corner] = (corner & 1) * b.step[0] + (corner >> 1 & 1) * b.step[1] + (corner >> 2) * b.step[2];
-  }
-  const stratus_status status = fill(&b);
+  const stratus_status status = fill(list, lattice);
   if (status != STRATUS_OK) {
     stratus_tetra_list_destroy(list);
     return status;

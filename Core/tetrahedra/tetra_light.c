@@ -5,6 +5,7 @@
 #include "gradient_factors.h"
 #include "lights.h"
 #include "matrix.h"
+#include "tetra_cells.h"
 #include "tetra_gradient.h"
 #include "vector.h"
 
@@ -13,9 +14,18 @@
 /* Ways of gradient_distance in a unit of length, at most and at least: products with optical depths stay floats. */
 #define WAY_MOST 1e20
 
-static bool shades(const stratus_tetra_options* options)
+/* The material of component c: the shading's own where there are none of components. */
+static stratus_material material_of(const stratus_mesh* mesh, const stratus_tetra_options* options, int c)
 {
-  return options->shade && (options->mode == STRATUS_TETRA_COMPOSITE || options->mode == STRATUS_TETRA_ISOSURFACE);
+  const stratus_shading* shading = &options->shading;
+  const bool own = options->materials && stratus_tetra_mixes(mesh, options) && !options->dependent;
+  return own ? options->materials[c]
+             : (stratus_material){ options->shade, shading->ambient, shading->diffuse, shading->specular, shading->specular_power };
+}
+
+static bool lights(const stratus_tetra_options* options)
+{
+  return options->mode == STRATUS_TETRA_COMPOSITE || options->mode == STRATUS_TETRA_ISOSURFACE;
 }
 
 static bool thins(const stratus_transfer* transfer, const stratus_tetra_options* options)
@@ -25,19 +35,50 @@ static bool thins(const stratus_transfer* transfer, const stratus_tetra_options*
 
 bool stratus_tetra_light_wanted(const stratus_transfer* transfer, const stratus_tetra_options* options)
 {
-  return shades(options) || thins(transfer, options);
+  return (lights(options) && options->shade) || thins(transfer, options);
 }
 
-stratus_status stratus_tetra_light_check(stratus_context* context, const stratus_transfer* transfer, const stratus_tetra_options* options)
+unsigned stratus_tetra_light_mask(const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options)
+{
+  const int count = lights(options) ? stratus_tetra_component_count(mesh) : 0;
+  unsigned mask = 0;
+  for (int c = options->dependent && count > 0 ? count - 1 : 0; c < count; ++c) {
+    const bool counts = material_of(mesh, options, c).shade || thins(transfers + (options->dependent ? 0 : c), options);
+    mask |= counts ? 1u << c : 0;
+  }
+  return mask;
+}
+
+static stratus_status check_materials(stratus_context* context, const stratus_mesh* mesh, const stratus_tetra_options* options)
+{
+  const int count = stratus_tetra_component_count(mesh);
+  for (int c = 0; c < count; ++c) {
+    const stratus_material m = material_of(mesh, options, c);
+    const double numbers[4] = { m.ambient, m.diffuse, m.specular, m.specular_power };
+    if (m.shade) {
+      TRY(stratus_shading_check(context, &options->shading));
+    }
+    for (int i = 0; m.shade && i < 4; ++i) {
+      if (!(numbers[i] >= 0.0 && numbers[i] <= STRATUS_LIGHT_MAX)) {
+        return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "material of component %d has (%g, %g, %g, %g), must be 0..%g", c,
+          numbers[0], numbers[1], numbers[2], numbers[3], STRATUS_LIGHT_MAX);
+      }
+    }
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_tetra_light_check(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options)
 {
   if (!isfinite(options->gradient_distance)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "gradient_distance %g, must be finite", options->gradient_distance);
   }
-  if (options->method == STRATUS_TETRA_METHOD_PROJECT && stratus_tetra_light_wanted(transfer, options)) {
+  if (options->method == STRATUS_TETRA_METHOD_PROJECT && stratus_tetra_light_mask(mesh, transfers, options)) {
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "light and gradient opacity cannot be projected, only marched: take the method march or auto");
   }
-  return shades(options) ? stratus_shading_check(context, &options->shading) : STRATUS_OK;
+  return lights(options) ? check_materials(context, mesh, options) : STRATUS_OK;
 }
 
 void stratus_tetra_light_drop(stratus_tetra_caster* caster)
@@ -50,56 +91,92 @@ void stratus_tetra_light_drop(stratus_tetra_caster* caster)
 void stratus_tetra_light_drop_factors(stratus_tetra_caster* caster)
 {
   stratus_release(caster->context, caster->factors);
+  stratus_release(caster->context, caster->factor_transfers);
   caster->factors = NULL;
+  caster->factor_transfers = NULL;
+  caster->factor_count = 0;
 }
 
-/* Makes the factors anew where they are not those of this function: the copy in caster->transfer is older then. */
-static stratus_status update_factors(stratus_tetra_caster* caster, const stratus_transfer* transfer)
+/* Makes the factors of `count` components anew where they are not those of these functions. */
+static stratus_status update_factors(stratus_tetra_caster* caster, const stratus_transfer* transfers, int count, bool dependent)
 {
+  const int functions = dependent ? 1 : count;
+  const size_t factors = STRATUS_SHADING_FACTORS + 2;
   void* memory = NULL;
-  stratus_transfer* copy = NULL;
-  if (caster->factors && stratus_transfer_same(caster->transfer, transfer)) {
+  bool same = caster->factors && caster->factor_count == count;
+  for (int t = 0; t < functions && same; ++t) {
+    same = stratus_transfer_same(caster->factor_transfers + t, transfers + t);
+  }
+  if (same) {
     return STRATUS_OK;
   }
-  TRY(stratus_allocate(caster->context, STRATUS_SHADING_FACTORS + 2, sizeof(float), &memory));
-  const stratus_status status = stratus_transfer_copy(caster->context, transfer, 1, &copy);
+  stratus_tetra_light_drop_factors(caster);
+  TRY(stratus_transfer_copy(caster->context, transfers, functions, &caster->factor_transfers));
+  const stratus_status status = stratus_allocate_zero(caster->context, (size_t)count * factors, sizeof(float), &memory);
   if (status != STRATUS_OK) {
-    stratus_release(caster->context, memory);
+    stratus_tetra_light_drop_factors(caster);
     return status;
   }
-  stratus_tetra_light_drop_factors(caster);
-  stratus_release(caster->context, caster->transfer);
-  caster->transfer = copy;
   caster->factors = memory;
-  caster->factor_scale = stratus_gradient_factors(transfer, memory);
+  caster->factor_count = count;
+  for (int c = 0; c < count; ++c) {
+    const stratus_transfer* transfer = transfers + (dependent ? 0 : c);
+    if (transfer->gradient_count > 0) {
+      caster->factor_scale[c] = stratus_gradient_factors(transfer, caster->factors + (size_t)c * factors);
+    }
+  }
   return STRATUS_OK;
 }
 
-stratus_status stratus_tetra_light_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+/* Bit c where component c has a gradient opacity. */
+static unsigned thinned(const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options)
+{
+  unsigned mask = 0;
+  for (int c = 0; c < stratus_tetra_component_count(mesh); ++c) {
+    mask |= thins(transfers + (options->dependent ? 0 : c), options) ? 1u << c : 0;
+  }
+  return mask & stratus_tetra_light_mask(mesh, transfers, options);
+}
+
+stratus_status stratus_tetra_light_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfers,
   const stratus_tetra_options* options, double* ms)
 {
   const double start = stratus_now_ms();
-  if (!stratus_tetra_light_wanted(transfer, options)) {
+  const unsigned mask = stratus_tetra_light_mask(mesh, transfers, options);
+  if (mask == 0) {
     return STRATUS_OK;
   }
-  if (!caster->gradients.vectors && caster->mesh->face_count > 0) {
-    TRY(stratus_tetra_gradients_create(caster->mesh, mesh, &caster->gradients));
+  if ((caster->gradients.mask & mask) != mask && caster->mesh->face_count > 0) {
+    stratus_tetra_light_drop(caster);
+    const stratus_status status = stratus_tetra_gradients_create(caster->mesh, mesh, mask, &caster->gradients);
+    if (status != STRATUS_OK) {
+      stratus_tetra_light_drop(caster);
+      return status;
+    }
     ++caster->gradient_builds;
     *ms += stratus_now_ms() - start;
   }
-  return thins(transfer, options) ? update_factors(caster, transfer) : STRATUS_OK;
+  return thinned(mesh, transfers, options)
+    ? update_factors(caster, transfers, stratus_tetra_component_count(mesh), options->dependent && stratus_tetra_mixes(mesh, options))
+    : STRATUS_OK;
 }
 
-/* The most that light changes where a normal turns: by the sine of the angle, and by its square. A highlight is as narrow as its power. */
-static void set_bend(stratus_tetra_arguments* a, const stratus_shading* shading)
+/* The most that light changes where a normal turns: by the sine of the angle, and by its square. A highlight is as narrow as its power. Of
+ * several materials the one that changes most counts. */
+static void set_bend(stratus_tetra_arguments* a)
 {
   double strength = 0.0;
   for (int i = 0; i < a->light.count; ++i) {
     strength += fmax(fmax((double)a->light.color[i][0], (double)a->light.color[i][1]), (double)a->light.color[i][2]);
   }
-  const double power = fmax(shading->specular_power, 1.0);
-  a->bend[0] = (float)fmin(strength * (shading->diffuse + sqrt(power) * shading->specular), 1e15);
-  a->bend[1] = (float)fmin(strength * (shading->diffuse + power * shading->specular), 1e15);
+  for (int c = 0; c < STRATUS_COMPONENTS_MAX; ++c) {
+    const float* m = a->light.material[c];
+    const double diffuse = (double)m[1], specular = (double)m[2], power = fmax((double)m[3], 1.0);
+    if (a->light.on >> c & 1) {
+      a->bend[0] = fmaxf(a->bend[0], (float)fmin(strength * (diffuse + sqrt(power) * specular), 1e15));
+      a->bend[1] = fmaxf(a->bend[1], (float)fmin(strength * (diffuse + power * specular), 1e15));
+    }
+  }
 }
 
 static void set_lights(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options)
@@ -108,7 +185,6 @@ static void set_lights(stratus_tetra_frame* frame, const stratus_mesh* mesh, con
   const stratus_shading* shading = &options->shading;
   const stratus_camera* c = &frame->camera;
   const double unit = sqrt(stratus_vector_dot(frame->basis[2], frame->basis[2]));
-  const double material[4] = { shading->ambient, shading->diffuse, shading->specular, shading->specular_power };
   double inverse[16], origin[3], largest = 0.0;
   if (!stratus_matrix_invert_affine(mesh->matrix, inverse)) {
     return; /* stratus_mesh_check() refuses such a matrix */
@@ -125,12 +201,18 @@ static void set_lights(stratus_tetra_frame* frame, const stratus_mesh* mesh, con
       a->light.normal[3 * row + axis] = (float)(-inverse[4 * axis + row] / largest);
     }
   }
-  for (int i = 0; i < 4; ++i) {
-    a->light.material[0][i] = (float)material[i];
+  for (int m = 0; m < stratus_tetra_component_count(mesh); ++m) {
+    const stratus_material material = material_of(mesh, options, m);
+    const double numbers[4] = { material.ambient, material.diffuse, material.specular, material.specular_power };
+    for (int i = 0; i < 4; ++i) {
+      a->light.material[m][i] = (float)numbers[i];
+    }
+    a->light.on |= material.shade ? 1 << m : 0;
   }
-  a->light.on = 1;
-  stratus_lights_set(c, shading, origin, unit, &a->light);
-  set_bend(a, shading);
+  if (a->light.on) { /* else the lights are unchecked and unused */
+    stratus_lights_set(c, shading, origin, unit, &a->light);
+    set_bend(a);
+  }
 }
 
 /* The world length over which gradient opacity multiplies opacity. */
@@ -142,23 +224,29 @@ static double way_of(const stratus_mesh* mesh, const stratus_tetra_gradients* gr
 }
 
 void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh,
-  const stratus_transfer* transfer, const stratus_tetra_options* options)
+  const stratus_transfer* transfers, const stratus_tetra_options* options)
 {
   stratus_tetra_arguments* a = &frame->arguments;
   const stratus_tetra_gradients* g = &caster->gradients;
-  frame->lit = stratus_tetra_light_wanted(transfer, options);
+  frame->lit = stratus_tetra_light_mask(mesh, transfers, options) != 0;
   if (!frame->lit) {
     return;
   }
   frame->gradients = g->vectors;
-  if (thins(transfer, options)) {
+  frame->gradient_sets = g->sets;
+  a->media.points = (int)caster->mesh->point_count;
+  memcpy(a->media.gradients_at, g->set, sizeof a->media.gradients_at);
+  a->thins = (int)thinned(mesh, transfers, options);
+  if (a->thins) {
     frame->factors = caster->factors;
-    a->thins = 1;
-    a->factor_scale = (float)fmin(g->unit * g->spacing * (double)caster->factor_scale, 1e30);
+    frame->factor_count = (size_t)caster->factor_count * (STRATUS_SHADING_FACTORS + 2);
     a->factor_last = (float)STRATUS_SHADING_FACTORS;
     a->factor_way = (float)fmin(way_of(mesh, g, options), WAY_MOST);
   }
-  if (shades(options)) {
-    set_lights(frame, mesh, options);
+  for (int c = 0; c < STRATUS_COMPONENTS_MAX; ++c) {
+    if (a->thins >> c & 1) {
+      a->factor_scale[c] = (float)fmin(g->unit[c] * g->spacing * (double)caster->factor_scale[c], 1e30);
+    }
   }
+  set_lights(frame, mesh, options);
 }

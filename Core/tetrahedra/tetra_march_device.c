@@ -3,7 +3,6 @@
  * kernels. */
 #include "tetra_device.h"
 
-#include "gradient_factors.h"
 #include "tetra_caster.h"
 
 #include <string.h>
@@ -37,8 +36,8 @@ static stratus_status send(device_march* m, const stratus_tetra_device_source* s
     d->march_values = source->values;
   }
   if (frame->lit && (!m->slots[TETRA_GRADIENTS].memory || (frame->gradients && d->gradients != source->gradients))) {
-    TRY(stratus_slot_keep(
-      m->context, m->slots + TETRA_GRADIENTS, frame->gradients, (size_t)source->point_count * 4 * sizeof *frame->gradients));
+    const size_t vectors = (size_t)source->point_count * (size_t)frame->gradient_sets;
+    TRY(stratus_slot_keep(m->context, m->slots + TETRA_GRADIENTS, frame->gradients, vectors * 4 * sizeof *frame->gradients));
     d->gradients = frame->gradients ? source->gradients : 0;
   }
   if (frame->lit && (!m->slots[TETRA_COMPONENT_SUMS].memory || (frame->components && d->components != source->components))) {
@@ -48,8 +47,8 @@ static stratus_status send(device_march* m, const stratus_tetra_device_source* s
     d->components = frame->components ? source->components : 0;
   }
   if (frame->lit) {
-    const size_t factors = frame->factors ? STRATUS_SHADING_FACTORS + 2 : 0;
-    TRY(stratus_slot_send(m->context, m->slots + TETRA_FACTORS, CL_MEM_READ_ONLY, frame->factors, factors * sizeof *frame->factors));
+    const size_t bytes = frame->factor_count * sizeof *frame->factors;
+    TRY(stratus_slot_send(m->context, m->slots + TETRA_FACTORS, CL_MEM_READ_ONLY, frame->factors, bytes));
   }
   TRY(stratus_tetra_device_send(m->context, d, source, frame, frame->places));
   TRY(stratus_slot_send(m->context, m->slots + TETRA_FACES, CL_MEM_READ_ONLY, frame->faces, frame->face_count * sizeof *frame->faces));

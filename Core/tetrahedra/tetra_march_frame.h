@@ -53,9 +53,11 @@ typedef struct stratus_tetra_frame {
   const float* ends;         /* z of opaque geometry in each pixel; NULL: none */
   const int32_t* march_sums; /* stratus_tetra_sums() */
   const stratus_table* table;
-  bool lit;                /* light and opacity depend on the gradient */
-  const float* gradients;  /* stratus_tetra_gradients.vectors; NULL unless lit */
-  const float* factors;    /* the gradient opacity; NULL: there is none */
+  bool lit;               /* light and opacity depend on the gradient */
+  const float* gradients; /* stratus_tetra_gradients.vectors; NULL unless lit */
+  int gradient_sets;      /* of a vector for each point */
+  const float* factors;   /* gradient opacities; NULL: there is none */
+  size_t factor_count;
   const float* components; /* stratus_tetra_components.places; NULL: values have one component */
   const int32_t* media;    /* their sums */
   size_t media_count;

@@ -2,7 +2,7 @@
  * Converts a mesh of tetrahedra to the form that rays read: a few ints per cell, packed from its neighbours, and the border faces by which
  * rays enter. Cells that show nothing (hidden, with a value that is not finite, or with a point named twice) are left out as hollows. */
 #include "mesh.h"
-#include "tetra_caster.h"
+#include "tetra_cells.h"
 
 #include <string.h>
 
@@ -244,8 +244,8 @@ static stratus_status fetch_values(
   return STRATUS_OK;
 }
 
-/* Of points and vertices. */
-uint64_t stratus_tetra_hash(const stratus_context* context, const stratus_mesh* mesh)
+/* Of the points and vertices of a part. */
+static uint64_t hash_part(const stratus_context* context, const stratus_mesh* mesh)
 {
   const size_t point = mesh->points ? sizeof *mesh->points : sizeof *mesh->float_points;
   const size_t sizes[2] = { (size_t)mesh->point_count * 3 * point,
@@ -260,6 +260,16 @@ uint64_t stratus_tetra_hash(const stratus_context* context, const stratus_mesh* 
       const size_t first = (size_t)part * HASHED_AT_ONCE, left = sizes[a] - first;
       sum += stratus_hash(arrays[a] + first, left < HASHED_AT_ONCE ? left : HASHED_AT_ONCE, (uint64_t)part << 1 | (uint64_t)a);
     }
+  }
+  return sum;
+}
+
+uint64_t stratus_tetra_hash(const stratus_context* context, const stratus_mesh* mesh)
+{
+  uint64_t sum = 0;
+  for (int part = 0; part < stratus_mesh_part_count(mesh); ++part) {
+    const uint64_t own = hash_part(context, stratus_mesh_part(mesh, part));
+    sum += mesh->block_count > 0 ? stratus_hash(&own, sizeof own, (uint64_t)part) : own;
   }
   return sum;
 }
@@ -299,8 +309,9 @@ static stratus_status build(
 
 bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
 {
-  return tetra->cell_count == (stratus_mesh_is_lattice(mesh) ? 6 : 1) * mesh->cell_count && tetra->point_count == mesh->point_count &&
-    memcmp(tetra->lattice, mesh->lattice, sizeof tetra->lattice) == 0 && (tetra->values == NULL) == (mesh->cell_values != 0) &&
+  const bool lattice = stratus_mesh_is_lattice(mesh);
+  return tetra->cell_count == (lattice ? 6 : 1) * mesh->cell_count && tetra->lattices == (lattice ? stratus_mesh_part_count(mesh) : 0) &&
+    (lattice || tetra->point_count == mesh->point_count) && (tetra->values == NULL) == (mesh->cell_values != 0) &&
     tetra->geometry == stratus_tetra_hash(tetra->context, mesh);
 }
 
@@ -368,6 +379,7 @@ cleanup:
 void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh)
 {
   if (mesh) {
+    stratus_release(mesh->context, mesh->first);
     stratus_release(mesh->context, mesh->cells);
     stratus_release(mesh->context, mesh->values);
     stratus_release(mesh->context, mesh->cell_values);

@@ -4,6 +4,7 @@
  * both methods run the host's code there, and slow down alike. */
 #include "tetra_caster.h"
 
+#include "tetra_cells.h"
 #include "tetra_costs.h"
 
 #include <stdio.h>
@@ -17,7 +18,7 @@ const char* stratus_tetra_method_name(stratus_tetra_method method)
 stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
 {
-  const stratus_tetra_shown shown = { caster->mesh, caster->table, caster->mode };
+  const stratus_tetra_shown shown = { caster->mesh, caster->look.table, caster->look.mode };
   stratus_tetra_costs costs;
   stratus_tetra_view view;
   report->method = options->method;
@@ -30,7 +31,7 @@ stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const st
     snprintf(report->why, sizeof report->why, "march: mode %s cannot be projected", stratus_tetra_mode_name(options->mode));
     return STRATUS_OK;
   }
-  if (stratus_tetra_light_wanted(transfer, options)) {
+  if (stratus_tetra_light_mask(mesh, transfer, options)) {
     snprintf(report->why, sizeof report->why, "march: light and gradient opacity cannot be projected");
     return STRATUS_OK;
   }

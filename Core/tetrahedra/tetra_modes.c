@@ -80,18 +80,18 @@ stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus
 /* ---- tables */
 
 stratus_status stratus_tetra_value_sums(
-  stratus_context* context, const stratus_table* table, const stratus_tetra_mesh* mesh, const double range[2], int32_t** sums)
+  stratus_context* context, const stratus_table* table, const stratus_table_values* values, const double range[2], int32_t** sums)
 {
   const size_t size = (size_t)table->size;
-  const double width = (double)mesh->high - (double)mesh->low, one = SUM_MOST / ((double)size + 1.0);
+  const double lo = (double)values->lo, width = (double)values->hi - lo, one = SUM_MOST / ((double)size + 1.0);
   int64_t below[4] = { 0, 0, 0, 0 };
   void* memory = NULL;
   TRY(stratus_allocate_zero(context, STRATUS_TETRA_SUMS * size, sizeof(int32_t), &memory));
   *sums = memory;
   for (size_t entry = 0; entry < size; ++entry) {
-    const double value = table->scale > 0.0f ? ((double)entry + 0.5 - (double)table->offset) / (double)table->scale : (double)mesh->low;
+    const double value = table->scale > 0.0f ? ((double)entry + 0.5 - (double)table->offset) / (double)table->scale : lo;
     const double half = table->scale > 0.0f ? 0.5 / (double)table->scale : 0.0, alpha = (double)table->rgba[4 * entry + 3];
-    const double real = value + mesh->bias, part = width > 0.0 ? fmin(fmax((value - (double)mesh->low) / width, 0.0), 1.0) : 0.0;
+    const double real = value + values->fetching.bias, part = width > 0.0 ? fmin(fmax((value - lo) / width, 0.0), 1.0) : 0.0;
     const bool counts = real + half >= range[0] && real - half <= range[1];
     const double own[4] = { counts ? alpha * part : 0.0, counts ? alpha : 0.0, 0.0, counts ? 1.0 : 0.0 };
     for (size_t c = 0; c < 4; ++c) {

@@ -20,8 +20,10 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <iterator>
+#include <tuple>
 
 namespace {
 constexpr unsigned char Duplicate = vtkDataSetAttributes::DUPLICATECELL;
@@ -83,7 +85,7 @@ public:
   {
     const double place[3] = { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 }; // of -0 and 0 make 0
     uint64_t hash = stratus_hash(place, sizeof place, 0);
-    if (this->Values) {
+    if (this->Values && scalars) {
       scalars->GetTuple(from, this->Tuple.data());
     }
     for (;; ++hash) {
@@ -102,6 +104,8 @@ public:
       }
     }
   }
+  // The same of a place alone.
+  vtkIdType Add(const double x[3]) { return this->Add(x, nullptr, 0); }
   vtkPoints* Get() { return this->Places; }
 
 private:
@@ -155,7 +159,68 @@ std::vector<vtkStratusBlocks::Block> vtkStratusBlocks::List(vtkCompositeDataSet*
   return blocks;
 }
 
-bool vtkStratusBlocks::Set(vtkCompositeDataSet* whole, const Find& find, std::string& error)
+namespace {
+// A face at the border of a structured grid: the names of its corners, in rising order, and of the ends of its diagonal.
+struct BorderFace {
+  std::array<vtkIdType, 4> Corners;
+  std::array<vtkIdType, 2> Diagonal;
+  bool operator<(const BorderFace& f) const { return std::tie(this->Corners, this->Diagonal) < std::tie(f.Corners, f.Diagonal); }
+};
+
+// Calls function(a, b, c, d) with the numbers of the corners of each face at the border; a and d are the ends of the diagonal by which the
+// core divides it: those of the lowest and the highest number.
+template <typename Function> void VisitBorder(const int n[3], Function&& function)
+{
+  const vtkIdType step[3] = { 1, n[0], static_cast<vtkIdType>(n[0]) * n[1] };
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    for (int side = 0; side < 2; ++side) {
+      for (int i = 0; i + 1 < n[u]; ++i) {
+        for (int j = 0; j + 1 < n[v]; ++j) {
+          const vtkIdType first = side * (n[axis] - 1) * step[axis] + i * step[u] + j * step[v];
+          function(first, first + step[u], first + step[v], first + step[u] + step[v]);
+        }
+      }
+    }
+  }
+}
+} // namespace
+
+// Whether the blocks are structured grids whose common faces have one diagonal, so that their tetrahedra meet in whole faces.
+bool vtkStratusBlocks::AreLattices() const
+{
+  vtkIdType most = 0;
+  for (const Block& block : this->Known) {
+    int n[3];
+    if (!vtkStructuredGrid::SafeDownCast(block.Set) || block.Scalars->GetDataType() != this->Known.front().Scalars->GetDataType()) {
+      return false;
+    }
+    FindDimensions(block.Set, n);
+    most += 2 * (static_cast<vtkIdType>(n[0]) * n[1] + static_cast<vtkIdType>(n[1]) * n[2] + static_cast<vtkIdType>(n[2]) * n[0]);
+  }
+  Points points(most, nullptr);
+  std::vector<BorderFace> faces;
+  for (const Block& block : this->Known) {
+    int n[3];
+    FindDimensions(block.Set, n);
+    VisitBorder(n, [&](vtkIdType a, vtkIdType b, vtkIdType c, vtkIdType d) {
+      std::array<vtkIdType, 4> corners = { a, b, c, d };
+      for (vtkIdType& corner : corners) {
+        corner = points.Add(block.Set->GetPoint(corner));
+      }
+      BorderFace face = { corners, { std::min(corners[0], corners[3]), std::max(corners[0], corners[3]) } };
+      std::sort(face.Corners.begin(), face.Corners.end());
+      if (std::adjacent_find(face.Corners.begin(), face.Corners.end()) == face.Corners.end()) { // a triangle has no diagonal
+        faces.push_back(face);
+      }
+    });
+  }
+  std::sort(faces.begin(), faces.end());
+  return std::adjacent_find(faces.begin(), faces.end(),
+           [](const BorderFace& f, const BorderFace& g) { return f.Corners == g.Corners && f.Diagonal != g.Diagonal; }) == faces.end();
+}
+
+bool vtkStratusBlocks::Set(vtkCompositeDataSet* whole, const Find& find, std::string& error, bool lattices)
 {
   const std::vector<Block> blocks = this->List(whole, find);
   if (blocks != this->Known || blocks.empty()) {
@@ -165,14 +230,22 @@ bool vtkStratusBlocks::Set(vtkCompositeDataSet* whole, const Find& find, std::st
       this->Kept.push_back(block.Set);
     }
     this->Refusal.clear();
+    this->Several.clear();
     this->Grid = blocks.empty() ? nullptr : blocks.front().Set;
     this->Scalars = blocks.empty() ? nullptr : blocks.front().Scalars;
     int points[3];
     const bool image = this->Grid && !vtkStructuredGrid::SafeDownCast(this->Grid) && FindDimensions(this->Grid, points);
     if (blocks.empty() && !this->LeftOut.empty()) {
       this->Refusal = "the data set has no block to draw, but " + this->LeftOut;
-    } else if (image || blocks.size() > 1) {
-      this->Join(this->Refusal);
+    } else if ((image || blocks.size() > 1) && this->CheckAll(this->Refusal)) {
+      if (lattices && this->AreLattices()) {
+        for (const Block& block : blocks) {
+          this->Several.emplace_back(vtkStructuredGrid::SafeDownCast(block.Set), block.Scalars);
+        }
+        this->Grid = nullptr;
+      } else {
+        this->Join(this->Refusal);
+      }
     }
   }
   error = this->Refusal;
@@ -206,6 +279,17 @@ bool vtkStratusBlocks::Check(const Block& block, std::string& error) const
   return true;
 }
 
+bool vtkStratusBlocks::CheckAll(std::string& error) const
+{
+  for (size_t b = 0; b < this->Known.size(); ++b) {
+    if (!this->Check(this->Known[b], error)) {
+      error = "block " + std::to_string(b) + ": " + error;
+      return false;
+    }
+  }
+  return true;
+}
+
 bool vtkStratusBlocks::Join(std::string& error)
 {
   vtkIdType most = 0;
@@ -226,10 +310,6 @@ bool vtkStratusBlocks::Join(std::string& error)
     const Block& block = this->Known[b];
     const vtkIdType cells = grid->GetNumberOfCells();
     grid->SetPoints(points.Get());
-    if (!this->Check(block, error)) {
-      error = "block " + std::to_string(b) + ": " + error;
-      return false;
-    }
     std::vector<vtkIdType> names(static_cast<size_t>(block.Set->GetNumberOfPoints()));
     for (vtkIdType p = 0; p < block.Set->GetNumberOfPoints(); ++p) {
       double x[3];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The blocks of a composite data set as one grid, joined where their borders meet. Private to the modules, never installed.
+// The blocks of a composite data set as one: lattices side by side, or one grid, joined where their borders meet. Private to the modules,
+// never installed.
 #ifndef vtkStratusBlocks_h
 #define vtkStratusBlocks_h
 
@@ -12,9 +13,11 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkCompositeDataSet;
+class vtkStructuredGrid;
 class vtkUnsignedCharArray;
 
 class VTK_STRATUS_PRIVATE vtkStratusBlocks
@@ -24,12 +27,16 @@ public:
   using Find = std::function<vtkDataArray*(vtkDataSet* block, int& cells)>;
 
   // Takes the blocks at any depth that have cells and scalars, points or cells as the first such block has. One block is taken as it is.
-  // Several become one unstructured grid: points that have the same coordinates, and of point scalars the same values, become one, so that
-  // blocks meet in whole faces. Blocks are unstructured, structured or rectilinear grids, or images. Nothing is done where no block has
-  // changed. Returns false, with the reason in `error`, where a block cannot be read.
-  bool Set(vtkCompositeDataSet* whole, const Find& find, std::string& error);
-  vtkDataSet* GetGrid() const { return this->Grid; } // nullptr: no block has cells
+  // With `lattices`, several structured grids stay as they are, if their scalars are of one type and all faces that two of them share have
+  // one diagonal: see GetLattices(). Else they become one unstructured grid: points that have the same coordinates, and of point scalars
+  // the same values, become one, so that blocks meet in whole faces. Blocks are unstructured, structured or rectilinear grids, or images.
+  // Nothing is done where no block has changed. Returns false, with the reason in `error`, where a block cannot be read.
+  bool Set(vtkCompositeDataSet* whole, const Find& find, std::string& error, bool lattices);
+  vtkDataSet* GetGrid() const { return this->Grid; } // nullptr: no block has cells, or they are lattices
   vtkDataArray* GetScalars() const { return this->Scalars; }
+  // Structured grids and their scalars, which live as long as this; none where there is one grid.
+  using Lattices = std::vector<std::pair<vtkStructuredGrid*, vtkDataArray*>>;
+  const Lattices& GetLattices() const { return this->Several; }
   bool OfCells() const { return this->Cells; }
   // Which blocks are left out and why, "" where none is.
   const std::string& TellLeftOut() const { return this->LeftOut; }
@@ -43,8 +50,10 @@ private:
   };
   class Points;
 
+  bool AreLattices() const;
   std::vector<Block> List(vtkCompositeDataSet* whole, const Find& find);
   bool Check(const Block& block, std::string& error) const;
+  bool CheckAll(std::string& error) const;
   bool Join(std::string& error);
   bool Append(const Block& block, vtkUnsignedCharArray* hidden, std::string& error) const;
   void AppendCells(vtkUnstructuredGrid* from, const std::vector<vtkIdType>& names, vtkUnstructuredGrid* to) const;
@@ -54,6 +63,7 @@ private:
   std::vector<vtkSmartPointer<vtkDataSet>> Kept; // so that no other block gets the address of a known one
   vtkSmartPointer<vtkDataSet> Grid;
   vtkSmartPointer<vtkDataArray> Scalars;
+  Lattices Several;
   bool Cells = false;
   std::string LeftOut, Refusal;
 };

@@ -105,6 +105,7 @@ void vtkStratusMeshView::Divide(vtkUnstructuredGrid* grid, vtkMTimeType time)
 bool vtkStratusMeshView::Set(
   vtkDataSet* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents)
 {
+  this->Several.clear();
   if (!this->SetGeometry(grid, error)) {
     return false;
   }
@@ -137,6 +138,44 @@ bool vtkStratusMeshView::Set(
   if (matrix) {
     std::copy(&matrix->Element[0][0], &matrix->Element[0][0] + 16, this->Mesh.matrix);
   }
+  return true;
+}
+
+bool vtkStratusMeshView::SetSeveral(const Grids& grids, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents)
+{
+  stratus_mesh whole = stratus_mesh_default();
+  std::vector<uint64_t> revisions;
+  this->Grid = nullptr; // a single grid is read anew
+  this->ContentTime = 0;
+  this->IsLattice = true;
+  this->HasLeaves = false;
+  this->Several.resize(grids.size());
+  this->Blocks.resize(grids.size());
+  for (size_t n = 0; n < grids.size(); ++n) {
+    std::unique_ptr<vtkStratusMeshView>& part = this->Several[n];
+    part = part ? std::move(part) : std::make_unique<vtkStratusMeshView>();
+    if (!part->Set(grids[n].first, grids[n].second, cells, nullptr, error, mostComponents)) {
+      error = "block " + std::to_string(n) + ": " + error;
+      return false;
+    }
+    const stratus_mesh& mesh = this->Blocks[n] = part->GetMesh();
+    whole.type = mesh.type;
+    whole.components = mesh.components;
+    whole.cell_values = mesh.cell_values;
+    whole.point_count += mesh.point_count;
+    whole.cell_count += mesh.cell_count;
+    revisions.push_back(mesh.revision);
+    for (int side = 0; side < 6; ++side) {
+      const bool widens = side % 2 ? part->Bounds[side] > this->Bounds[side] : part->Bounds[side] < this->Bounds[side];
+      this->Bounds[side] = n == 0 || widens ? part->Bounds[side] : this->Bounds[side];
+    }
+  }
+  whole.blocks = this->Blocks.data();
+  whole.block_count = static_cast<int>(this->Blocks.size());
+  whole.revision = stratus_hash(revisions.data(), revisions.size() * sizeof revisions[0], 0);
+  const double* last = matrix ? &matrix->Element[0][0] : this->Mesh.matrix;
+  std::copy(last, last + 16, whole.matrix);
+  this->Mesh = whole;
   return true;
 }
 

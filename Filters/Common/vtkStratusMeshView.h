@@ -19,8 +19,12 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
+
+class vtkStructuredGrid;
 
 class VTK_STRATUS_PRIVATE vtkStratusMeshView
 {
@@ -30,6 +34,9 @@ public:
   // The grid is unstructured or structured.
   // Of an array up to `mostComponents` are taken; more are refused.
   bool Set(vtkDataSet* grid, vtkDataArray* array, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1);
+  // The same of several structured grids side by side, as one mesh of lattices.
+  using Grids = std::vector<std::pair<vtkStructuredGrid*, vtkDataArray*>>;
+  bool SetSeveral(const Grids& grids, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1);
   // Reads a grid's points and cells alone; bounds are known after that. Returns false where the core cannot take them.
   bool SetGeometry(vtkDataSet* grid, std::string& error);
   const double* GetBounds() const { return this->Bounds; }
@@ -49,7 +56,7 @@ private:
   void HideNotFinite();
   void HideWhole(std::vector<uint8_t>& hidden) const;
 
-  stratus_mesh Mesh;
+  stratus_mesh Mesh = stratus_mesh_default();
   double Bounds[6] = { 0, 1, 0, 1, 0, 1 };
   vtkSmartPointer<vtkDataSet> Grid; // kept alive, so that no other grid can get the same address
   vtkMTimeType Time = 0;
@@ -69,8 +76,10 @@ private:
   vtkSmartPointer<vtkDataArray> Divided;
   vtkMTimeType DividedTime = 0;
   bool DividedCells = false;
-  std::vector<uint8_t> DividedHidden; // Hidden, and by values that are not finite
-  vtkNew<vtkImageData> Carrier;       // an image as long as the array, because vtkStratusImageView takes images
+  std::vector<uint8_t> DividedHidden;                       // Hidden, and by values that are not finite
+  std::vector<std::unique_ptr<vtkStratusMeshView>> Several; // of several grids
+  std::vector<stratus_mesh> Blocks;                         // their meshes
+  vtkNew<vtkImageData> Carrier;                             // an image as long as the array, because vtkStratusImageView takes images
   vtkStratusImageView Values;
 };
 

@@ -52,3 +52,19 @@ bool vtkStratusSetShading(vtkRenderer* renderer, vtkVolumeProperty* property, in
   }
   return true;
 }
+
+bool vtkStratusSetMaterials(vtkVolumeProperty* property, int first, int count, stratus_material* materials, bool& alike)
+{
+  bool lit = false;
+  alike = true;
+  for (int c = 0; c < count; ++c) {
+    const int p = first + c;
+    stratus_material& mine = materials[c];
+    mine = { property->GetShade(p), property->GetAmbient(p), property->GetDiffuse(p), property->GetSpecular(p),
+      property->GetSpecularPower(p) };
+    lit = lit || mine.shade;
+    alike = alike && mine.shade == materials[0].shade && mine.ambient == materials[0].ambient && mine.diffuse == materials[0].diffuse &&
+      mine.specular == materials[0].specular && mine.specular_power == materials[0].specular_power;
+  }
+  return lit;
+}

@@ -15,4 +15,8 @@ class vtkVolumeProperty;
 VTK_STRATUS_PRIVATE bool vtkStratusSetShading(
   vtkRenderer* renderer, vtkVolumeProperty* property, int component, stratus_shading& shading, std::string& error);
 
+// Sets the materials of `count` components from `first` on. Returns whether one of them is lit; alike: they are the same.
+VTK_STRATUS_PRIVATE bool vtkStratusSetMaterials(
+  vtkVolumeProperty* property, int first, int count, stratus_material* materials, bool& alike);
+
 #endif

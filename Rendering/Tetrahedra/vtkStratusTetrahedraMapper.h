@@ -16,18 +16,22 @@
  *   its first corner to its last, which keep their orientation in layers over any ground; where layers cross, the cells that overlap all
  *   count. March needs some 21 bytes a hexahedron besides the grid, project some 490, as do grids in which layers cross;
  * - composite data sets of such grids, of rectilinear ones and of images, at any depth (vtkMultiBlockDataSet, vtkPartitionedDataSet,
- *   vtkPartitionedDataSetCollection), as one volume: points of the same coordinates and values become one, so that blocks meet in whole
- *   faces. Blocks without the array or without a volume are left out with a warning. A block alone is drawn as it is;
- * - point and cell scalars of any numeric type but bits; in composite also of 2 to 4 independent components, each with functions of its own
- *   (ComponentMixing), and of dependent ones: 2 (colour by the first, opacity by the second) and 4 unsigned bytes (red, green, blue, and
- * the opacity's value). They are marched, without light and gradient opacity;
+ *   vtkPartitionedDataSetCollection), as one volume. Several structured grids stay as they are, as one alone does, if their scalars are of
+ *   one type and the faces that two of them share have one diagonal, from lowest to highest index in both. Of all else, points of the same
+ *   coordinates and values become one, so that blocks meet in whole faces. Blocks without the array or without a volume are left out with
+ *   a warning. A block alone is drawn as it is;
+ * - point and cell scalars of any numeric type but bits; also of 2 to 4 independent components, each with functions of its own, which mix
+ *   in composite (ComponentMixing), while maximum, minimum, average and additive draw each by itself and add the weighted colours; and in
+ *   composite of dependent ones: 2 (colour by the first, opacity by the second) and 4 unsigned bytes (red, green, blue, and the opacity's
+ *   value). They are marched;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
  * - the blend modes composite, maximum and minimum intensity (the largest or smallest value on a ray, at the opacity of one unit distance),
  *   average and additive intensity, and isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
  *   tetrahedron). All but composite and maximum are marched: PROJECT_METHOD refuses them, AUTO_METHOD marches;
  * - light (Shade; the renderer's lights and TwoSidedLighting), in composite and isosurface, as vtkStratusVolumeMapper takes it. In a
  *   tetrahedron the field's gradient is constant; each point has the mean of its tetrahedra's, weighted by volume, and between points it is
- *   interpolated, so that light is smooth across cells. Cell scalars are averaged at points for it;
+ *   interpolated, so that light is smooth across cells. Cell scalars are averaged at points for it. Independent components are lit and
+ *   thinned each by its own gradient, and have a Shade and a material of their own; dependent ones by the last one's;
  * - gradient opacity in composite, in values per mean spacing: the edge of a cube that six tetrahedra of the mean volume fill. It
  * multiplies the optical depth, or the opacity (GradientOpacityDistance). Light and gradient opacity are marched;
  * - up to 6 clipping planes (of origin and normal) and a crop box. They cut rays exactly, cells are not left out;
@@ -36,8 +40,8 @@
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
- * All else (more components, several in other blend modes, two-dimensional transfer functions, label maps, slices) is refused by an error,
- * and nothing is drawn.
+ * All else (more components, isosurfaces of several, dependent ones in other modes than composite, two-dimensional transfer functions,
+ * label maps, slices) is refused by an error, and nothing is drawn.
  *
  * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.
  *

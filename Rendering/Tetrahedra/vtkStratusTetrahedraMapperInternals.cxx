@@ -47,9 +47,6 @@ bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* pro
   if (this->Mapper->BlendMode < COMPOSITE_BLEND || this->Mapper->BlendMode > ISOSURFACE_BLEND) {
     error = "blend mode " + std::to_string(this->Mapper->BlendMode) +
       " is not supported, only composite (0), maximum (1), minimum (2), average (3), additive (4) and isosurface (5) are";
-  } else if (property->GetShade() && this->Mapper->BlendMode != COMPOSITE_BLEND && this->Mapper->BlendMode != ISOSURFACE_BLEND) {
-    error = "shading is not supported in blend mode " + std::to_string(this->Mapper->BlendMode) +
-      ", only composite (0) and isosurface (5) are lit";
   } else if (!std::isfinite(this->Mapper->GradientOpacityDistance)) {
     error = "GradientOpacityDistance is " + std::to_string(this->Mapper->GradientOpacityDistance) +
       ", it must be finite: 0 for optical depths, below 0 for half of the mean spacing";
@@ -72,18 +69,29 @@ bool vtkStratusTetrahedraMapper::Internals::SetClipPlanes(stratus_tetra_options&
 }
 
 bool vtkStratusTetrahedraMapper::Internals::SetShading(
-  vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
+  vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error)
 {
   options.gradient_distance = this->Mapper->GradientOpacityDistance;
   options.dependent = property->GetIndependentComponents() ? 0 : 1;
   options.mean_components = this->Mapper->ComponentMixing == MEAN_COMPONENTS ? 1 : 0;
-  if (this->Functions[0].gradient_count > 0 && options.mode != STRATUS_TETRA_COMPOSITE) {
+  const int media = options.dependent ? 1 : std::max(this->Mesh.GetMesh().components, 1);
+  const bool thins = std::any_of(
+    this->Functions.begin(), this->Functions.begin() + media, [](const stratus_transfer& function) { return function.gradient_count > 0; });
+  if (thins && options.mode != STRATUS_TETRA_COMPOSITE) {
     error = "gradient opacity is supported in blend mode composite (0) only, elsewhere only a function that is 1 everywhere, or "
             "DisableGradientOpacityOn";
     return false;
   }
+  bool alike = true;
+  const bool lit = vtkStratusSetMaterials(property, 0, media, this->Materials.data(), alike);
+  if (lit && options.mode != STRATUS_TETRA_COMPOSITE && options.mode != STRATUS_TETRA_ISOSURFACE) {
+    error = "shading is not supported in blend mode " + std::to_string(this->Mapper->BlendMode) +
+      ", only composite (0) and isosurface (5) are lit";
+    return false;
+  }
+  options.materials = alike ? nullptr : this->Materials.data();
   options.shade = property->GetShade();
-  return !options.shade || vtkStratusSetShading(renderer, property, 0, options.shading, error);
+  return !lit || vtkStratusSetShading(renderer, property, 0, options.shading, error);
 }
 
 bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
@@ -103,7 +111,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property,
   return true;
 }
 
-// Finds the grid of an input that is up to date. No grid: the input is a composite data set without cells.
+// Finds the grid, or the grids, of an input that is up to date. None: the input is a composite data set without cells.
 bool vtkStratusTetrahedraMapper::Internals::FindDrawn(Drawn& drawn, std::string& error)
 {
   vtkStratusTetrahedraMapper* mapper = this->Mapper;
@@ -111,7 +119,7 @@ bool vtkStratusTetrahedraMapper::Internals::FindDrawn(Drawn& drawn, std::string&
     return vtkAbstractMapper::GetScalars(grid, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells);
   };
   vtkDataObject* input = mapper->GetDataObjectInput();
-  drawn = { nullptr, nullptr, false };
+  drawn = { nullptr, nullptr, false, nullptr };
   if (vtkUnstructuredGrid::SafeDownCast(input) || vtkStructuredGrid::SafeDownCast(input)) {
     drawn.Grid = vtkDataSet::SafeDownCast(input);
     if (drawn.Grid->GetNumberOfCells() == 0 || drawn.Grid->GetNumberOfPoints() == 0) {
@@ -127,13 +135,20 @@ bool vtkStratusTetrahedraMapper::Internals::FindDrawn(Drawn& drawn, std::string&
     return error.empty();
   }
   if (auto* whole = vtkDataObjectTree::SafeDownCast(input)) {
-    const bool taken = this->Blocks.Set(whole, find, error);
-    drawn = { this->Blocks.GetGrid(), this->Blocks.GetScalars(), this->Blocks.OfCells() };
+    const bool taken = this->Blocks.Set(whole, find, error, true);
+    const bool several = !this->Blocks.GetLattices().empty();
+    drawn = { this->Blocks.GetGrid(), this->Blocks.GetScalars(), this->Blocks.OfCells(), several ? &this->Blocks.GetLattices() : nullptr };
     return taken;
   }
   error = (input ? std::string("the input is a ") + input->GetClassName() : std::string("there is no input")) +
     ", a vtkUnstructuredGrid, a vtkStructuredGrid or a composite data set of such is needed";
   return false;
+}
+
+bool vtkStratusTetrahedraMapper::Internals::SetMesh(const Drawn& drawn, vtkMatrix4x4* matrix, std::string& error)
+{
+  return drawn.Several ? this->Mesh.SetSeveral(*drawn.Several, drawn.Cells, matrix, error, STRATUS_COMPONENTS_MAX)
+                       : this->Mesh.Set(drawn.Grid, drawn.Scalars, drawn.Cells, matrix, error, STRATUS_COMPONENTS_MAX);
 }
 
 const double* vtkStratusTetrahedraMapper::Internals::FindBounds()
@@ -146,7 +161,11 @@ const double* vtkStratusTetrahedraMapper::Internals::FindBounds()
   if (auto* whole = vtkDataObjectTree::SafeDownCast(input)) {
     Drawn drawn;
     vtkMath::UninitializeBounds(this->Box);
-    if (this->FindDrawn(drawn, error) && drawn.Grid) {
+    const bool found = this->FindDrawn(drawn, error);
+    if (found && drawn.Several && this->SetMesh(drawn, nullptr, error)) {
+      return this->Mesh.GetBounds();
+    }
+    if (found && drawn.Grid) {
       drawn.Grid->GetBounds(this->Box);
     } else {
       whole->GetBounds(this->Box);
@@ -187,7 +206,7 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& 
   if (!this->FindDrawn(drawn, error)) {
     return false;
   }
-  empty = !drawn.Grid;
+  empty = !drawn.Grid && !drawn.Several;
   if (empty) {
     return true;
   }
@@ -197,8 +216,7 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& 
     vtkWarningWithObjectMacro(this->Mapper, << left << (left.find(" blocks ") == std::string::npos ? " is" : " are") << " not drawn");
   }
   this->LastLeftOut = left;
-  return this->Mesh.Set(drawn.Grid, drawn.Scalars, drawn.Cells, prop->GetMatrix(), error, STRATUS_COMPONENTS_MAX) &&
-    this->SetTransfers(prop->GetProperty(), error);
+  return this->SetMesh(drawn, prop->GetMatrix(), error) && this->SetTransfers(prop->GetProperty(), error);
 }
 
 bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)

@@ -21,6 +21,7 @@
 #include <vector>
 
 class vtkDataSet;
+class vtkMatrix4x4;
 class vtkVolumeProperty;
 
 class VTK_STRATUS_PRIVATE vtkStratusTetrahedraMapper::Internals
@@ -51,25 +52,28 @@ public:
 private:
   bool OnProgress(double fraction);
   bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
-  // What of the input is drawn, and its scalars.
+  // What of the input is drawn, and its scalars: a grid, or several structured ones.
   struct Drawn {
     vtkDataSet* Grid;
     vtkDataArray* Scalars;
     bool Cells;
+    const vtkStratusBlocks::Lattices* Several;
   };
   bool FindDrawn(Drawn& drawn, std::string& error);
+  bool SetMesh(const Drawn& drawn, vtkMatrix4x4* matrix, std::string& error);
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
   bool SetTransfers(vtkVolumeProperty* property, std::string& error);
   bool SetClipPlanes(stratus_tetra_options& options, std::string& error) const;
   bool SetOptions(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
   bool SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
-  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
+  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error);
   bool Cast(vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error);
 
   vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusMeshView Mesh;
   std::array<vtkStratusTransferView, STRATUS_COMPONENTS_MAX> Transfers; // of each independent component
   std::array<stratus_transfer, STRATUS_COMPONENTS_MAX> Functions;
+  std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{};
   vtkStratusPicture Picture;
   bool HasPicture = false;
   vtkStratusBlocks Blocks;

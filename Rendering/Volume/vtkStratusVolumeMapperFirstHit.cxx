@@ -19,16 +19,8 @@
 bool vtkStratusVolumeMapper::Internals::SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options)
 {
   const int components = this->Image.GetVolume().components;
-  bool lit = false, alike = true;
-  for (int c = 0; c < components; ++c) {
-    const int p = this->FirstFunction + c;
-    this->Materials[c] = { property->GetShade(p), property->GetAmbient(p), property->GetDiffuse(p), property->GetSpecular(p),
-      property->GetSpecularPower(p) };
-    const stratus_material &mine = this->Materials[c], &first = this->Materials[0];
-    lit = lit || mine.shade;
-    alike = alike && mine.shade == first.shade && mine.ambient == first.ambient && mine.diffuse == first.diffuse &&
-      mine.specular == first.specular && mine.specular_power == first.specular_power;
-  }
+  bool alike = true;
+  const bool lit = vtkStratusSetMaterials(property, this->FirstFunction, components, this->Materials.data(), alike);
   const bool mixes = options.mode == STRATUS_MODE_COMPOSITE && components > 1 && property->GetIndependentComponents();
   options.materials = mixes && !alike ? this->Materials.data() : nullptr;
   return mixes && lit;

@@ -120,24 +120,36 @@ static void device_and_host_draw_the_same(void** state)
   stratus_context_destroy(host);
 }
 
-/* Values of several components, each with a function of its own or all with one. */
+/* Values of several components, each with a function of its own or all with one, mixed or drawn by themselves. */
 static void components_draw_the_same(void** state)
 {
   stratus_context *host = open_context("host", *state), *device = open_context("0", *state);
   assert_non_null(device);
-  for (uint32_t seed = 0; seed < 3; ++seed) {
+  for (uint32_t seed = 0; seed < 10; ++seed) {
+    static const double thicker[4] = { 0.2, 0.1, 0.9, 0.6 }, thin[4] = { 0.1, 0.0, 0.6, 1.0 };
+    static const stratus_material materials[2] = { { 1, 0.1, 0.9, 0.5, 30.0 }, { 1, 0.4, 0.5, 0.0, 1.0 } };
     tetra_case c;
     tetra_create(&c, edge, 0.2, 0.0, seed);
-    tetra_camera(host, &c, edge, (int)seed, seed & 1);
-    const stratus_transfer transfers[2] = { c.transfer, c.transfer };
+    tetra_camera(host, &c, edge, (int)(seed % 8), seed & 1);
+    stratus_transfer transfers[2] = { c.transfer, c.transfer };
+    transfers[1].opacity = thicker;
+    transfers[1].opacity_count = 2;
+    c.options.mode = seed < 3 || seed > 6 ? STRATUS_TETRA_COMPOSITE : (stratus_tetra_mode)(STRATUS_TETRA_MAXIMUM + seed - 3);
+    if (seed > 6) {
+      c.options.shade = 1;
+      c.options.materials = seed == 8 ? materials : NULL;
+      transfers[1].gradient = thin;
+      transfers[1].gradient_count = 2;
+      c.options.gradient_distance = seed == 9 ? 0.5 : 0.0;
+    }
     c.mesh.point_count /= 2; /* every two values become one of two components; cells name half of the points */
     c.mesh.components = 2;
     c.mesh.value_stride = 2;
     for (int64_t cell = 0; cell < 4 * c.mesh.cell_count; ++cell) {
       c.mesh.cell_count = c.vertices[cell] >= (int32_t)c.mesh.point_count ? cell / 4 : c.mesh.cell_count;
     }
-    c.options.dependent = seed == 1;
-    c.options.mean_components = seed == 2;
+    c.options.dependent = seed == 1 || seed == 7;
+    c.options.mean_components = seed == 2 || seed == 8;
     for (int where = 0; where < 2; ++where) {
       stratus_context* context = where ? device : host;
       tetra_picture* p = where ? &ours : &theirs;

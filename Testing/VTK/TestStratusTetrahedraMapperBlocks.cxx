@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper and composite data sets: blocks of a grid give the picture of the whole, and rays cross their borders without
-// entering anew; nested and empty blocks; images and rectilinear grids; blocks that are left out, and what is refused.
+// vtkStratusTetrahedraMapper and composite data sets: blocks of a grid give the picture of the whole. Structured ones stay lattices, whose
+// borders rays enter anew, unless their faces have other diagonals; rays cross the borders of joined ones. Nested and empty blocks; images
+// and rectilinear grids; blocks that are left out, and what is refused.
 #include "tetrahedra_scene.h"
 
 #include "vtkDoubleArray.h"
@@ -122,8 +123,8 @@ vtkSmartPointer<vtkDataSet> Straight(int number, bool image)
 
 struct BlockScene : GridScene {
   BlockScene() : GridScene(64, 48) { this->Tetrahedra->AddObserver(vtkCommand::WarningEvent, this->Warnings); }
-  // The same picture as that of the whole, by march and by projection, without entering at the borders of blocks.
-  void IsWhole(vtkDataObjectTree* blocks, vtkStructuredGrid* whole, const char* what)
+  // The same picture as that of the whole, by march and by projection, without entering at the borders of joined blocks.
+  void IsWhole(vtkDataObjectTree* blocks, vtkStructuredGrid* whole, const char* what, bool joined = true)
   {
     for (const int method : { vtkStratusTetrahedraMapper::MARCH_METHOD, vtkStratusTetrahedraMapper::PROJECT_METHOD }) {
       this->Tetrahedra->SetMethod(method);
@@ -138,8 +139,10 @@ struct BlockScene : GridScene {
       const std::vector<float> ours = this->GridPicture();
       const double error = TetraError(ours, std::vector<double>(right.begin(), right.end()));
       CHECK(error < 0.01, "%s, method %d: %.4f of 255", what, method, error);
-      CHECK(this->Tetrahedra->GetNumberOfEntries() == entries, "%s: %lld entries, %lld into the whole", what,
-        static_cast<long long>(this->Tetrahedra->GetNumberOfEntries()), static_cast<long long>(entries));
+      const vtkIdType ourEntries = this->Tetrahedra->GetNumberOfEntries();
+      const bool marches = method == vtkStratusTetrahedraMapper::MARCH_METHOD;
+      CHECK(joined || !marches ? ourEntries == entries : ourEntries > entries, "%s: %lld entries, %lld into the whole", what,
+        static_cast<long long>(ourEntries), static_cast<long long>(entries));
       CHECK(this->Tetrahedra->GetNumberOfTetrahedra() == tetrahedra, "%s: %lld tetrahedra", what,
         static_cast<long long>(this->Tetrahedra->GetNumberOfTetrahedra()));
     }
@@ -172,6 +175,87 @@ void BlocksOfAWhole()
     scene.IsWhole(parts, whole, "parts");
     scene.IsWhole(collection, whole, "a collection");
     CHECK(scene.Warnings->Count == 0, "%s", scene.Warnings->Text.c_str());
+  }
+}
+
+// The octant with its points along an axis in reverse order.
+vtkSmartPointer<vtkStructuredGrid> Reversed(vtkStructuredGrid* from, int axis)
+{
+  auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+  int n[3];
+  from->GetDimensions(n);
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkFloatArray> values;
+  points->SetDataTypeToDouble();
+  values->SetName("density");
+  for (int p = 0; p < n[0] * n[1] * n[2]; ++p) {
+    int at[3] = { p % n[0], p / n[0] % n[1], p / n[0] / n[1] };
+    at[axis] = n[axis] - 1 - at[axis];
+    const vtkIdType source = (static_cast<vtkIdType>(at[2]) * n[1] + at[1]) * n[0] + at[0];
+    points->InsertNextPoint(from->GetPoint(source));
+    values->InsertNextTuple(source, from->GetPointData()->GetScalars());
+  }
+  grid->SetDimensions(n);
+  grid->SetPoints(points);
+  grid->GetPointData()->SetScalars(values);
+  return grid;
+}
+
+// Structured blocks are marched as they are: no cell is listed, and light and components cross their borders.
+void StructuredBlocks()
+{
+  for (const bool cells : { false, true }) {
+    BlockScene scene;
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    for (unsigned int number = 0; number < 8; ++number) {
+      blocks->SetBlock(number, Octant(static_cast<int>(number), cells, true));
+    }
+    const auto whole = Whole(cells, true);
+    scene.IsWhole(blocks, whole, "structured blocks", false);
+    scene.Tetrahedra->SetMethodToAuto();
+    scene.GridPicture();
+    CHECK(
+      std::string(scene.Tetrahedra->GetMethodReason()).find("not listed") != std::string::npos, "%s", scene.Tetrahedra->GetMethodReason());
+    scene.Volume->GetProperty()->ShadeOn();
+    scene.Tetrahedra->SetMethodToMarch();
+    scene.Tetrahedra->SetInputData(whole);
+    const std::vector<float> right = scene.GridPicture();
+    scene.Tetrahedra->SetInputData(blocks);
+    const std::vector<float> ours = scene.GridPicture();
+    const double error = TetraError(ours, std::vector<double>(right.begin(), right.end()));
+    CHECK(error < 0.01, "lit structured blocks: %.4f of 255", error);
+    CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
+  }
+}
+
+// A block whose j runs the other way meets one beside it along i by other diagonals: both are joined, and divided alike. Along j its
+// diagonals fit.
+void BlocksThatRunTheOtherWay()
+{
+  for (const int axis : { 0, 1 }) {
+    BlockScene scene;
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    vtkNew<vtkUnstructuredGrid> listed;
+    const auto left = Octant(0, false, true), right = Octant(1, false, true);
+    const auto other = Reversed(right, axis);
+    blocks->SetBlock(0, left);
+    blocks->SetBlock(1, other);
+    scene.Tetrahedra->SetMethodToMarch();
+    scene.Tetrahedra->SetInputData(blocks);
+    scene.Renderer->ResetCamera();
+    const std::vector<float> ours = scene.GridPicture();
+    const vtkIdType entries = scene.Tetrahedra->GetNumberOfEntries();
+    vtkNew<vtkMultiBlockDataSet> together; // with an unstructured block, which is joined
+    together->SetBlock(0, Hexahedra(left));
+    together->SetBlock(1, other);
+    scene.Tetrahedra->SetInputData(together);
+    const std::vector<float> joined = scene.GridPicture();
+    CHECK(axis == 1 ? entries == scene.Tetrahedra->GetNumberOfEntries() : entries > scene.Tetrahedra->GetNumberOfEntries(),
+      "axis %d: %lld entries, %lld of joined blocks", axis, static_cast<long long>(entries),
+      static_cast<long long>(scene.Tetrahedra->GetNumberOfEntries()));
+    const double error = TetraError(ours, std::vector<double>(joined.begin(), joined.end()));
+    CHECK(axis == 0 || error < 0.01, "%.4f of 255", error); // along i the cells of lattices are divided otherwise than joined ones
+    CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
   }
 }
 
@@ -300,6 +384,8 @@ void WhatIsLeftOut()
 int main()
 {
   BlocksOfAWhole();
+  StructuredBlocks();
+  BlocksThatRunTheOtherWay();
   ImagesAndRectilinearGrids();
   Steps();
   BlocksOfTheirOwn();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkStratusTetrahedraMapper: arrays of two to four components give the image mapper's picture of the same linear fields, independent by
-// adding and by their shares, and dependent; what is not drawn of them is refused.
+// adding and by their shares, and dependent, lit and not, and in all modes; what is not drawn of them is refused.
 #include "tetrahedra_scene.h"
 
 #include "vtkColorTransferFunction.h"
+#include "vtkContourValues.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -46,23 +47,59 @@ void SetFunctions(vtkVolumeProperty* look, double most)
   }
 }
 
-void LikeTheImage(bool independent, int components, bool bytes, int mixing)
+// Light with a material for each component, of which the second, if independent, is not lit; and gradient opacity of the first.
+void SetLight(vtkVolumeProperty* look, int components, double most)
+{
+  vtkNew<vtkPiecewiseFunction> thin;
+  thin->AddPoint(0.0, 0.2);
+  thin->AddPoint(0.3 * most, 1.0);
+  look->SetGradientOpacity(0, thin);
+  for (int c = 0; c < components; ++c) {
+    look->SetShade(c, c != 1);
+    look->SetAmbient(c, 0.1 + 0.1 * c);
+    look->SetDiffuse(c, 0.8 - 0.1 * c);
+    look->SetSpecular(c, 0.3);
+    look->SetSpecularPower(c, 5.0 + 4.0 * c);
+  }
+}
+
+void LikeTheImage(bool independent, int components, bool bytes, int mixing, bool lit = false)
 {
   GridScene scene;
   SetFields(scene, components, bytes);
   SetFunctions(scene.Volume->GetProperty(), bytes ? 240.0 : 1.0);
   scene.Volume->GetProperty()->SetIndependentComponents(independent);
+  if (lit) {
+    SetLight(scene.Volume->GetProperty(), components, bytes ? 240.0 : 1.0);
+  }
   scene.Tetrahedra->SetComponentMixing(mixing);
   scene.Mapper->SetComponentMixing(mixing);
   for (int view = 0; view < 3; ++view) {
     scene.Look(35 + 130 * view, 20 - 30 * view);
     const double psnr = scene.Psnr();
-    CHECK(psnr > 55.0, "%d components, independent %d, bytes %d, mixing %d, view %d: %.1f dB", components, independent, bytes, mixing, view,
-      psnr);
+    CHECK(psnr > 55.0, "%d components, independent %d, bytes %d, mixing %d, lit %d, view %d: %.1f dB", components, independent, bytes,
+      mixing, lit, view, psnr);
   }
   CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
-  CHECK(std::string(scene.Tetrahedra->GetMethodReason()) == "march: several components cannot be projected", "%s",
+  CHECK(lit || std::string(scene.Tetrahedra->GetMethodReason()) == "march: several components cannot be projected", "%s",
     scene.Tetrahedra->GetMethodReason());
+}
+
+// Each component is drawn by itself, and the pictures are added, as the image mapper does.
+void ModesLikeTheImage(int mode, int components, bool bytes)
+{
+  GridScene scene;
+  SetFields(scene, components, bytes);
+  SetFunctions(scene.Volume->GetProperty(), bytes ? 240.0 : 1.0);
+  scene.Volume->GetProperty()->SetScalarOpacityUnitDistance(0, 9.0);
+  scene.Tetrahedra->SetBlendMode(mode);
+  scene.Mapper->SetBlendMode(mode);
+  for (int view = 0; view < 3; ++view) {
+    scene.Look(35 + 130 * view, 20 - 30 * view);
+    const double psnr = scene.Psnr();
+    CHECK(psnr > 45.0, "mode %d, %d components, bytes %d, view %d: %.1f dB", mode, components, bytes, view, psnr);
+  }
+  CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
 }
 
 void WhatIsRefused()
@@ -75,15 +112,24 @@ void WhatIsRefused()
     CHECK(scene.GridPicture().empty() && scene.GridErrors->Count == before + 1 && scene.GridErrors->Has(word), "not \"%s\": %s", word,
       scene.GridErrors->Text.c_str());
   };
+  scene.Tetrahedra->SetBlendModeToIsoSurface();
+  scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, 0.5);
+  refuses("isosurfaces of 3 components");
   scene.Tetrahedra->SetBlendModeToAverageIntensity();
-  refuses("values of 3 components are not supported in mode average");
+  scene.Volume->GetProperty()->IndependentComponentsOff();
+  refuses("3 dependent components are not supported in mode average");
+  scene.Volume->GetProperty()->IndependentComponentsOn();
   scene.Tetrahedra->SetBlendModeToComposite();
   scene.Tetrahedra->SetMethodToProject();
   refuses("values of 3 components cannot be projected");
   scene.Tetrahedra->SetMethodToAuto();
-  scene.Volume->GetProperty()->ShadeOn();
-  refuses("light and gradient opacity of 3 components");
-  scene.Volume->GetProperty()->ShadeOff();
+  scene.Volume->GetProperty()->ShadeOn(2);
+  scene.Volume->GetProperty()->SetAmbient(2, -1.0);
+  refuses("material of component 2");
+  scene.Tetrahedra->SetBlendModeToAdditive();
+  refuses("shading is not supported in blend mode 4");
+  scene.Tetrahedra->SetBlendModeToComposite();
+  scene.Volume->GetProperty()->ShadeOff(2);
   scene.Volume->GetProperty()->IndependentComponentsOff();
   refuses("3 dependent components");
   scene.Volume->GetProperty()->IndependentComponentsOn();
@@ -98,6 +144,13 @@ int main()
   LikeTheImage(true, 3, false, vtkStratusTetrahedraMapper::MEAN_COMPONENTS);
   LikeTheImage(false, 2, false, vtkStratusTetrahedraMapper::ADD_COMPONENTS);
   LikeTheImage(false, 4, true, vtkStratusTetrahedraMapper::ADD_COMPONENTS);
+  LikeTheImage(true, 3, false, vtkStratusTetrahedraMapper::ADD_COMPONENTS, true);
+  LikeTheImage(true, 2, false, vtkStratusTetrahedraMapper::MEAN_COMPONENTS, true);
+  LikeTheImage(false, 2, false, vtkStratusTetrahedraMapper::ADD_COMPONENTS, true);
+  LikeTheImage(false, 4, true, vtkStratusTetrahedraMapper::ADD_COMPONENTS, true);
+  for (int mode = vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND; mode <= vtkVolumeMapper::ADDITIVE_BLEND; ++mode) {
+    ModesLikeTheImage(mode, 1 + mode % 4 + (mode % 4 == 0), mode == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
+  }
   WhatIsRefused();
   return Failures ? 1 : 0;
 }

@@ -41,6 +41,10 @@ typedef struct stratus_tetra_media_arguments {
   int sums_at[4];                /* where a component's sums begin, laid out as stratus_tetra_sums() */
   float last[4], depth_scale[4]; /* its last entry; the optical depth of a unit of its sums over a unit of length */
   int has_opaque[4];
+  float weight[4];     /* of a component; depth_scale has it in it */
+  float way_scale[4];  /* the optical depth of a unit of its sums over factor_way, whatever the weight */
+  int gradients_at[4]; /* which of the sets of gradients is its own; -1: neither light nor opacity depends on it */
+  int points;          /* gradients in a set */
 } stratus_tetra_media_arguments;
 
 typedef struct stratus_tetra_arguments {
@@ -70,9 +74,9 @@ typedef struct stratus_tetra_arguments {
   stratus_tetra_media_arguments media; /* of the variant TETRA_LIT, as all that follows */
   stratus_light_arguments light;       /* of the variant TETRA_LIT, as all that follows; places are (a, b, z) */
   float bend[2]; /* by how much light changes at most where a normal turns by an angle, and how much it bends by the angle's square */
-  int thins;     /* 1: gradient opacity */
-  float factor_scale, factor_last; /* from gradients to steps of the gradient opacity, and its last step */
-  float factor_way;                /* > 0: gradient opacities multiply the opacity of a way of this world length; 0: the optical depth */
+  int thins;     /* bit c: component c has a gradient opacity; of one component bit 0 */
+  float factor_scale[4], factor_last; /* from gradients to steps of each component's gradient opacity, and the last step of all */
+  float factor_way;                   /* > 0: gradient opacities multiply the opacity of a way of this world length; 0: the optical depth */
 } stratus_tetra_arguments;
 
 #endif

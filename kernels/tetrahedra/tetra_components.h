@@ -4,19 +4,39 @@
 #ifndef STRATUS_TETRA_COMPONENTS_H
 #define STRATUS_TETRA_COMPONENTS_H
 
-#include "tetra_shade.h"
+#include "tetra_light.h"
 
 #define TETRA_COMPONENTS 4
 #define OPAQUE_DEPTH 1e4f /* of a piece that meets an entry of opacity 1 */
+#define OPAQUE_WAY 80.0f  /* the optical depth of opacity 1 over factor_way */
 
 /* Places of a stretch's values in the tables of all components, at its start and at its end. */
 typedef struct stratus_tetra_values {
   vfloat from[TETRA_COMPONENTS], to[TETRA_COMPONENTS];
 } stratus_tetra_values;
 
-/* A component's mean colour and its optical depth over a length, on a way between two places of its table. */
+/* A stretch of several components. */
+typedef struct stratus_tetra_mixture {
+  const stratus_tetra_values* values;
+  const stratus_tetra_stretch* gradients; /* of those components whose light or opacity depends on them */
+  GLOBAL const int* sums;                 /* of all components */
+  GLOBAL const float* factors;            /* their gradient opacities */
+  vfloat length;                          /* in the world */
+} stratus_tetra_mixture;
+
+/* What a component makes of a way. */
+typedef struct stratus_tetra_medium {
+  vfloat color[3], depth; /* the mean colour, and the optical depth */
+  vfloat tau;             /* the mean of the sums an entry, 0 where nothing shows */
+  vfloat middle;          /* of what shows, as a part of the way, where the component's gradient counts */
+  vmask opaque;           /* the way meets an entry of opacity 1, and `middle` is where */
+} stratus_tetra_medium;
+
+INLINE int component_has_gradient(CONSTANT stratus_tetra_arguments* a, int c) { return (a->light.on | a->thins) >> c & 1; }
+
+/* What component c makes of a way of `length` between two places of its table, without its gradient. */
 INLINE void component_mean(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* all, int c, vfloat from, vfloat to, vfloat length,
-  vmask mask, vfloat color[3], vfloat* depth)
+  vmask mask, stratus_tetra_medium* medium)
 {
   GLOBAL const int* sums = all + a->media.sums_at[c];
   const float last = a->media.last[c];
@@ -31,13 +51,18 @@ INLINE void component_mean(CONSTANT stratus_tetra_arguments* a, GLOBAL const int
   for (int i = 0; i < 4; ++i) {
     mean[i] = v_abs(v_from_int(up_to[i] - before[i])) * steps;
   }
+  medium->middle = v_set(0.5f);
+  if (component_has_gradient(a, c)) {
+    medium->middle = tetra_middle_of(sums, entries, low, high, v_from_int(up_to[3] - before[3]), mask);
+  }
   if (m_any(level)) {
     gather_four_ints(sums, high + vi_set(entries), level, up_to);
     for (int i = 0; i < 4; ++i) {
       mean[i] = v_select(level, v_from_int(up_to[i]), mean[i]);
     }
   }
-  *depth = v_min(mean[3] * v_set(a->media.depth_scale[c]) * length, v_set(1e18f));
+  medium->opaque = m_none();
+  medium->depth = v_min(mean[3] * v_set(a->media.depth_scale[c]) * length, v_set(1e18f));
   if (a->media.has_opaque[c]) {
     GLOBAL const int* rows = sums + 8 * entries;
     const vmask rises = vi_ge(high, low);
@@ -48,37 +73,74 @@ INLINE void component_mean(CONSTANT stratus_tetra_arguments* a, GLOBAL const int
       for (int i = 0; i < 4; ++i) {
         mean[i] = v_select(met, v_from_int(up_to[i]), mean[i]);
       }
-      *depth = v_select(met & v_lt(v_set(0.0f), length), v_set(OPAQUE_DEPTH), *depth);
+      medium->opaque = met & v_lt(v_set(0.0f), length);
+      medium->depth = v_select(medium->opaque, v_set(OPAQUE_DEPTH), medium->depth);
+      if (component_has_gradient(a, c)) {
+        medium->middle = v_select(medium->opaque, v_clamp(v_abs(v_from_int(first - low)) * steps, 0.0f, 1.0f), medium->middle);
+      }
     }
   }
+  medium->tau = mean[3];
   const vfloat per_tau = v_reciprocal(v_max(mean[3], one));
   for (int i = 0; i < 3; ++i) {
-    color[i] = mean[i] * per_tau;
+    medium->color[i] = mean[i] * per_tau;
   }
 }
 
-/* What all components make of a way: the light that it emits where nothing hides it, and its optical depth. */
-INLINE void mix_components(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, const vfloat from[TETRA_COMPONENTS],
-  const vfloat to[TETRA_COMPONENTS], vfloat length, vmask mask, vfloat glow[3], vfloat* depth)
+/* Lights and thins what component c makes of the part at..at+part of a stretch. */
+INLINE void light_component(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, int c, vfloat at, vfloat part, vmask mask,
+  stratus_tetra_medium* medium)
 {
-  const vfloat zero = v_set(0.0f);
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
+  vfloat way = v_min(medium->tau * v_set(a->media.way_scale[c]), v_set(1e20f));
+  stratus_tetra_lit lit;
+  way = v_select(medium->opaque, v_set(OPAQUE_WAY), way);
+  tetra_light_at(a, m->factors, c, m->gradients + c, v_fma(medium->middle, part, at), way, mask, &lit);
+  for (int i = 0; i < 3; ++i) {
+    medium->color[i] = v_fma(medium->color[i], lit.diffuse[i], lit.specular[i]);
+  }
+  if (a->thins >> c & 1) {
+    const vfloat thinned = medium->depth * lit.factor;
+    vfloat opaque = v_select(v_lt(zero, lit.factor), medium->depth, zero);
+    if (a->factor_way > 0.0f) { /* what an opaque way has become over the rest of the piece */
+      const vfloat rest = (one - medium->middle) * part * m->length * v_set(OPAQUE_WAY * a->media.weight[c] / a->factor_way);
+      opaque = v_select(v_lt(lit.factor, v_set(0.98f)), v_min(lit.factor * rest, v_set(OPAQUE_DEPTH)), medium->depth);
+    }
+    medium->depth = v_select(medium->opaque, opaque, thinned);
+  }
+}
+
+/* What all components make of the part at..at+part of a stretch, between the places `from` and `to` of their tables: the light that it
+ * emits where nothing hides it, and its optical depth. own: the optical depths of components, without gradient opacity. */
+INLINE void mix_components(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, const vfloat from[TETRA_COMPONENTS],
+  const vfloat to[TETRA_COMPONENTS], vfloat at, vfloat part, vmask mask, vfloat glow[3], vfloat* depth, vfloat own[TETRA_COMPONENTS])
+{
+  const vfloat zero = v_set(0.0f), length = m->length * part;
   const int last = a->media.components - 1;
-  vfloat squares = zero, color[3], own;
+  vfloat squares = zero;
   *depth = glow[0] = glow[1] = glow[2] = zero;
   for (int c = a->media.dependent ? last : 0; c <= last; ++c) {
-    component_mean(a, sums, c, from[c], to[c], length, mask, color, &own);
+    stratus_tetra_medium medium;
+    component_mean(a, m->sums, c, from[c], to[c], length, mask, &medium);
+    own[c] = medium.depth;
     if (a->media.dependent && last == 1) {
-      vfloat unused;
-      component_mean(a, sums, 0, from[0], to[0], length, mask, color, &unused);
+      stratus_tetra_medium colors;
+      component_mean(a, m->sums, 0, from[0], to[0], length, mask, &colors);
+      for (int i = 0; i < 3; ++i) {
+        medium.color[i] = colors.color[i];
+      }
     } else if (a->media.dependent) {
       for (int i = 0; i < 3; ++i) {
-        color[i] = v_set(0.5f) * (from[i] + to[i]);
+        medium.color[i] = v_set(0.5f) * (from[i] + to[i]);
       }
     }
-    *depth = *depth + own;
-    squares = v_fma(own, own, squares);
+    if (component_has_gradient(a, c)) {
+      light_component(a, m, c, at, part, mask, &medium);
+    }
+    *depth = *depth + medium.depth;
+    squares = v_fma(medium.depth, medium.depth, squares);
     for (int i = 0; i < 3; ++i) {
-      glow[i] = v_fma(own, color[i], glow[i]);
+      glow[i] = v_fma(medium.depth, medium.color[i], glow[i]);
     }
   }
   if (a->media.mean) {
@@ -88,16 +150,16 @@ INLINE void mix_components(CONSTANT stratus_tetra_arguments* a, GLOBAL const int
 
 /* Where a product or a share of components is mixed of their means, the error falls with the square of the number of pieces: by three
  * quarters from a whole stretch, `glow` and `depth`, to two halves. Returns that square, where the halves' difference asks for it. */
-INLINE vfloat mixing_pieces(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, const stratus_tetra_values* values, vfloat length,
-  vmask mask, const vfloat glow[3], vfloat depth)
+INLINE vfloat mixing_pieces(
+  CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, vmask mask, const vfloat glow[3], vfloat depth)
 {
   const vfloat centre = v_set(0.5f);
-  vfloat middle[TETRA_COMPONENTS], first[3], second[3], depths[2], change;
+  vfloat middle[TETRA_COMPONENTS], own[TETRA_COMPONENTS], first[3], second[3], depths[2], change;
   for (int c = 0; c < TETRA_COMPONENTS; ++c) {
-    middle[c] = centre * (values->from[c] + values->to[c]);
+    middle[c] = centre * (m->values->from[c] + m->values->to[c]);
   }
-  mix_components(a, sums, values->from, middle, centre * length, mask, first, depths);
-  mix_components(a, sums, middle, values->to, centre * length, mask, second, depths + 1);
+  mix_components(a, m, m->values->from, middle, v_set(0.0f), centre, mask, first, depths, own);
+  mix_components(a, m, middle, m->values->to, centre, centre, mask, second, depths + 1, own);
   change = v_abs(depth - (depths[0] + depths[1]));
   for (int i = 0; i < 3; ++i) {
     change = v_max(change, v_abs(glow[i] - (first[i] + second[i])));
@@ -105,20 +167,41 @@ INLINE vfloat mixing_pieces(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   return v_set(16.0f * a->pieces) * change * v_reciprocal(v_max(v_min(depth, v_set(1.0f)), v_set(1e-20f)));
 }
 
+/* Into how many pieces light and gradient opacity cut the stretch, squared. */
+INLINE vfloat lit_pieces(
+  CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, vmask mask, const vfloat own[TETRA_COMPONENTS])
+{
+  vfloat q = v_set(0.0f);
+  for (int c = a->media.dependent ? a->media.components - 1 : 0; c < a->media.components; ++c) {
+    if (component_has_gradient(a, c)) {
+      q = q + tetra_light_pieces(a, m->factors, c, m->gradients + c, own[c], mask);
+      q = a->media.has_opaque[c] && (a->thins >> c & 1) ? v_max(q, v_set(TETRA_PIECES_OPAQUE)) : q;
+    }
+  }
+  return q;
+}
+
 /* Composites a stretch. */
-INLINE void tetra_media(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, const stratus_tetra_values* values,
-  stratus_tetra_light* light, vmask mask, vfloat length, vfloat near)
+INLINE void tetra_media(
+  CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, stratus_tetra_light* light, vmask mask, vfloat near)
 {
   const vfloat one = v_set(1.0f), zero = v_set(0.0f);
-  vfloat glow[3], depth, from[TETRA_COMPONENTS], to[TETRA_COMPONENTS];
-  mix_components(a, sums, values->from, values->to, length, mask, glow, &depth);
-  mask = mask & v_lt(zero, depth);
+  const stratus_tetra_values* values = m->values;
+  vfloat glow[3], depth, from[TETRA_COMPONENTS], to[TETRA_COMPONENTS], own[TETRA_COMPONENTS], all = zero;
+  mix_components(a, m, values->from, values->to, zero, one, mask, glow, &depth, own);
+  for (int c = a->media.dependent ? a->media.components - 1 : 0; c < a->media.components; ++c) {
+    all = all + own[c];
+  }
+  mask = mask & v_lt(zero, all);
   if (!m_any(mask)) {
     return;
   }
   vfloat q = depth * v_set(a->pieces); /* a colour changes by 1 at most */
   if (a->media.dependent || a->media.mean) {
-    q = v_max(q, mixing_pieces(a, sums, values, length, mask, glow, depth));
+    q = v_max(q, mixing_pieces(a, m, mask, glow, depth));
+  }
+  if (a->light.on || a->thins) {
+    q = v_max(q, lit_pieces(a, m, mask, own));
   }
   const vfloat pieces = tetra_pieces_of(q), share = v_reciprocal(pieces);
   vfloat piece = zero, at = zero;
@@ -132,7 +215,7 @@ INLINE void tetra_media(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* s
     for (int c = 0; c < TETRA_COMPONENTS; ++c) {
       to[c] = v_select(more, v_fma(values->to[c] - values->from[c], next, values->from[c]), values->to[c]);
     }
-    mix_components(a, sums, from, to, length * (next - at), mask, glow, &depth);
+    mix_components(a, m, from, to, at, next - at, mask, glow, &depth, own);
     const vmask shows = mask & v_lt(zero, depth);
     const vfloat shares = v_absorbed_share(v_select(shows, depth, zero), shows);
     const vfloat alpha = v_select(shows, v_min(depth * shares, one), zero), scale = v_select(shows, light->transparency * shares, zero);

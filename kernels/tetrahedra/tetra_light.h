@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Stretches that are lit and thinned by the field's gradient, the variant TETRA_LIT. Between the two faces of a cell the gradient is
- * interpolated as the field is. A stretch is cut into pieces, each of which is lit at the middle of its optical depth. */
+ * Stretches that are lit and thinned by the field's gradient, that of each of several components or of one, the variant TETRA_LIT. Between
+ * the two faces of a cell the gradient is interpolated as the field is. A stretch is cut into pieces, each of which is lit at the middle of
+ * its optical depth. */
 #ifndef STRATUS_TETRA_LIGHT_H
 #define STRATUS_TETRA_LIGHT_H
 
@@ -29,41 +30,49 @@ INLINE void stretch_gradient(const stratus_tetra_stretch* s, vfloat part, vfloat
   }
 }
 
-/* Light and gradient opacity at a part of the stretch. way: the optical depth over factor_way there, read only where that is not 0. */
-INLINE void tetra_light_at(CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, const stratus_tetra_stretch* s, vfloat part,
-  vfloat way, vmask mask, stratus_tetra_lit* lit)
+/* Component c's gradient opacity of a gradient. */
+INLINE vfloat tetra_factor(CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, int c, const vfloat g[3], vmask mask)
+{
+  const vint first = vi_set(c * ((int)a->factor_last + 2));
+  return factor_of_gradient((GLOBAL const int*)factors, first, v_set(a->factor_scale[c]), a->factor_last, g, mask);
+}
+
+/* Component c's light and gradient opacity at a part of the stretch. way: the optical depth over factor_way there, read only where that is
+ * not 0. */
+INLINE void tetra_light_at(CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, int c, const stratus_tetra_stretch* s,
+  vfloat part, vfloat way, vmask mask, stratus_tetra_lit* lit)
 {
   const vfloat z = v_fma(part, s->rise, s->begin), one = v_set(1.0f);
   const vfloat x[3] = { v_fma(s->us, z, s->uw), v_fma(s->vs, z, s->vw), z }, d[3] = { s->us, s->vs, one };
   vfloat g[3];
   stretch_gradient(s, part, g);
   lit->factor = one;
-  for (int c = 0; c < 3; ++c) {
-    lit->diffuse[c] = one;
-    lit->specular[c] = v_set(0.0f);
+  for (int i = 0; i < 3; ++i) {
+    lit->diffuse[i] = one;
+    lit->specular[i] = v_set(0.0f);
   }
-  if (a->thins) {
-    lit->factor = factor_of_gradient((GLOBAL const int*)factors, vi_set(0), v_set(a->factor_scale), a->factor_last, g, mask);
+  if (a->thins >> c & 1) {
+    lit->factor = tetra_factor(a, factors, c, g, mask);
     if (a->factor_way > 0.0f) {
       lit->factor = factor_of_way(lit->factor, way);
     }
   }
-  if (a->light.on) {
-    light_at(&a->light, 0, x, d, g, lit->diffuse, lit->specular);
+  if (a->light.on >> c & 1) {
+    light_at(&a->light, c, x, d, g, lit->diffuse, lit->specular);
   }
 }
 
-/* How much light changes over the stretch, for the number of its pieces. depth: its optical depth. Light that changes evenly is met exactly
- * by that at the middle of what shows, but for what hides itself, a part of the depth; light that bends is not. */
+/* How much component c's light changes over the stretch, for the number of its pieces. depth: its optical depth. Light that changes evenly
+ * is met exactly by that at the middle of what shows, but for what hides itself, a part of the depth; light that bends is not. */
 INLINE vfloat tetra_light_pieces(
-  CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, const stratus_tetra_stretch* s, vfloat depth, vmask mask)
+  CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, int c, const stratus_tetra_stretch* s, vfloat depth, vmask mask)
 {
   const vfloat one = v_set(1.0f), zero = v_set(0.0f), most = v_min(depth, one);
   vfloat q = zero, g[3][3];
   for (int i = 0; i < 3; ++i) {
     stretch_gradient(s, v_set(0.5f * (float)i), g[i]);
   }
-  if (a->light.on) {
+  if (a->light.on >> c & 1) {
     vfloat normal[2][3];
     for (int end = 0; end < 2; ++end) {
       (void)v_scale3(g[2 * end]);
@@ -76,38 +85,38 @@ INLINE vfloat tetra_light_pieces(
     const vfloat angle = v_root(v_max(square, v_set(1e-20f)));
     q = v_fma(depth * angle, v_set(a->bend[0]), most * square * v_set(0.5f * a->bend[1]));
   }
-  if (a->thins) {
+  if (a->thins >> c & 1) {
     vfloat f[3];
     for (int i = 0; i < 3; ++i) {
-      f[i] = factor_of_gradient((GLOBAL const int*)factors, vi_set(0), v_set(a->factor_scale), a->factor_last, g[i], mask);
+      f[i] = tetra_factor(a, factors, c, g[i], mask);
     }
     const vfloat bend = v_abs(v_fma(v_set(-0.5f), f[0] + f[2], f[1]));
     q = q + v_fma(depth, v_abs(f[2] - f[0]), v_set(8.0f) * most * bend);
   }
   q = q * v_set(a->pieces);
-  if (a->thins && a->factor_way > 0.0f) {
+  if ((a->thins >> c & 1) && a->factor_way > 0.0f) {
     q = v_select(v_lt(one, most * v_set(a->pieces)), v_max(q, v_set(TETRA_PIECES_THINNED)), q);
   }
   return q;
 }
 
-/* The middle of the optical depth between two places of the table, as a part of the way between them. */
-INLINE vfloat tetra_middle(
-  CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, const stratus_tetra_place* from, const stratus_tetra_place* to, vmask mask)
+/* The middle of the optical depth between two entries of a table of `entries` entries, as a part of the way between them. tau: the rise of
+ * the sums of optical depth. */
+INLINE vfloat tetra_middle_of(GLOBAL const int* sums, int entries, vint low, vint high, vfloat tau, vmask mask)
 {
-  GLOBAL const int* moments = sums + TETRA_MOMENTS * ((int)a->table.last + 1);
-  const vfloat centre = v_set(0.5f), tau = v_from_int(to->sum[3] - from->sum[3]), entries = v_from_int(to->entry - from->entry);
-  const vmask any = mask & v_lt(centre, v_abs(tau)) & v_lt(centre, v_abs(entries));
-  vint low[2], high[2];
+  GLOBAL const int* moments = sums + TETRA_MOMENTS * entries;
+  const vfloat centre = v_set(0.5f), rise = v_from_int(high - low);
+  const vmask any = mask & v_lt(centre, v_abs(tau)) & v_lt(centre, v_abs(rise));
+  vint before[2], up_to[2];
   if (!m_any(any)) {
     return centre;
   }
-  gather_pair(moments, from->entry << vi_set(1), any, low);
-  gather_pair(moments, to->entry << vi_set(1), any, high);
-  const vfloat moment = v_fma(v_from_int(high[0] - low[0]), v_set(65536.0f), v_from_int(high[1] - low[1]));
-  /* tau and entries have the same sign */
-  const vfloat size = v_reciprocal(v_select(any, tau * entries, v_set(1.0f)));
-  const vfloat middle = v_fma(v_set(0.0f) - v_from_int(from->entry), tau, moment) * size;
+  gather_pair(moments, low << vi_set(1), any, before);
+  gather_pair(moments, high << vi_set(1), any, up_to);
+  const vfloat moment = v_fma(v_from_int(up_to[0] - before[0]), v_set(65536.0f), v_from_int(up_to[1] - before[1]));
+  /* tau and rise have the same sign */
+  const vfloat size = v_reciprocal(v_select(any, tau * rise, v_set(1.0f)));
+  const vfloat middle = v_fma(v_set(0.0f) - v_from_int(low), tau, moment) * size;
   return v_select(any, v_clamp(middle, 0.0f, 1.0f), centre);
 }
 
@@ -125,7 +134,7 @@ INLINE void tetra_light_end(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   const vfloat steps = v_abs(v_from_int(entry - p->from.entry)), whole = v_abs(v_from_int(p->to.entry - p->from.entry));
   const vfloat part = v_clamp(steps * v_reciprocal(v_max(whole, one)), 0.0f, 1.0f);
   stratus_tetra_lit lit;
-  tetra_light_at(a, factors, s, v_fma(part, p->part, p->at), v_set(80.0f), mask, &lit);
+  tetra_light_at(a, factors, 0, s, v_fma(part, p->part, p->at), v_set(80.0f), mask, &lit);
   vfloat alpha = one;
   if (a->thins && a->factor_way > 0.0f) { /* what 80, an opaque way, has become over the rest of the piece */
     const vfloat rest = v_select(v_lt(zero, whole), one - part, one) * p->part * s->length;
@@ -155,21 +164,23 @@ INLINE void tetra_light_piece(CONSTANT stratus_tetra_arguments* a, GLOBAL const 
   }
   if (m_any(mask)) {
     const vfloat weight = v_min(part * s->length * v_set(a->table.tau_scale), v_set(OPAQUE_WEIGHT));
-    const vfloat at = v_fma(tetra_middle(a, sums, &p->from, &end, mask), part, p->at);
+    const vfloat tau = v_from_int(end.sum[3] - p->from.sum[3]);
+    const vfloat middle = tetra_middle_of(sums, (int)a->table.last + 1, p->from.entry, end.entry, tau, mask);
+    const vfloat at = v_fma(middle, part, p->at);
     vfloat way = v_set(0.0f);
     stratus_tetra_lit lit;
     if (a->factor_way > 0.0f) {
       const vint rise = end.entry - p->from.entry;
       const vmask level = mask & vi_zero(rise);
-      vfloat tau = v_abs(v_from_int(end.sum[3] - p->from.sum[3])) * v_reciprocal(v_max(v_abs(v_from_int(rise)), v_set(1.0f)));
+      vfloat mean = v_abs(tau) * v_reciprocal(v_max(v_abs(v_from_int(rise)), v_set(1.0f)));
       if (m_any(level)) {
         vint own[4];
         gather_four_ints(sums, end.entry + vi_set((int)a->table.last + 1), level, own);
-        tau = v_select(level, v_from_int(own[3]), tau);
+        mean = v_select(level, v_from_int(own[3]), mean);
       }
-      way = v_min(tau * v_set(a->table.tau_scale) * v_set(a->factor_way), v_set(1e20f));
+      way = v_min(mean * v_set(a->table.tau_scale) * v_set(a->factor_way), v_set(1e20f));
     }
-    tetra_light_at(a, factors, s, at, way, mask, &lit);
+    tetra_light_at(a, factors, 0, s, at, way, mask, &lit);
     tetra_composite(a, sums, light, mask, &p->from, &end, weight, near, &lit);
   }
   if (m_any(opaque)) {
@@ -192,7 +203,7 @@ INLINE void tetra_light_stretch(CONSTANT stratus_tetra_arguments* a, GLOBAL cons
     gather_four_ints(sums, to->entry + vi_set((int)a->table.last + 1), level, own);
     depth = v_select(level, v_from_int(own[3]) * weight, depth);
   }
-  vfloat q = v_max(tetra_pieces(a, sum, entries), tetra_light_pieces(a, factors, s, depth, mask));
+  vfloat q = v_max(tetra_pieces(a, sum, entries), tetra_light_pieces(a, factors, 0, s, depth, mask));
   if (a->table.has_opaque && a->thins) {
     q = v_max(q, v_set(TETRA_PIECES_OPAQUE));
   }

@@ -19,10 +19,11 @@ typedef struct stratus_tetra_scene {
   GLOBAL const float* points; /* x, y, z and value of each */
   GLOBAL const int* sums; /* stratus_tetra_sums(): running sums up to each entry's middle, then each entry's own, then the opaque entries */
   GLOBAL const float* cell_values; /* read only if the arguments' cell_values is set */
-  GLOBAL const float* gradients;   /* of points, four floats each, as the next read by the variant TETRA_LIT alone */
-  GLOBAL const float* factors;     /* the gradient opacity */
-  GLOBAL const float* components;  /* of points or cells, four floats each: places in the components' tables */
-  GLOBAL const int* media;         /* their sums */
+  GLOBAL const float*
+    gradients;                 /* of points, four floats each, a set for each component; as the next read by the variant TETRA_LIT alone */
+  GLOBAL const float* factors; /* the gradient opacities of components */
+  GLOBAL const float* components; /* of points or cells, four floats each: places in the components' tables */
+  GLOBAL const int* media;        /* their sums */
 } stratus_tetra_scene;
 
 typedef struct stratus_tetra_ray {
@@ -224,14 +225,14 @@ INLINE void tetra_face_floats(GLOBAL const float* floats, int count, const vint 
 
 /* The part begin..end, in z, of a cell that was passed. */
 INLINE stratus_tetra_stretch tetra_stretch(
-  const stratus_tetra_scene* scene, const stratus_tetra_ray* r, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask)
+  GLOBAL const float* gradients, const stratus_tetra_ray* r, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask)
 {
   const vfloat per_z = v_reciprocal(v_max(passage->to - passage->from, v_set(1e-30f)));
   const vfloat from = v_clamp((begin - passage->from) * per_z, 0.0f, 1.0f), to = v_clamp((end - passage->from) * per_z, 0.0f, 1.0f);
   stratus_tetra_stretch s;
   vfloat near[4], far[4];
-  tetra_face_floats(scene->gradients, 3, passage->name, passage->edge, mask, near);
-  tetra_face_floats(scene->gradients, 3, r->name, r->edge, mask, far);
+  tetra_face_floats(gradients, 3, passage->name, passage->edge, mask, near);
+  tetra_face_floats(gradients, 3, r->name, r->edge, mask, far);
   for (int axis = 0; axis < 3; ++axis) {
     s.gradient[axis] = v_fma(far[axis] - near[axis], from, near[axis]);
     s.turn[axis] = (far[axis] - near[axis]) * (to - from);
@@ -267,7 +268,15 @@ INLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const st
       values.to[c] = v_fma(last[c] - first[c], to, first[c]);
     }
   }
-  tetra_media(a, scene->media, &values, light, mask, (end - begin) * r->length, near);
+  stratus_tetra_stretch stretches[TETRA_COMPONENTS];
+  for (int c = 0; c < a->media.components; ++c) {
+    if (component_has_gradient(a, c)) {
+      const size_t set = (size_t)a->media.gradients_at[c] * (size_t)a->media.points;
+      stretches[c] = tetra_stretch(scene->gradients + 4 * set, r, passage, begin, end, mask);
+    }
+  }
+  const stratus_tetra_mixture mixture = { &values, stretches, scene->media, scene->factors, (end - begin) * r->length };
+  tetra_media(a, &mixture, light, mask, near);
 }
 
 /* The lanes whose stretch may show: its sums differ, or it lies within one entry. */
@@ -298,7 +307,7 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
 #if TETRA_LIT
     const vmask some = mask & m_andnot(v_le(first, first), v_le(first, last) & v_le(last, first));
     if (m_any(some)) {
-      const stratus_tetra_stretch stretch = tetra_stretch(scene, r, passage, begin, end, some);
+      const stratus_tetra_stretch stretch = tetra_stretch(scene->gradients, r, passage, begin, end, some);
       tetra_surfaces(a, &stretch, light, some, first, last, near, stretch.length);
     }
 #else
@@ -323,7 +332,7 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
       if (m_any(some) && a->media.components) {
         tetra_shade_components(a, scene, r, light, passage, begin, end, some, near);
       } else if (m_any(some)) {
-        const stratus_tetra_stretch stretch = tetra_stretch(scene, r, passage, begin, end, some);
+        const stratus_tetra_stretch stretch = tetra_stretch(scene->gradients, r, passage, begin, end, some);
         tetra_light_stretch(a, scene->sums, scene->factors, &stretch, light, some, first, last, &from, &to, near);
       }
 #else

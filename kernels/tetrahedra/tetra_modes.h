@@ -8,7 +8,6 @@
 /* A device's kernel holds a file where it is included first: what other variants need, too, must stand above. */
 #if TETRA_LIT
 #include "tetra_components.h"
-#include "tetra_light.h"
 #else
 typedef int stratus_tetra_stretch; /* of no use */
 #endif
@@ -61,7 +60,7 @@ INLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_te
       v_select(rises, v_set(up[3]), v_set(down[3])), opacity };
 #if TETRA_LIT
     stratus_tetra_lit lit;
-    tetra_light_at(a, 0, stretch, part, zero, met, &lit);
+    tetra_light_at(a, 0, 0, stretch, part, zero, met, &lit);
     tetra_gather(light, &lit, scale, color);
 #else
     (void)stretch;

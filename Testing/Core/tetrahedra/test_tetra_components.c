@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Values of several components in tetrahedra against a reference in double precision, which intersects rays with cells once for each
- * component and integrates in many steps: independent and dependent ones, of points and of cells, lists and lattices. */
-#include "tetra_case.h"
+ * component and integrates in many steps: independent and dependent ones, of points and of cells, lists and lattices, in all modes. */
+#include "tetra_light_case.h"
 
 #include "tetra_caster.h"
 
@@ -14,7 +14,8 @@ typedef struct several {
   float* values[COMPONENTS];
   void* all;
   stratus_transfer transfers[COMPONENTS];
-  double opacity[COMPONENTS][6];
+  double opacity[COMPONENTS][6], gradient[6];
+  stratus_material materials[COMPONENTS];
   int count;
 } several;
 
@@ -69,11 +70,6 @@ static void destroy(several* s)
   tetra_destroy(&s->whole);
 }
 
-static double depth_of(const stratus_transfer* t, double value)
-{
-  return -log1p(-linear_between(t->opacity, t->opacity_count, 2, 1, value)) / t->unit_distance;
-}
-
 static void color_of(const stratus_transfer* t, double value, double rgb[3])
 {
   for (size_t k = 0; k < 3; ++k) {
@@ -81,24 +77,42 @@ static void color_of(const stratus_transfer* t, double value, double rgb[3])
   }
 }
 
-/* Adds one step of a ray: the values of all components there. */
-static void add_step(const several* s, const double value[COMPONENTS], double length, double out[4])
+/* A step of a ray through a cell: the values of all components there, and its place. */
+typedef struct ray_step {
+  int64_t cell;
+  double value[COMPONENTS], place[3], along[3], length;
+} ray_step;
+
+typedef struct spaces {
+  tetra_space world[COMPONENTS], local[COMPONENTS]; /* of each component's gradients */
+} spaces;
+
+/* Adds a step. */
+static void add_step(const several* s, const spaces* in, const ray_step* step, double out[4])
 {
   const stratus_tetra_options* o = &s->whole.options;
   double depth = 0.0, squares = 0.0, glow[3] = { 0.0, 0.0, 0.0 };
   for (int c = o->dependent ? s->count - 1 : 0; c < s->count; ++c) {
-    const stratus_transfer* t = s->transfers + (o->dependent ? 0 : c);
-    const double own = depth_of(t, value[c]) * (o->dependent ? 1.0 : t->weight);
-    double rgb[3];
-    color_of(t, value[o->dependent ? 0 : c], rgb);
+    const tetra_case* part = s->part + c;
+    const double alpha = tetra_thinned(part, in->world + c, in->local + c, step->cell, step->place, step->value[c], step->length);
+    const double own = -log1p(-alpha) / step->length * (o->dependent ? 1.0 : s->transfers[c].weight);
+    double rgb[3], g[3];
+    color_of(&part->transfer, step->value[o->dependent ? 0 : c], rgb);
+    for (int k = 0; k < 3 && o->dependent && s->count == 4; ++k) {
+      rgb[k] = step->value[k] / 255.0;
+    }
+    if (o->materials && !o->dependent ? o->materials[c].shade : o->shade) {
+      tetra_gradient_at(part, in->world + c, in->world + c, step->cell, step->place, g);
+      tetra_illuminate(part, step->place, step->along, g, rgb);
+    }
     for (int k = 0; k < 3; ++k) {
-      glow[k] += own * (o->dependent && s->count == 4 ? value[k] / 255.0 : rgb[k]);
+      glow[k] += own * rgb[k];
     }
     depth += own;
     squares += own * own;
   }
   depth = o->mean_components && !o->dependent && depth > 0.0 ? squares / depth : depth;
-  const double alpha = -expm1(-depth * length);
+  const double alpha = -expm1(-depth * step->length);
   for (int k = 0; k < 3 && depth > 0.0; ++k) {
     out[k] += (1.0 - out[3]) * alpha * glow[k] / depth;
   }
@@ -107,6 +121,7 @@ static void add_step(const several* s, const double value[COMPONENTS], double le
 
 typedef struct met_cell {
   tetra_stretch of[COMPONENTS];
+  int64_t cell;
 } met_cell;
 
 static int nearer(const void* a, const void* b)
@@ -114,40 +129,70 @@ static int nearer(const void* a, const void* b)
   return tetra_nearer(((const met_cell*)a)->of, ((const met_cell*)b)->of);
 }
 
-static void draw_reference(const several* s)
+static void add_cell(const several* s, const spaces* in, const met_cell* met, const double origin[3], const double along[3], double out[4])
+{
+  const double length = (met->of[0].to - met->of[0].from) * sqrt(tetra_dot(along, along)) / STEPS;
+  for (int step = 0; step < STEPS; ++step) {
+    const double t = (step + 0.5) / STEPS, at = met->of[0].from + t * (met->of[0].to - met->of[0].from);
+    ray_step r = { .cell = met->cell, .length = length };
+    for (int c = 0; c < s->count; ++c) {
+      r.value[c] = met->of[c].first + t * (met->of[c].last - met->of[c].first);
+    }
+    for (int a = 0; a < 3; ++a) {
+      r.along[a] = along[a];
+      r.place[a] = origin[a] + at * along[a];
+    }
+    add_step(s, in, &r, out);
+  }
+}
+
+static void draw_reference(several* s)
 {
   const stratus_camera* k = &s->whole.camera;
+  spaces in;
   met_cell* met = calloc((size_t)s->part[0].mesh.cell_count + 1, sizeof *met);
   assert_non_null(met);
+  for (int c = 0; c < s->count; ++c) {
+    const stratus_material* m = s->whole.options.dependent ? NULL : s->whole.options.materials;
+    stratus_shading* shading = &s->part[c].options.shading;
+    s->part[c].options = s->whole.options;
+    s->part[c].camera = *k;
+    s->part[c].transfer = s->transfers[s->whole.options.dependent ? 0 : c];
+    if (m) {
+      shading->ambient = m[c].ambient;
+      shading->diffuse = m[c].diffuse;
+      shading->specular = m[c].specular;
+      shading->specular_power = m[c].specular_power;
+    }
+    in.world[c] = tetra_space_create(s->part + c, 1);
+    in.local[c] = tetra_space_create(s->part + c, 0);
+  }
   for (int pixel = 0; pixel < TETRA_PIXELS; ++pixel) {
     const double u = (2.0 * (pixel % TETRA_WIDTH) + 1.0) / TETRA_WIDTH - 1.0, v = (2.0 * (pixel / TETRA_WIDTH) + 1.0) / TETRA_HEIGHT - 1.0;
-    double origin[3], along[3], square = 0.0, *out = reference + 4 * pixel;
+    double origin[3], along[3], *out = reference + 4 * pixel;
     size_t count = 0;
     for (int a = 0; a < 3; ++a) {
       const double side = u * k->right[a] + v * k->up[a];
       origin[a] = k->eye[a] + (k->parallel ? side : 0.0);
       along[a] = k->forward[a] + (k->parallel ? 0.0 : side);
-      square += along[a] * along[a];
     }
     for (int64_t cell = 0; cell < s->part[0].mesh.cell_count; ++cell) {
       int meets = 1;
       for (int c = 0; c < s->count; ++c) {
         meets = meets && tetra_meet(s->part + c, cell, origin, along, k->near_k, k->far_k, &met[count].of[c]);
       }
+      met[count].cell = cell;
       count += (size_t)meets;
     }
     qsort(met, count, sizeof *met, nearer);
     memset(out, 0, 4 * sizeof *out);
     for (size_t i = 0; i < count; ++i) {
-      const double length = (met[i].of[0].to - met[i].of[0].from) * sqrt(square) / STEPS;
-      for (int step = 0; step < STEPS; ++step) {
-        double value[COMPONENTS] = { 0.0 };
-        for (int c = 0; c < s->count; ++c) {
-          value[c] = met[i].of[c].first + (step + 0.5) / STEPS * (met[i].of[c].last - met[i].of[c].first);
-        }
-        add_step(s, value, length, out);
-      }
+      add_cell(s, &in, met + i, origin, along, out);
     }
+  }
+  for (int c = 0; c < s->count; ++c) {
+    tetra_space_destroy(in.world + c);
+    tetra_space_destroy(in.local + c);
   }
   free(met);
 }
@@ -164,6 +209,68 @@ static void draw(stratus_context* context, const several* s, tetra_picture* p)
   }
   assert_int_equal(status, STRATUS_OK);
   stratus_tetra_caster_destroy(caster);
+}
+
+/* Two lights; with two or more components, materials of their own, of which one is not lit. */
+static void set_light(several* s, int own)
+{
+  static const stratus_light lights[2] = { { .vector = { -1.0, 2.0, 1.5 }, .color = { 1.0, 0.8, 0.6 } },
+    { .vector = { 5.0, 6.0, 7.0 }, .color = { 2.0, 2.0, 2.0 }, .positional = 1, .attenuation = { 1.0, 0.2, 0.05 } } };
+  static const stratus_material materials[COMPONENTS] = { { 1, 0.1, 0.9, 0.5, 30.0 }, { 1, 0.4, 0.5, 0.0, 1.0 }, { 0, 0.0, 0.0, 0.0, 0.0 },
+    { 1, 0.0, 0.8, 0.2, 5.0 } };
+  stratus_shading* shading = &s->whole.options.shading;
+  shading->ambient = 0.2;
+  shading->diffuse = 0.7;
+  shading->specular = 0.4;
+  shading->specular_power = 20.0;
+  shading->light_count = 2;
+  memcpy(shading->lights, lights, sizeof lights);
+  memcpy(s->materials, materials, sizeof materials);
+  s->whole.options.shade = !own;
+  s->whole.options.materials = own ? s->materials : NULL;
+}
+
+/* Gradient opacity of every other component, or of all dependent ones. */
+static void set_thin(several* s, double unit)
+{
+  memcpy(s->gradient, (const double[6]){ 0.1 * unit, 0.0, 0.5 * unit, 0.6, 1.2 * unit, 1.0 }, sizeof s->gradient);
+  for (int c = 0; c < s->count; c += 2) {
+    s->transfers[c].gradient = s->gradient;
+    s->transfers[c].gradient_count = 3;
+  }
+}
+
+/* Light and opacity by gradients are cut into pieces by bounds, within the same tolerance. */
+static void lit_components_are_right(void** state)
+{
+  for (uint32_t seed = 0; seed < 16; ++seed) {
+    several s;
+    const int kind = (int)(seed % 4); /* independent, their mean, 2 and 4 dependent */
+    create(&s, 3, kind == 3 ? 4 : kind == 2 ? 2 : 2 + (int)(seed / 4) % 3, kind == 3, seed);
+    s.whole.options.mean_components = kind == 1;
+    s.whole.options.dependent = kind > 1;
+    s.whole.mesh.cell_values = seed / 4 == 1;
+    if (seed / 4 != 2) {
+      set_light(&s, kind < 2 && seed / 4 > 0);
+    }
+    if (seed / 4 > 1) {
+      set_thin(&s, kind == 3 ? 255.0 : 1.0);
+      s.whole.options.gradient_distance = seed % 2 == 1 ? 0.5 : 0.0;
+    }
+    for (int c = 0; c < s.count; ++c) {
+      s.part[c].mesh.cell_values = s.whole.mesh.cell_values;
+    }
+    tetra_camera(*state, &s.whole, 3, (int)(seed % 8), seed & 1);
+    draw_reference(&s);
+    draw(*state, &s, &picture);
+    double largest;
+    const double error = tetra_error(picture.rgba, reference, &largest);
+    if (!(error < 0.255)) {
+      print_error("seed %u, %d components: %.3f of 255, at most %.2f\n", seed, s.count, error, largest);
+    }
+    assert_true(error < 0.255);
+    destroy(&s);
+  }
 }
 
 /* The default tolerance is a quarter of a step of 255. */
@@ -207,10 +314,28 @@ static void halves_are_a_whole(void** state)
   one.whole.mesh.components = 1;
   tetra_camera(*state, &s.whole, 4, 3, 0);
   one.whole.camera = s.whole.camera;
-  draw(*state, &s, &picture);
-  draw(*state, &one, &other);
-  for (int i = 0; i < 4 * TETRA_PIXELS; ++i) {
-    assert_true(fabs((double)(picture.rgba[i] - other.rgba[i])) < 1e-3);
+  for (int lit = 0; lit < 3; ++lit) {
+    if (lit > 0) {
+      set_light(&s, 0);
+      set_thin(&s, lit == 2 ? 1.0 : 1e-9);
+      s.transfers[1].gradient = s.gradient;
+      s.transfers[1].gradient_count = 3;
+      one.transfers[0].gradient = s.gradient;
+      one.transfers[0].gradient_count = 3;
+      one.whole.options.shading = s.whole.options.shading;
+      one.whole.options.shade = 1;
+    }
+    draw(*state, &s, &picture);
+    draw(*state, &one, &other);
+    double squares = 0.0;
+    for (int i = 0; i < 4 * TETRA_PIXELS; ++i) {
+      squares += pow((double)(picture.rgba[i] - other.rgba[i]), 2.0);
+      assert_true(lit || fabs((double)(picture.rgba[i] - other.rgba[i])) < 1e-3);
+    }
+    if (!(sqrt(squares / (4 * TETRA_PIXELS)) < 1e-3)) {
+      print_error("lit %d: %g\n", lit, sqrt(squares / (4 * TETRA_PIXELS)));
+    }
+    assert_true(sqrt(squares / (4 * TETRA_PIXELS)) < 1e-3); /* the tolerance */
   }
   ((float*)s.all)[2 * 62 + 1] = NAN;
   draw(*state, &s, &picture);
@@ -219,13 +344,106 @@ static void halves_are_a_whole(void** state)
   destroy(&one);
 }
 
+/* In modes that find one value a ray, each component is drawn by itself: premultiplied colours and alphas, times weights, add up. */
+static void add_references(several* s, double* known)
+{
+  const int opaque = s->whole.options.mode == STRATUS_TETRA_AVERAGE || s->whole.options.mode == STRATUS_TETRA_ADDITIVE;
+  memset(known, 0, 4 * TETRA_PIXELS * sizeof *known);
+  for (int c = 0; c < s->count; ++c) {
+    static double depth[TETRA_PIXELS];
+    s->part[c].transfer = s->transfers[c];
+    s->part[c].options = s->whole.options;
+    s->part[c].camera = s->whole.camera;
+    tetra_reference(&s->part[c], reference, depth);
+    for (int i = 0; i < 4 * TETRA_PIXELS; ++i) {
+      known[i] = opaque && i % 4 == 3 ? fmax(known[i], reference[i]) : fmin(known[i] + s->transfers[c].weight * reference[i], 1.0);
+    }
+  }
+}
+
+/* Values are rounded to the tables' 32768 entries, as in test_tetra_modes, of each component. */
+static void modes_of_components_are_right(void** state)
+{
+  static double known[4 * TETRA_PIXELS];
+  for (uint32_t seed = 0; seed < 16; ++seed) {
+    several s;
+    const stratus_tetra_mode mode = (stratus_tetra_mode)(STRATUS_TETRA_MAXIMUM + seed % 4);
+    create(&s, 3, 2 + (int)(seed / 4) % 3, seed / 4 == 2, seed);
+    s.whole.options.mode = mode;
+    s.whole.options.method = STRATUS_TETRA_METHOD_AUTO;
+    s.whole.mesh.cell_values = seed / 4 == 1;
+    s.whole.options.average_range[0] = seed / 4 == 3 ? 0.3 : -(double)INFINITY;
+    for (int c = 0; c < s.count; ++c) {
+      s.part[c].mesh.cell_values = s.whole.mesh.cell_values;
+      s.transfers[c].unit_distance = 6.0; /* sums below 1 */
+    }
+    tetra_camera(*state, &s.whole, 3, (int)(seed % 8), seed & 1);
+    add_references(&s, known);
+    draw(*state, &s, &picture);
+    double largest;
+    const double error = tetra_error(picture.rgba, known, &largest);
+    if (!(error < 0.1 * s.count)) {
+      print_error(
+        "seed %u, %d components, mode %s: %.3f of 255, at most %.2f\n", seed, s.count, stratus_tetra_mode_name(mode), error, largest);
+    }
+    assert_true(error < 0.1 * s.count);
+    assert_int_equal(picture.report.method, STRATUS_TETRA_METHOD_MARCH);
+    destroy(&s);
+  }
+}
+
+/* One caster draws one mode after the other, with other functions and values: nothing of an earlier picture stays. */
+static void modes_follow_one_another(void** state)
+{
+  static const stratus_tetra_mode modes[6] = { STRATUS_TETRA_MAXIMUM, STRATUS_TETRA_COMPOSITE, STRATUS_TETRA_MAXIMUM,
+    STRATUS_TETRA_ADDITIVE, STRATUS_TETRA_COMPOSITE, STRATUS_TETRA_AVERAGE };
+  stratus_tetra_caster* caster = NULL;
+  several s;
+  create(&s, 3, 3, false, 5);
+  tetra_camera(*state, &s.whole, 3, 2, 0);
+  const stratus_image image = {
+    .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = other.rgba, .depth = other.depth, .rgba8 = other.rgba8
+  };
+  assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
+  for (int step = 0; step < 12; ++step) {
+    s.whole.options.mode = modes[step % 6];
+    s.opacity[2][1] = 0.01 * step;
+    if (step == 7) {
+      ((float*)s.all)[3 * 20 + 2] = 0.05f;
+      ++s.whole.mesh.revision;
+    }
+    draw(*state, &s, &picture);
+    assert_int_equal(
+      stratus_tetra_caster_render(caster, &s.whole.mesh, s.transfers, &s.whole.camera, &s.whole.options, &image, &other.report),
+      STRATUS_OK);
+    assert_memory_equal(picture.rgba, other.rgba, sizeof picture.rgba);
+    assert_memory_equal(picture.depth, other.depth, sizeof picture.depth);
+    for (int i = 0; i < 4 * TETRA_PIXELS; ++i) {
+      assert_int_equal(other.rgba8[i], (int)((double)other.rgba[i] * 255.0 + 0.5));
+    }
+  }
+  assert_int_equal(other.report.mesh_builds, 1);
+  assert_int_equal(other.report.value_builds, 2);
+  const uint64_t tables = other.report.table_builds;
+  assert_int_equal(
+    stratus_tetra_caster_render(caster, &s.whole.mesh, s.transfers, &s.whole.camera, &s.whole.options, &image, &other.report), STRATUS_OK);
+  assert_int_equal(other.report.table_builds, tables); /* another view of the same rebuilds nothing */
+  stratus_tetra_caster_destroy(caster);
+  destroy(&s);
+}
+
 static void lattices_threads_and_sets_agree(void** state)
 {
   stratus_context* context = *state;
-  for (uint32_t seed = 1; seed < 5; ++seed) {
+  for (uint32_t seed = 1; seed < 8; ++seed) {
     several s;
-    create(&s, 4, seed == 4 ? 4 : 2, seed == 4, seed == 3 ? 5 : seed);
-    s.whole.options.dependent = seed > 2;
+    create(&s, 4, seed == 4 ? 4 : 2, seed == 4, seed == 3 || seed == 6 ? 5 : seed);
+    s.whole.options.dependent = seed == 3 || seed == 4;
+    if (seed < 3) {
+      set_light(&s, seed == 2);
+      set_thin(&s, 1.0);
+    }
+    s.whole.options.mode = seed < 5 ? STRATUS_TETRA_COMPOSITE : seed == 5 ? STRATUS_TETRA_AVERAGE : STRATUS_TETRA_MINIMUM;
     tetra_camera(context, &s.whole, 4, (int)seed, seed & 1);
     draw(context, &s, &picture);
     const int threads = context->threads, isa = context->isa;
@@ -250,31 +468,35 @@ static void lattices_threads_and_sets_agree(void** state)
 
 static void wrong_components_are_refused(void** state)
 {
-  static const char* const words[] = { "components 5 outside 1..4", "must be at least its 3 components", "not supported in mode maximum",
-    "cannot be projected", "dependent components", "light and gradient opacity of 2", "light and gradient opacity of 2" };
-  static const double thin[2] = { 0.0, 0.5 };
+  static const char* const words[] = { "components 5 outside 1..4", "must be at least its 3 components", "isosurfaces of 2 components",
+    "cannot be projected", "dependent components", "material of component 1 has (0.4, nan", "ambient is nan",
+    "2 dependent components are not supported in mode maximum" };
   stratus_tetra_caster* caster = NULL;
   several s;
   create(&s, 2, 2, false, 1);
   tetra_camera(*state, &s.whole, 2, 1, 0);
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
   assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
-  for (int wrong = 0; wrong < 7; ++wrong) {
+  for (int wrong = 0; wrong < 8; ++wrong) {
     stratus_mesh mesh = s.whole.mesh;
     stratus_tetra_options o = s.whole.options;
     stratus_transfer transfers[2] = { s.transfers[0], s.transfers[1] };
     o.method = wrong == 3 ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_AUTO;
-    o.mode = wrong == 2 ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
+    o.mode = wrong == 2 ? STRATUS_TETRA_ISOSURFACE : wrong == 7 ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
     mesh.components = wrong == 0 ? 5 : wrong == 1 || wrong == 4 ? 3 : 2;
     mesh.value_stride = wrong == 4 ? 3 : 2;
     mesh.point_count = wrong == 4 ? 0 : mesh.point_count;
     mesh.cell_count = wrong == 4 ? 0 : mesh.cell_count;
-    o.dependent = wrong == 4;
-    o.shade = wrong == 5;
-    transfers[1].gradient = thin;
-    transfers[1].gradient_count = wrong == 6;
+    o.dependent = wrong == 4 || wrong == 7;
+    o.contour_count = 1;
+    if (wrong == 5 || wrong == 6) {
+      set_light(&s, wrong == 5);
+      o = s.whole.options;
+      s.materials[1].diffuse = NAN;
+      o.shading.ambient = wrong == 6 ? (double)NAN : 0.1;
+    }
     assert_int_equal(stratus_tetra_caster_render(caster, &mesh, transfers, &s.whole.camera, &o, &image, NULL),
-      wrong < 2 ? STRATUS_INVALID_ARGUMENT : STRATUS_UNSUPPORTED);
+      wrong < 2 || wrong == 5 || wrong == 6 ? STRATUS_INVALID_ARGUMENT : STRATUS_UNSUPPORTED);
     if (!strstr(stratus_context_message(*state), words[wrong])) {
       print_error("%s\n", stratus_context_message(*state));
     }
@@ -288,6 +510,9 @@ int test_tetra_components(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test_setup_teardown(components_are_right, tetra_start, tetra_stop),
+    cmocka_unit_test_setup_teardown(lit_components_are_right, tetra_start, tetra_stop),
+    cmocka_unit_test_setup_teardown(modes_of_components_are_right, tetra_start, tetra_stop),
+    cmocka_unit_test_setup_teardown(modes_follow_one_another, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(halves_are_a_whole, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(lattices_threads_and_sets_agree, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(wrong_components_are_refused, tetra_start, tetra_stop),
