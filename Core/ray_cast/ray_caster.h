@@ -75,7 +75,6 @@ struct stratus_ray_caster {
   float* layers;                      /* of several volumes, by midpoint: what each entry of a table shows over a segment; NULL: none */
   uint64_t layers_of;                 /* that table's number */
   double layers_step;                 /* the segment's length */
-  bool in_several;                    /* this picture is one of several volumes: rules that go from cell to cell are out */
   bool shades, dependent; /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */
   stratus_ray_shading_tables shading_tables;
   stratus_ray_transfer_2d transfer_2d;

@@ -282,7 +282,6 @@ stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
 {
   *report = (stratus_ray_cast_report){ .expected_error = NAN, .tolerance_met = 1, .window = { 0, image->width, 0, image->height } };
-  caster->in_several = false;
   return options->mode == STRATUS_MODE_FIRST_HIT ? stratus_first_hit_render(caster, volume, transfer, camera, options, image, report)
                                                  : render(caster, volume, transfer, camera, options, image, report);
 }

@@ -127,8 +127,7 @@ static stratus_status keep_transfers(stratus_ray_caster* caster, const stratus_t
 }
 
 /* What the caster's choice follows from, besides values and transfer functions. */
-static stratus_ray_choice_inputs choice_inputs(
-  const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options)
+static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   const int materials = options->materials && options->mode == STRATUS_MODE_COMPOSITE ? stratus_ray_shading_media(volume, options) : 0;
   stratus_ray_choice_inputs in;
@@ -148,7 +147,6 @@ static stratus_ray_choice_inputs choice_inputs(
     in.materials[c].specular = options->materials[c].specular;
     in.materials[c].specular_power = options->materials[c].specular_power;
   }
-  in.in_several = caster->in_several;
   in.voxel = stratus_ray_voxel_length(volume);
   return in;
 }
@@ -216,7 +214,7 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
  * are as they were, as after the coarse pictures of a moving camera. */
 static void update_choice(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, bool changed)
 {
-  const stratus_ray_choice_inputs inputs = choice_inputs(caster, volume, options);
+  const stratus_ray_choice_inputs inputs = choice_inputs(volume, options);
   if (changed) {
     caster->measured_for.tolerance = -1.0;
   }

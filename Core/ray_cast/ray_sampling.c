@@ -35,16 +35,15 @@ static bool thins_opacity(const stratus_ray_caster* caster, const stratus_ray_ca
 
 /* Rule cells knows a value's colour and opacity alone. The rules that pre-integrate take the field for linear between two values of one
  * medium. A segment of rule local may be four voxels long and belongs to the piece of its middle, so that in a piece of a larger volume it
- * would read beyond one layer of ghosts. Cells are of one grid, and several volumes have several. */
+ * would read beyond one layer of ghosts. */
 bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling)
 {
   const bool one_medium = options->mode == STRATUS_MODE_COMPOSITE && !caster->transfer_2d.on && !stratus_ray_shading_several(caster);
   switch (sampling) {
     case STRATUS_SAMPLING_CELLS:
-      return one_medium && !caster->in_several && !caster->shades && !options->mask;
+      return one_medium && !caster->shades && !options->mask;
     case STRATUS_SAMPLING_LOCAL:
-      return one_medium && !caster->in_several && !caster->shades && !options->mask &&
-        options->interpolation != STRATUS_INTERPOLATION_NEAREST && caster->owns_all;
+      return one_medium && !caster->shades && !options->mask && options->interpolation != STRATUS_INTERPOLATION_NEAREST && caster->owns_all;
     case STRATUS_SAMPLING_PREINTEGRATED:
       return one_medium && options->interpolation != STRATUS_INTERPOLATION_NEAREST && !thins_opacity(caster, options);
     default:

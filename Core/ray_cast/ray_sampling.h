@@ -22,7 +22,7 @@ typedef struct stratus_ray_choice_inputs {
   double sample_distance, cell_error, tolerance, voxel;
   stratus_sampling sampling;
   stratus_interpolation interpolation;
-  int shade, in_several, mean_components;
+  int shade, mean_components;
   double gradient_distance;
   stratus_material materials[4];
 } stratus_ray_choice_inputs;

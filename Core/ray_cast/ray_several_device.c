@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#define OWN_ARRAYS 6 /* of each volume, in the order of the kernel's parameters */
+#define OWN_ARRAYS 7 /* of each volume, in the order of the kernel's parameters */
 
 /* The type that the kernel is compiled for: what all volumes have, else any. */
 static int common_type(const stratus_several_frame* frame)
@@ -20,13 +20,16 @@ static int common_type(const stratus_several_frame* frame)
 static stratus_status find_kernel(stratus_context* context, const stratus_several_frame* frame, bool packets, cl_kernel* kernel)
 {
   char defines[256];
-  int has = 0;
+  int has = 0, cells = 0, media = 0;
   for (int n = 0; n < frame->count; ++n) {
     has |= stratus_ray_rarities(frame->volumes[n].frame.arguments);
+    cells |= frame->volumes[n].cells != SEVERAL_BY_SAMPLES;
+    media |= frame->volumes[n].media != 0;
   }
   snprintf(defines, sizeof defines,
-    "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d -DSEVERAL_MOST=%d -DSTRATUS_ARGUMENTS_BYTES=%zu -DRAY_HAS=%d%s",
-    common_type(frame), packets ? 16 : 1, STRATUS_RAY_DEVICE_TILE, frame->count, sizeof(stratus_ray_cast_arguments), has,
+    "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d -DSEVERAL_MOST=%d -DSEVERAL_CELLS=%d -DSEVERAL_MEDIA=%d "
+    "-DSTRATUS_ARGUMENTS_BYTES=%zu -DRAY_HAS=%d%s",
+    common_type(frame), packets ? 16 : 1, STRATUS_RAY_DEVICE_TILE, frame->count, cells, media, sizeof(stratus_ray_cast_arguments), has,
     stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   return stratus_device_kernel(context, "ray_several", defines, "ray_several", kernel);
 }
@@ -38,7 +41,7 @@ static stratus_status set_volumes(stratus_context* context, cl_kernel kernel, co
   for (int n = 0; n < STRATUS_SEVERAL_MAX; ++n) {
     const stratus_several_part* part = &frame->volumes[n < frame->count ? n : 0];
     const stratus_device_slot* slots = part->caster->device->slots;
-    const buffer_name names[OWN_ARRAYS] = { VALUES, HIDDEN, MAP, GRID, part->layers ? LAYERS : TABLE, TABLE };
+    const buffer_name names[OWN_ARRAYS] = { VALUES, HIDDEN, MAP, ROUGH, GRID, part->layers ? LAYERS : TABLE, TABLE };
     for (int i = 0; i < OWN_ARRAYS; ++i) {
       TRY(stratus_device_argument(context, kernel, (*next)++, sizeof(cl_mem), &slots[names[i]].memory));
     }
@@ -92,7 +95,7 @@ stratus_status stratus_several_device(stratus_context* context, const stratus_se
   for (int n = 0; n < frame->count; ++n) {
     const stratus_several_part* part = &frame->volumes[n];
     arguments[n] = *part->frame.arguments;
-    parts[n] = (stratus_several_arguments){ part->stride, part->lit, part->preintegrated, 0 };
+    parts[n] = (stratus_several_arguments){ part->stride, part->lit, part->preintegrated, part->media, part->segment, part->cells };
   }
   const size_t of_picture = stratus_ray_device_parts((size_t)arguments->picture.width, (size_t)arguments->picture.height, packets);
   TRY(find_kernel(context, frame, packets, &kernel));

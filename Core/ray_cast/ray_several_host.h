@@ -19,6 +19,9 @@ typedef struct stratus_several_part {
   int type;                        /* of its fetch, as of stratus_ray_fetch_type() */
   int stride;                      /* segments of the lattice to one of its samples */
   int lit;                         /* 1: it has light or gradient opacity */
+  int media;                       /* what its samples are more than one value's colour and opacity by, as in stratus_several_arguments */
+  float segment;                   /* media: a segment's length in samples */
+  int cells;                       /* how its rays go, as in stratus_several_arguments */
   int preintegrated;               /* 0: the midpoint rule */
 } stratus_several_part;
 

@@ -2,6 +2,7 @@
  * Composite rays through several volumes, compiled for one instruction set, STRATUS_ISA. */
 #include "ray_cast_packets.h"
 #include "ray_several_host.h"
+#include "several_state.h"
 
 #define STRATUS_TYPE -1
 #define RAY_NAME(x) JOIN(x, any)
@@ -30,12 +31,9 @@
 _Static_assert(SEVERAL_MOST == STRATUS_SEVERAL_MAX, "as many as the API takes");
 
 /* Of stratus_type + 1. */
-static several_value* const values_of[11] = { several_value_any, several_value_int8, several_value_uint8, several_value_int16,
-  several_value_uint16, several_value_any, several_value_any, several_value_any, several_value_any, several_value_float32,
-  several_value_float64 };
-static several_gradient* const gradients_of[11] = { several_gradient_any, several_gradient_int8, several_gradient_uint8,
-  several_gradient_int16, several_gradient_uint16, several_gradient_any, several_gradient_any, several_gradient_any, several_gradient_any,
-  several_gradient_float32, several_gradient_float64 };
+static const several_reading* const readings[11] = { &several_reading_any, &several_reading_int8, &several_reading_uint8,
+  &several_reading_int16, &several_reading_uint16, &several_reading_any, &several_reading_any, &several_reading_any, &several_reading_any,
+  &several_reading_float32, &several_reading_float64 };
 
 /* What rays read of a mesh, as several_mesh.h has it. */
 static void set_mesh(const stratus_several_part* part, double step, several_mesh* m)
@@ -96,13 +94,16 @@ void STRATUS_ISA_NAME(stratus_several_tile)(
       .hidden = of->hidden,
       .grid = of->grid,
       .map = of->map,
+      .rough = of->rough,
       .table = frame->volumes[n].layers ? (const void*)frame->volumes[n].layers : of->table,
       .besides = of->table,
       .mesh = frame->volumes[n].mesh ? &meshes[n] : NULL,
-      .value = values_of[frame->volumes[n].type + 1],
-      .gradient = gradients_of[frame->volumes[n].type + 1],
+      .read = readings[frame->volumes[n].type + 1],
       .stride = frame->volumes[n].stride,
       .lit = frame->volumes[n].lit,
+      .cells = frame->volumes[n].cells,
+      .media = frame->volumes[n].media,
+      .segment = frame->volumes[n].segment,
       .preintegrated = frame->volumes[n].preintegrated };
     if (from[n].mesh) {
       set_mesh(&frame->volumes[n], frame->step, &meshes[n]);

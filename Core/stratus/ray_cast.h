@@ -259,7 +259,7 @@ struct stratus_tetra_options;
 typedef struct stratus_ray_cast_input {
   stratus_ray_caster* caster; /* keeps what is built of this volume: one of its own for each input, all of one context; NULL: a mesh */
   const stratus_volume* volume;
-  const stratus_transfer* transfer;                  /* one function */
+  const stratus_transfer* transfer;                  /* as in stratus_ray_caster_render() */
   const stratus_ray_cast_options* options;           /* of a volume; NULL: the defaults */
   struct stratus_tetra_caster* tetra;                /* keeps what is built of a mesh, likewise; NULL: a volume */
   const struct stratus_mesh* mesh;                   /* read where `tetra` is set */
@@ -270,14 +270,15 @@ typedef struct stratus_ray_cast_input {
  * where volumes overlap, their optical depths and their emitted light add up, whatever the order of the inputs but for rounding. One input
  * alone gives the picture of stratus_ray_caster_render().
  *
- * Composite mode, volumes of one component without labels, whole volumes (no DUPLICATE ghosts), and as crop regions the inside or all:
- * other input gives STRATUS_UNSUPPORTED, and so does sampling by cells, which follow one grid. Light, gradient opacity, masks, crop boxes
- * and clip planes are each volume's own. jitter, jitter_seed and audit are those of inputs[0].
+ * Composite mode, whole volumes (no DUPLICATE ghosts), and as crop regions the inside or all: other input gives STRATUS_UNSUPPORTED.
+ * Components, labels, functions of two variables, light, gradient opacity, masks, crop boxes and clip planes are each volume's own. jitter,
+ * jitter_seed and audit are those of inputs[0].
  *
- * Sampling: each volume has the rule, midpoint or pre-integrated, and the step that its own probe finds for its tolerance divided by the
- * square root of count, for errors of several volumes add up by their squares; or those that its options set. All volumes share one
- * lattice, whose segments are the shortest of these steps, or a half, a third or a quarter of it; each volume takes a sample every so many
- * whole segments as fit in its own step. What is composited at once is cut into pieces where its colour changes much, as with one volume.
+ * Sampling: each volume has the rule and the step that its own probe finds for its tolerance divided by the square root of count, for
+ * errors of several volumes add up by their squares; or those that its options set. Volumes that take samples share one lattice, whose
+ * segments are the shortest of these steps, or a half, a third or a quarter of it; each takes a sample every so many whole segments as fit
+ * in its own step. Where a volume goes cell by cell, in all of it or in its rough blocks, light is composited from one end of its cells'
+ * pieces to the next. What is composited at once is cut into pieces where its colour changes much, as with one volume.
  *
  * Meshes, of mode composite and by method auto or march, are drawn cell by cell: within a segment of the lattice, light is composited from
  * one face to the next. Their clip planes and crop boxes are their own, and where their cells overlap one counts behind the other. The host

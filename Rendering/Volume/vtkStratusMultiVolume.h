@@ -15,14 +15,15 @@
  * by cell, of blend mode composite without light and gradient opacity, by method auto or march. At least one volume must have a
  * vtkStratusVolumeMapper. Where there is a mesh the host draws.
  *
- * Of volumes, supported are blend mode composite, one component, point and cell data, light, gradient opacity, binary masks, crop boxes
- * (the inside region, or all) and up to six clipping planes a volume; opaque geometry, translucent surfaces peeled with volumes, hardware
- * picking of the prop. All else, sampling by cells and label maps included, is refused by an error, and nothing is drawn. One volume alone
- * is drawn as its mapper draws it.
+ * Of volumes, supported are blend mode composite, one to four components, point and cell data, functions of two variables (TF_2D), light,
+ * gradient opacity, binary masks and label maps, crop boxes (the inside region, or all) and up to six clipping planes a volume; opaque
+ * geometry, translucent surfaces peeled with volumes, hardware picking of the prop. All else is refused by an error, and nothing is drawn.
+ * One volume alone is drawn as its mapper draws it.
  *
  * Device, FinalColorWindow, FinalColorLevel, ImageSampleDistance, MaximumImageSampleDistance, AutoAdjustSampleDistances,
  * InteractiveUpdateRate, UseJittering, JitterSeed, NumberOfThreads, Audit and CountSamples are those of the vtkStratusVolumeMapper at the
- * lowest port. The sampling's step is the smallest that any volume asks for; volumes that need less take every so many of these steps.
+ * lowest port. The sampling's step is the smallest that any volume asks for; volumes that need less take every so many of these steps, and
+ * those whose functions are sharp go from cell to cell.
  *
  * @sa vtkStratusVolumeMapper vtkStratusTetrahedraMapper vtkMultiVolume
  */

@@ -3,6 +3,7 @@
  * values and of different ones. The device keeps what did not change, and what it cannot draw the host draws. */
 #include "grid_case.h"
 #include "several_case.h"
+#include "transfer_2d_case.h"
 #include "testing.h"
 
 #include "device_state.h"
@@ -47,6 +48,69 @@ static void make_case(stratus_context* context, uint32_t seed, several_case* m, 
   }
 }
 
+/* Sharp functions by cells (seed below 3), clouds of haze with a rough box by rule local, and nearest values by boxes, beside a volume by
+ * samples. */
+static void make_sharp_case(stratus_context* context, uint32_t seed, several_case* m)
+{
+  several_create(context, m, 2, 720 + seed);
+  picture_case* c = &m->of[seed % 2];
+  const stratus_camera camera = m->of[0].camera;
+  const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
+  const double functions[3][8] = { { base + 0.1 * scale, 0, base + 0.13 * scale, 0.8, base + 0.16 * scale, 0, base + scale, 0 },
+    { base + 0.1 * scale, 0, base + 0.1 * scale, 0.4, base + 0.18 * scale, 0.4, base + 0.18 * scale, 0 },
+    { base - scale, 0.005, base + 0.15 * scale, 0.01, base + 0.15 * scale, 1.0, base + scale, 1.0 } };
+  if (seed < 3) {
+    memcpy(c->opacity, functions[seed], sizeof c->opacity);
+  }
+  c->options.sampling = STRATUS_SAMPLING_CELLS;
+  c->options.cell_error = 0.001;
+  if (seed == 3) {
+    case_destroy(c);
+    case_create_local(context, 43, c);
+    c->options.crop = 0;
+    several_place(c, seed);
+  }
+  if (seed == 4) {
+    c->options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+  }
+  m->of[0].camera = camera;
+  m->of[0].options.audit = 1;
+  m->of[0].options.jitter = seed == 2;
+}
+
+/* A function of two variables (seed 0), components and labels, beside a volume of one medium. */
+typedef struct media_case {
+  stratus_transfer transfers[3];
+  transfer_2d_case function;
+  uint8_t labels[40 * 40 * 40];
+} media_case;
+
+static void make_media_case(stratus_context* context, uint32_t seed, several_case* m, media_case* media)
+{
+  several_create(context, m, 2, 740 + seed);
+  picture_case* c = &m->of[seed % 2];
+  media->function.pairs = NULL;
+  c->options.sampling = STRATUS_SAMPLING_MIDPOINT;
+  c->options.shade = seed % 2 == 0;
+  if (seed < 2) {
+    transfer_2d_case_set(c, &media->function, 12 + seed, 0.25);
+  } else if (seed == 2) {
+    transfer_2d_case_pair(c, &media->function, 77);
+  } else {
+    for (size_t v = 0; v < sizeof media->labels; ++v) {
+      media->labels[v] = (uint8_t)(v / 7 % 3);
+    }
+    c->options.mask = media->labels;
+    c->options.label_count = 2;
+  }
+  for (int i = 0; i < 3; ++i) {
+    media->transfers[i] = c->transfer;
+    media->transfers[i].unit_distance = 2.0 + i;
+  }
+  m->transfers[seed % 2] = media->transfers;
+  m->of[0].options.audit = 1;
+}
+
 /* Samples are not compared: which of them a packet leaps over depends on its width. */
 static int differing(void)
 {
@@ -57,16 +121,26 @@ static int differing(void)
   return count;
 }
 
-static void compare(bool one_ray)
+typedef enum compared { PLAIN, SHARP, MEDIA } compared;
+
+static void compare(compared what, bool one_ray)
 {
+  static const uint32_t seeds[] = { [PLAIN] = 9, [SHARP] = 5, [MEDIA] = 4 };
+  static media_case media;
   stratus_context* host = case_context("host", 2);
   stratus_context* device = case_context("0", 2);
   assert_true(stratus_context_on_device(device));
   device->device->is_cpu = !one_ray;
-  for (uint32_t seed = 0; seed < 9; seed += one_ray ? 5 : 1) {
+  for (uint32_t seed = 0; seed < seeds[what]; seed += one_ray && what == PLAIN ? 5 : one_ray ? 3 : 1) {
     several_case m;
     grid_case grid;
-    make_case(host, seed, &m, &grid);
+    if (what == PLAIN) {
+      make_case(host, seed, &m, &grid);
+    } else if (what == SHARP) {
+      make_sharp_case(host, seed, &m);
+    } else {
+      make_media_case(host, seed, &m, &media);
+    }
     several_draw(host, &m, &on_host);
     several_draw(device, &m, &on_device);
     print_message(
@@ -77,6 +151,9 @@ static void compare(bool one_ray)
     assert_true(on_device.report.samples > 0);
     assert_int_equal(on_device.report.rays, on_host.report.rays);
     assert_null(strstr(on_device.report.why, "drawn on the host"));
+    if (what == MEDIA) {
+      free(media.function.pairs);
+    }
     several_destroy(&m);
   }
   stratus_context_destroy(device);
@@ -86,13 +163,27 @@ static void compare(bool one_ray)
 static void a_device_by_packets_draws_the_hosts_pictures(void** state)
 {
   (void)state;
-  compare(false);
+  compare(PLAIN, false);
 }
 
 static void a_device_by_rays_draws_the_hosts_pictures(void** state)
 {
   (void)state;
-  compare(true);
+  compare(PLAIN, true);
+}
+
+static void a_device_draws_sharp_functions_as_the_host(void** state)
+{
+  (void)state;
+  compare(SHARP, false);
+  compare(SHARP, true);
+}
+
+static void a_device_draws_several_media_as_the_host(void** state)
+{
+  (void)state;
+  compare(MEDIA, false);
+  compare(MEDIA, true);
 }
 
 /* Only what changed is sent again: for another function of one volume by the midpoint rule, its table, its layers and its map. */
@@ -187,6 +278,8 @@ int test_ray_several_device(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_device_by_packets_draws_the_hosts_pictures),
     cmocka_unit_test(a_device_by_rays_draws_the_hosts_pictures),
+    cmocka_unit_test(a_device_draws_sharp_functions_as_the_host),
+    cmocka_unit_test(a_device_draws_several_media_as_the_host),
     cmocka_unit_test(what_did_not_change_stays_on_the_device),
     cmocka_unit_test(the_host_draws_what_the_device_cannot_hold),
     cmocka_unit_test(a_device_without_double_draws_nearly_the_same),

@@ -19,6 +19,8 @@
 #include "vtkSphereSource.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <functional>
+
 namespace {
 // Scene's own volume at port 0 and a second one, turned and of other spacing, at port 5.
 struct Pair : Scene {
@@ -63,7 +65,9 @@ struct Pair : Scene {
   }
 
   // Returns the PSNR of a picture against the reference with both fields.
-  double Psnr(const std::vector<float>& picture, const float* opaqueDepth = nullptr, const reference_mesh* mesh = nullptr)
+  // change: of the second field's scene and volume.
+  double Psnr(const std::vector<float>& picture, const float* opaqueDepth = nullptr, const reference_mesh* mesh = nullptr,
+    const std::function<void(reference_scene&, stratus_volume&)>& change = nullptr)
   {
     const double opacity[2][6] = { { 0.1, 0.0, 0.4, 0.15, 1.0, 0.5 }, { 4.0, 0.0, 80.0, 0.6 } };
     const double color[2][12] = { { 0.0, 0.1, 0.2, 0.9, 0.5, 0.9, 0.8, 0.3, 1.0, 1.0, 0.2, 0.1 },
@@ -87,6 +91,9 @@ struct Pair : Scene {
       scenes[n].transfer = &transfers[n];
       scenes[n].camera = &camera;
       scenes[n].opaque_depth = opaqueDepth;
+    }
+    if (change) {
+      change(scenes[1], volumes[1]);
     }
     std::vector<float> rgba(4 * this->Pixels());
     const int* size = this->Renderer->GetSize();
@@ -396,6 +403,108 @@ void Meshes()
   CHECK(scene.Mixed().empty() && scene.Errors->Has("no volume has a vtkStratusVolumeMapper"), "%s", scene.Errors->Text.c_str());
 }
 
+// The second volume cell by cell, of two components, with a label map, and by a function of two variables.
+void Media()
+{
+  {
+    Pair scene;
+    scene.OtherMapper->SetSamplingToCells();
+    const double db = scene.Psnr(scene.Mixed());
+    CHECK(db >= 60.0 && scene.Errors->Count == 0, "cells: %.1f dB, %s", db, scene.Errors->Text.c_str());
+    CHECK(std::string(scene.Multi->GetReason(5)).find("cells") != std::string::npos, "%s", scene.Multi->GetReason(5));
+  }
+  const double color[4] = { 0.0, 0.9, 0.3, 0.1 }, opacity[2][4] = { { 4.0, 0.0, 80.0, 0.6 }, { 10.0, 0.0, 80.0, 0.3 } };
+  stratus_transfer transfers[2];
+  vtkNew<vtkColorTransferFunction> red;
+  red->AddRGBPoint(color[0], color[1], color[2], color[3]);
+  vtkNew<vtkPiecewiseFunction> thin;
+  thin->AddPoint(10.0, 0.0);
+  thin->AddPoint(80.0, 0.3);
+  const auto second = [&](const reference_scene& of) {
+    transfers[0] = transfers[1] = of.transfer[0];
+    transfers[1].opacity = opacity[1];
+    transfers[1].color = color;
+    transfers[1].color_count = 1;
+  };
+  {
+    Pair scene;
+    const vtkSmartPointer<vtkFloatArray> array = vtkFloatArray::SafeDownCast(scene.OtherImage->GetPointData()->GetScalars());
+    vtkNew<vtkFloatArray> two;
+    two->SetName("two");
+    two->SetNumberOfComponents(2);
+    two->SetNumberOfTuples(array->GetNumberOfTuples());
+    for (vtkIdType v = 0; v < array->GetNumberOfTuples(); ++v) {
+      two->SetTypedComponent(v, 0, array->GetTypedComponent(v, 0));
+      two->SetTypedComponent(v, 1, 80.0f - array->GetTypedComponent(v, 0));
+    }
+    scene.OtherImage->GetPointData()->SetScalars(two);
+    vtkVolumeProperty* property = scene.Other->GetProperty();
+    property->SetScalarOpacity(1, thin);
+    property->SetColor(1, red);
+    property->SetScalarOpacityUnitDistance(1, 2.5);
+    property->SetInterpolationTypeToLinear();
+    const double db = scene.Psnr(scene.Mixed(), nullptr, nullptr, [&](reference_scene& reference, stratus_volume& volume) {
+      volume.components = 2;
+      volume.value_stride = 2;
+      second(reference);
+      reference.transfer = transfers;
+    });
+    CHECK(db >= 60.0 && scene.Errors->Count == 0, "components: %.1f dB, %s", db, scene.Errors->Text.c_str());
+  }
+  {
+    Pair scene;
+    vtkNew<vtkImageData> map;
+    int n[3];
+    scene.OtherImage->GetDimensions(n);
+    map->SetDimensions(n);
+    map->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+    unsigned char* labels = static_cast<unsigned char*>(map->GetScalarPointer());
+    for (vtkIdType v = 0; v < map->GetNumberOfPoints(); ++v) {
+      labels[v] = v % n[0] > n[0] / 2 ? 1 : 0;
+    }
+    scene.OtherMapper->SetMaskInput(map);
+    scene.OtherMapper->SetMaskTypeToLabelMap();
+    scene.Other->GetProperty()->SetLabelColor(1, red);
+    scene.Other->GetProperty()->SetLabelScalarOpacity(1, thin);
+    scene.OtherMapper->SetSampleDistance(0.05); // labels are steps, which samples meet to the first order only
+    const double db = scene.Psnr(scene.Mixed(), nullptr, nullptr, [&](reference_scene& reference, stratus_volume&) {
+      second(reference);
+      reference.transfer = transfers;
+      reference.labels = labels;
+      reference.label_count = 1;
+    });
+    CHECK(db >= 45.0 && scene.Errors->Count == 0, "labels: %.1f dB, %s", db, scene.Errors->Text.c_str());
+  }
+  {
+    Pair scene;
+    const int columns = 48, rows = 24;
+    vtkNew<vtkImageData> function;
+    function->SetDimensions(columns, rows, 1);
+    function->AllocateScalars(VTK_FLOAT, 4);
+    for (int j = 0; j < rows; ++j) {
+      for (int i = 0; i < columns; ++i) {
+        const double x = (i + 0.5) / columns, y = (j + 0.5) / rows, u = (x - 0.6) / 0.4, v = (y - 0.3) / 0.6;
+        const double entry[4] = { x, 1.0 - y, 0.3 + 0.5 * y, std::max(0.0, 0.7 * (1.0 - u * u - v * v)) };
+        for (int c = 0; c < 4; ++c) {
+          function->SetScalarComponentFromDouble(i, j, 0, c, entry[c]);
+        }
+      }
+    }
+    scene.Other->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_2D);
+    scene.Other->GetProperty()->SetTransferFunction2D(function);
+    stratus_transfer_2d of = stratus_transfer_2d();
+    of.rgba = static_cast<const float*>(function->GetScalarPointer());
+    of.columns = columns;
+    of.rows = rows;
+    scene.OtherImage->GetPointData()->GetScalars()->GetRange(of.value_range);
+    of.second_range[1] = 0.25 * (of.value_range[1] - of.value_range[0]);
+    of.unit_distance = 2.5;
+    const double db =
+      scene.Psnr(scene.Mixed(), nullptr, nullptr, [&](reference_scene& reference, stratus_volume&) { reference.transfer_2d = &of; });
+    CHECK(db >= 60.0 && scene.Errors->Count == 0, "a function of two variables: %.1f dB, %s", db, scene.Errors->Text.c_str());
+  }
+}
+
 void Refusals()
 {
   const auto refuses = [](const char* words, const std::function<void(Pair&)>& change) {
@@ -417,7 +526,10 @@ void Refusals()
   });
   refuses("mode maximum", [](Pair& scene) { scene.OtherMapper->SetBlendModeToMaximumIntensity(); });
   refuses("first hits", [](Pair& scene) { scene.OtherMapper->SetRenderModeToFirstHit(); });
-  refuses("by cells", [](Pair& scene) { scene.OtherMapper->SetSamplingToCells(); });
+  refuses("by cells of a volume with light", [](Pair& scene) {
+    scene.OtherMapper->SetSamplingToCells();
+    scene.Other->GetProperty()->ShadeOn();
+  });
   refuses("crop regions", [](Pair& scene) {
     scene.OtherMapper->CroppingOn();
     scene.OtherMapper->SetCroppingRegionPlanes(1, 2, 1, 2, 1, 2);
@@ -468,6 +580,7 @@ int main()
   Picking();
   Peeling();
   Meshes();
+  Media();
   Refusals();
   Interactive();
   std::printf("%d failures\n", Failures);

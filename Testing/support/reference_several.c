@@ -16,8 +16,10 @@
 typedef struct medium {
   const reference_scene* scene;
   reference_field field;
-  reference_cell cell;
-  reference_gradients gradients;
+  reference_field parts[REFERENCE_COMPONENTS_MAX]; /* of each component, the field of its view */
+  stratus_volume views[REFERENCE_COMPONENTS_MAX];
+  reference_cell cell[REFERENCE_COMPONENTS_MAX];
+  reference_gradients gradients[REFERENCE_COMPONENTS_MAX];
   double origin[3], direction[3]; /* of the ray, in index coordinates */
   double begin, end;
 } medium;
@@ -73,8 +75,10 @@ static void meet(medium* m, const line* r)
   const reference_field* f = &m->field;
   m->begin = r->begin;
   m->end = r->end;
-  m->cell = (reference_cell){ .at = { -1, -1, -1 } };
-  memcpy(m->gradients.at, m->cell.at, sizeof m->gradients.at);
+  for (int i = 0; i < REFERENCE_COMPONENTS_MAX; ++i) {
+    m->cell[i] = (reference_cell){ .at = { -1, -1, -1 } };
+    memcpy(m->gradients[i].at, m->cell[i].at, sizeof m->gradients[i].at);
+  }
   for (int a = 0; a < 3; ++a) {
     m->origin[a] = f->shift[a];
     m->direction[a] = 0.0;
@@ -95,17 +99,20 @@ static void meet(medium* m, const line* r)
 /* Adds what one volume has at s: optical depth and light per length. */
 static void add_medium(medium* m, const line* r, double s, double* tau, double glow[3])
 {
-  reference_place place = { .gradients = &m->gradients };
-  double p[3], own_tau, own_glow[3];
+  reference_place place = { .gradients = m->gradients };
+  double p[3], values[REFERENCE_COMPONENTS_MAX], own_tau, own_glow[3];
   memcpy(place.to_index, m->field.to_index, sizeof place.to_index);
   memcpy(place.direction, r->direction, sizeof place.direction);
   for (int a = 0; a < 3; ++a) {
     p[a] = m->origin[a] + s * m->direction[a];
     place.spot[a] = reference_axis_find(m->field.volume, a, p[a]);
     place.world[a] = r->origin[a] + s * r->direction[a];
+    place.at[a] = p[a];
   }
-  const double value = reference_field_sample(&m->field, p, &m->cell);
-  reference_shade(m->scene, &place, &value, &own_tau, own_glow);
+  for (int i = 0; i < reference_components(m->scene->volume); ++i) {
+    values[i] = reference_field_sample(&m->parts[i], p, &m->cell[i]);
+  }
+  reference_shade(m->scene, &place, values, &own_tau, own_glow);
   *tau += own_tau;
   for (int a = 0; a < 3; ++a) {
     glow[a] += own_glow[a];
@@ -281,6 +288,11 @@ int reference_render_mixture(const reference_mixture* mixture, int width, int he
   int made = 0, failed = 0;
   while (made < mixture->count && reference_field_create(&mixture->scenes[made], &media[made].field) == 0) {
     media[made].scene = &mixture->scenes[made];
+    for (int i = 0; i < reference_components(mixture->scenes[made].volume); ++i) {
+      media[made].views[i] = reference_component(mixture->scenes[made].volume, i);
+      media[made].parts[i] = media[made].field;
+      media[made].parts[i].volume = &media[made].views[i];
+    }
     ++made;
   }
   if (made == mixture->count) {

@@ -7,7 +7,8 @@
 #include "reference_several.h"
 
 typedef struct several_case {
-  picture_case of[STRATUS_SEVERAL_MAX]; /* camera and opaque depth are those of the first */
+  picture_case of[STRATUS_SEVERAL_MAX];                   /* camera and opaque depth are those of the first */
+  const stratus_transfer* transfers[STRATUS_SEVERAL_MAX]; /* of components or labels; NULL: the case's own */
   int count;
 } several_case;
 
@@ -46,6 +47,7 @@ static inline void several_place(picture_case* c, uint32_t seed)
 static inline void several_create(stratus_context* context, several_case* m, int count, uint32_t seed)
 {
   uint32_t s = seed * 7919u + 5u;
+  memset(m->transfers, 0, sizeof m->transfers);
   m->count = count;
   for (int n = 0; n < count; ++n) {
     picture_case* c = &m->of[n];
@@ -106,9 +108,10 @@ static inline stratus_status several_draw_with(
     .samples = p->samples,
     .opaque_depth = m->of[0].opaque_depth };
   for (int n = 0; n < m->count; ++n) {
-    inputs[n] = (stratus_ray_cast_input){
-      .caster = casters->of[n], .volume = &m->of[n].volume, .transfer = &m->of[n].transfer, .options = &m->of[n].options
-    };
+    inputs[n] = (stratus_ray_cast_input){ .caster = casters->of[n],
+      .volume = &m->of[n].volume,
+      .transfer = m->transfers[n] ? m->transfers[n] : &m->of[n].transfer,
+      .options = &m->of[n].options };
   }
   return stratus_ray_caster_render_several(inputs, m->count, &m->of[0].camera, &image, reports);
 }
@@ -137,7 +140,13 @@ static inline double several_psnr(const char* what, stratus_context* context, co
     scenes[n] = case_scene(&m->of[n]);
     scenes[n].camera = &m->of[0].camera;
     scenes[n].opaque_depth = m->of[0].opaque_depth;
-    scenes[n].shading = m->of[n].options.shade ? &m->of[n].options.shading : NULL;
+    scenes[n].shading = m->of[n].options.shade || m->of[n].options.materials ? &m->of[n].options.shading : NULL;
+    scenes[n].materials = m->of[n].options.materials;
+    scenes[n].dependent = m->of[n].options.dependent;
+    scenes[n].mean_components = m->of[n].options.mean_components;
+    scenes[n].labels = m->of[n].options.mask;
+    scenes[n].label_count = m->of[n].options.label_count;
+    scenes[n].transfer = m->transfers[n] ? m->transfers[n] : scenes[n].transfer;
   }
   several_draw(context, m, p);
   assert_int_equal(reference_converged_several(scenes, m->count, CASE_WIDTH, CASE_HEIGHT, 70.0, reference, NULL, &reference_db), 0);

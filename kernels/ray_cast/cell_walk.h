@@ -107,6 +107,18 @@ INLINE void cell_leave(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k
   }
 }
 
+/* Makes the boxes about values cells, or halves of cells where boxes are cut at the cells' planes. */
+INLINE void cell_boxes(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k, int halves)
+{
+  const int even = !RAY_STRETCHED(a), twice = even & halves, moved = even & !halves; /* stretched grids have planes of both kinds */
+  const vfloat scale = v_set(twice ? 2.0f : 1.0f), shift = v_set(moved ? 0.5f : 0.0f), shrink = v_set(twice ? 0.5f : 1.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    k->p[axis] = v_fma(k->p[axis], scale, shift);
+    k->d[axis] = k->d[axis] * scale;
+    k->inverse[axis] = k->inverse[axis] * shrink;
+  }
+}
+
 /* The cell whose values are read. Where positions are clamped that is the border's cell. */
 INLINE vint cell_inside(CONSTANT stratus_ray_cast_arguments* a, const cell_walk* w, int axis)
 {

@@ -10,6 +10,14 @@
 #define OUTLINE static __attribute__((noinline))
 #endif
 
+/* What a sample's label shows: the entry in the table of its label, the layer of that over a whole sample, how far behind entries their
+ * optical depths are, and how light and gradient change it. */
+typedef struct stratus_label_sample {
+  vfloat layer[4];
+  vint entry, depths;
+  stratus_lit_sample lighting;
+} stratus_label_sample;
+
 #if RAY_IN_PAGES
 INLINE value_source component_values(value_source values, int c)
 {

@@ -24,6 +24,14 @@
   (STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE || STRATUS_RAY_MODE == STRATUS_RAY_CELLS || STRATUS_RAY_MODE == STRATUS_RAY_LOCAL)
 #endif
 
+/* 1: the includer walks from cell to cell by itself, or looks functions of two variables up. */
+#ifndef RAY_WITH_CELLS
+#define RAY_WITH_CELLS 0
+#endif
+#ifndef RAY_WITH_FUNCTIONS_2D
+#define RAY_WITH_FUNCTIONS_2D 0
+#endif
+
 #include "fetch.h"
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
 #include "ray_extremes.h"
@@ -155,9 +163,16 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_TRANSFER_2D
 #include "component.h"
 #endif
-#if RAY_BY_CELLS
+#if STRATUS_RAY_MODE == STRATUS_RAY_TRANSFER_2D || RAY_WITH_FUNCTIONS_2D
+#include "function_2d.h"
+#endif
+#if RAY_BY_CELLS || RAY_WITH_CELLS
 #include "cell_cubic.h"
 #include "cell_walk.h"
+#endif
+#if STRATUS_RAY_MODE == STRATUS_RAY_CELLS || STRATUS_RAY_MODE == STRATUS_RAY_LOCAL || RAY_WITH_CELLS
+#include "cell_way.h"
+#include "local_runs.h"
 #endif
 #if STRATUS_RAY_MODE == STRATUS_RAY_SHADING
 #include "ray_shading.h"

@@ -13,6 +13,16 @@
 #define STRATUS_PREINTEGRATED 0
 #define STRATUS_RAY_MODE STRATUS_RAY_SHADING
 #define RAY_NAME(x) kernel_##x
+/* 1: some volume has rays that go from cell to cell. */
+#ifndef SEVERAL_CELLS
+#define SEVERAL_CELLS 0
+#endif
+#define RAY_WITH_CELLS SEVERAL_CELLS
+/* 1: some volume is of several media. */
+#ifndef SEVERAL_MEDIA
+#define SEVERAL_MEDIA 0
+#endif
+#define RAY_WITH_FUNCTIONS_2D SEVERAL_MEDIA
 /* Pixels along each side of a work item's tile of packets. */
 #ifndef RAY_TILE
 #define RAY_TILE 16
@@ -24,9 +34,13 @@
 
 #include "ray_segment.h"
 
-#include "ray_cast.h"
-#include "ray_several.h"
 #include "ray_several_arguments.h"
+
+#include "ray_cast.h"
+#if SEVERAL_MEDIA
+#include "several_media.h"
+#endif
+#include "ray_several.h"
 #include "ray_store.h"
 
 #ifdef STRATUS_ARGUMENTS_BYTES
@@ -36,8 +50,8 @@ typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRAT
 
 /* The kernel's arguments of a volume; those of numbers that no volume has are not read. */
 #define VOLUME_ARGUMENTS(n)                                                                                                                \
-  __global const void *values##n, __global const uchar *hidden##n, __global const uchar *map##n, __global const int *grid##n,              \
-    __global const void *table##n, __global const void *besides##n
+  __global const void *values##n, __global const uchar *hidden##n, __global const uchar *map##n, __global const uchar *rough##n,           \
+    __global const int *grid##n, __global const void *table##n, __global const void *besides##n
 
 #define VOLUME_SOURCE(n)                                                                                                                   \
   if (n < count) {                                                                                                                         \
@@ -45,11 +59,15 @@ typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRAT
     from[n].values = values##n;                                                                                                            \
     from[n].hidden = hidden##n;                                                                                                            \
     from[n].map = map##n;                                                                                                                  \
+    from[n].rough = rough##n;                                                                                                              \
     from[n].grid = grid##n;                                                                                                                \
     from[n].table = table##n;                                                                                                              \
     from[n].besides = besides##n;                                                                                                          \
     from[n].stride = parts[n].stride;                                                                                                      \
     from[n].lit = parts[n].lit;                                                                                                            \
+    from[n].cells = parts[n].cells;                                                                                                        \
+    from[n].media = parts[n].media;                                                                                                        \
+    from[n].segment = parts[n].segment;                                                                                                    \
     from[n].preintegrated = parts[n].preintegrated;                                                                                        \
   }
 

@@ -61,6 +61,12 @@ INLINE void several_advance(const several_source* from, several_volume* v, int i
   v->ways[1 - v->now].hi = hi;
   v->ways[1 - v->now].front = front;
   v->ways[1 - v->now].rise = value - front;
+#if SEVERAL_MEDIA
+  if (from->media) { /* each component has its own values that are not finite */
+    several_shade_media(from, v, inside);
+    return;
+  }
+#endif
   const vmask valid = inside & v_finite(value) & v_finite(front);
   if (from->preintegrated) {
     several_shade(from, v, valid);
@@ -94,7 +100,7 @@ INLINE void several_number(
     v->next = several_least(v->k.i + v->offset, v->k.live);
     const int beyond = several_least(vi_set(0) - (v->k.last + v->offset), v->k.live);
     v->last = beyond == SEVERAL_NEVER ? 0 : -beyond;
-    if (several_is_mesh(&from[n])) { /* it takes its stretches where the others' ways are composited */
+    if (several_has_stretches(&from[n])) { /* it takes them where the others' ways are composited */
       v->next = SEVERAL_NEVER;
     }
     v->run = from[n].a->map.structure ? 0 : SEVERAL_NEVER;
@@ -134,6 +140,11 @@ INLINE void several_load(
       const float far = rays.whole[0][lane] < SEVERAL_FARTHEST ? rays.whole[0][lane] : SEVERAL_FARTHEST;
       whole[n][lane] = (several_number_t)far + (several_number_t)rays.whole[1][lane];
     }
+#if SEVERAL_CELLS
+    if (from[n].cells) {
+      several_cells_load(&from[n], v, whole[n]);
+    }
+#endif
     k->hits = k->hits | v->k.hits;
     k->live = k->live | v->k.live;
   }
@@ -144,11 +155,11 @@ INLINE void several_load(
 INLINE void several_march(const several_source* from, several_volume* volumes, int count, stratus_packet* k)
 {
   vint since = vi_set(0);
-  int i = 0, meshes = 0;
+  int i = 0, stretches = 0;
   for (int n = 0; n < count; ++n) {
-    meshes |= several_is_mesh(&from[n]) && volumes[n].shows;
+    stretches |= several_has_stretches(&from[n]) && volumes[n].shows;
   }
-  for (int n = 0; meshes && n < count; ++n) { /* places are counted from where each ray meets anything, so that they round alike */
+  for (int n = 0; stretches && n < count; ++n) { /* places are counted from where each ray meets anything, so that they round alike */
     const vint first = vi_select(volumes[n].k.live, volumes[n].offset, vi_set(SEVERAL_NEVER));
     since = n == 0 ? first : vi_min(since, first);
   }
@@ -168,7 +179,7 @@ INLINE void several_march(const several_source* from, several_volume* volumes, i
     }
     if (m_any(changed)) {
       if (shows) {
-        several_interval(from, volumes, count, since, i, changed & k->live, meshes, k);
+        several_interval(from, volumes, count, since, i, changed & k->live, stretches, k);
       }
       since = vi_select(changed, vi_set(i), since);
     }
@@ -180,8 +191,8 @@ INLINE void several_march(const several_source* from, several_volume* volumes, i
     }
     i = next;
   }
-  if (meshes && m_any(k->live)) { /* what is behind all samples */
-    several_interval(from, volumes, count, since, SEVERAL_NEVER, k->live, meshes, k);
+  if (stretches && m_any(k->live)) { /* what is behind all samples */
+    several_interval(from, volumes, count, since, SEVERAL_NEVER, k->live, stretches, k);
   }
   for (int n = 0; n < count; ++n) {
     k->samples = k->samples + volumes[n].k.samples;

@@ -111,22 +111,35 @@ INLINE void RAY_NAME(add_dependent)(
   RAY_NAME(ray_add_medium)(a, table, last, k, sample, valid, layer, sum);
 }
 
-OUTLINE void RAY_NAME(shade_components)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+/* What components show at samples: `sum` has their light and, last, their optical depth, over a whole sample. Returns the rays on which
+ * anything shows. */
+OUTLINE vmask RAY_NAME(components_at)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[5])
 {
-  const vfloat zero = v_set(0.0f);
-  vfloat sum[5] = { zero, zero, zero, zero, zero };
+  for (int i = 0; i < 5; ++i) {
+    sum[i] = v_set(0.0f);
+  }
   if (a->media.dependent) {
     RAY_NAME(add_dependent)(a, table, k, sample, sum);
   } else {
     RAY_NAME(add_independent)(a, table, k, sample, sum);
   }
-  const vmask shows = k->live & v_lt(zero, sum[3]);
+  const vmask shows = k->live & v_lt(v_set(0.0f), sum[3]);
+  if (a->media.mean) {
+    sum[3] = v_max(sum[4] * v_reciprocal(v_max(v_min(sum[3], v_set(4e18f)), v_set(1e-30f))), v_set(1e-30f));
+  }
+  return shows;
+}
+
+OUTLINE void RAY_NAME(shade_components)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+{
+  const vfloat zero = v_set(0.0f);
+  vfloat sum[5];
+  const vmask shows = RAY_NAME(components_at)(a, table, k, sample, sum);
   if (m_any(shows)) {
-    vfloat layer[4], depth = sum[3];
-    if (a->media.mean) {
-      depth = v_max(sum[4] * v_reciprocal(v_max(v_min(sum[3], v_set(4e18f)), v_set(1e-30f))), v_set(1e-30f));
-    }
+    vfloat layer[4];
+    const vfloat depth = sum[3];
     layer[3] = v_select(shows, v_absorbed(depth * sample->weight), zero);
     const vfloat per_depth = v_select(shows, layer[3] * v_reciprocal(v_max(depth, v_set(1e-30f))), zero);
     for (int c = 0; c < 3; ++c) {
@@ -161,9 +174,9 @@ OUTLINE vint RAY_NAME(label_at)(
   return vi_load(label);
 }
 
-/* Composites samples in the colours and opacities of their labels. */
-OUTLINE void RAY_NAME(shade_labels)(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+/* Finds what samples show in the colours and opacities of their labels. Returns the rays on which anything shows. */
+OUTLINE vmask RAY_NAME(labels_at)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k,
+  const stratus_sample* sample, stratus_label_sample* shown)
 {
   GLOBAL const float* floats = (GLOBAL const float*)table;
   const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo), zero = v_set(0.0f);
@@ -171,7 +184,7 @@ OUTLINE void RAY_NAME(shade_labels)(
   const vmask valid = k->live & v_finite(sample->value);
   GLOBAL const int* ints = (GLOBAL const int*)table;
   const vint label = RAY_NAME(label_at)(a, sample->hidden, k->grid, x, valid), record = label + label + label, numbers = record + vi_set(1);
-  vfloat of[4], layer[4];
+  vfloat of[4];
   vint place[4];
   gather_four(floats + a->media.label_first, record, valid, of);
   for (int i = 0; i < 4; ++i) {
@@ -189,29 +202,41 @@ OUTLINE void RAY_NAME(shade_labels)(
       entry = vi_select(inside & v_le(v_from_bits(v_gather_ints(ints, next + place[3], inside)), sample->value), next, entry);
     }
   }
-  entry = entry + place[0];
-  gather_four(floats, entry, valid, layer);
-  const vmask shows = valid & v_lt(zero, layer[3]);
+  shown->entry = entry + place[0];
+  shown->depths = place[1];
+  gather_four(floats, shown->entry, valid, shown->layer);
+  const vmask shows = valid & v_lt(zero, shown->layer[3]);
   if (m_any(shows)) {
-    stratus_lit_sample lighting;
-    const vfloat depth = RAY_NAME(entry_depth)(a, floats, entry + place[1], shows);
+    const vfloat depth = RAY_NAME(entry_depth)(a, floats, shown->entry + place[1], shows);
     vint factors = vi_set(-1);
     if (a->media.label_factors) {
       factors = v_gather_ints(ints + a->media.label_first, (record + vi_set(2)) << vi_set(2), shows);
     }
-    RAY_NAME(ray_light_by)(a, sample->values, table, 0, k, s, depth, factors, of[3], shows, &lighting);
-    const vfloat thick = sample->weight * lighting.factor;
+    RAY_NAME(ray_light_by)(a, sample->values, table, 0, k, s, depth, factors, of[3], shows, &shown->lighting);
+  }
+  return shows;
+}
+
+/* Composites samples in the colours and opacities of their labels. */
+OUTLINE void RAY_NAME(shade_labels)(
+  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
+{
+  stratus_label_sample shown;
+  const vmask shows = RAY_NAME(labels_at)(a, table, k, sample, &shown);
+  if (m_any(shows)) {
+    vfloat layer[4] = { shown.layer[0], shown.layer[1], shown.layer[2], shown.layer[3] };
+    const vfloat thick = sample->weight * shown.lighting.factor;
     const vmask part = shows & v_lt(thick, v_set(1.0f));
     if (m_any(part)) { /* as shorten_layer() */
       vfloat depth[4];
-      gather_four(floats, entry + place[1], part, depth);
+      gather_four((GLOBAL const float*)table, shown.entry + shown.depths, part, depth);
       const vfloat alpha = v_absorbed(depth[0] * thick),
                    ratio = v_select(part, alpha * v_reciprocal(v_max(layer[3], v_set(1e-30f))), v_set(1.0f));
       for (int c = 0; c < 4; ++c) {
         layer[c] = layer[c] * ratio;
       }
     }
-    light_layer(&lighting, layer);
+    light_layer(&shown.lighting, layer);
     composite(a, k, shows, layer, sample->lo);
   }
 }

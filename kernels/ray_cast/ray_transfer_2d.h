@@ -1,74 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Samples whose colour and opacity are a function of two variables: the value, and the gradient's magnitude or the value of a second
- * component. Included by ray_cast.h with STRATUS_RAY_MODE set to STRATUS_RAY_TRANSFER_2D.
- *
- * The function is bilinear between its entries. A structure knows of a block's values alone: where all entries of the columns about them
- * are transparent, so is what is interpolated between them, exactly. */
+ * Samples whose colour and opacity are a function of two variables (function_2d.h). Included by ray_cast.h with STRATUS_RAY_MODE set to
+ * STRATUS_RAY_TRANSFER_2D. */
 #ifndef STRATUS_RAY_TRANSFER_2D_H
 #define STRATUS_RAY_TRANSFER_2D_H
-
-/* The entry at or before a place in entries, and in *part the way to the next; nearest interpolation takes the nearest entry. */
-INLINE vint entry_before(CONSTANT stratus_ray_cast_arguments* a, vfloat place, int entries, vfloat* part)
-{
-  const vint entry = vi_min(v_to_int(place), vi_set(entries - 2));
-  *part = place - v_from_int(entry);
-  if (RAY_RARE(RAY_NEAREST, a->values.nearest)) {
-    *part = v_select(v_lt(*part, v_set(0.5f)), v_set(0.0f), v_set(1.0f));
-  }
-  return entry;
-}
-
-/* The place of numbers among the columns (axis 0) or rows (axis 1). */
-INLINE vfloat entry_place(CONSTANT stratus_ray_cast_arguments* a, int axis, vfloat number)
-{
-  CONSTANT stratus_ray_function_2d* t = &a->transfer_2d;
-  return v_clamp(v_fma(number - v_set(t->base[axis]), v_set(t->scale[axis]), v_set(-0.5f)), 0.0f, t->last[axis]);
-}
-
-/* The lanes whose columns show anything in some row. */
-INLINE vmask columns_show(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, vint column, vfloat part, vmask mask)
-{
-  GLOBAL const int* opacities = (GLOBAL const int*)(table + a->transfer_2d.opacity_at);
-  const vfloat low = v_from_bits(v_gather_ints(opacities, column, mask)), high = v_from_bits(v_gather_ints(opacities + 1, column, mask));
-  return mask & v_lt(v_set(0.0f), v_lerp(low, high, part));
-}
-
-/* The magnitude of an index gradient, per mean spacing. Rows end long before magnitudes whose squares are no floats. */
-INLINE vfloat gradient_magnitude(CONSTANT stratus_ray_cast_arguments* a, const vfloat g[3])
-{
-  vfloat v[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    v[axis] = g[axis] * v_set(a->media.gradient_length[axis]);
-  }
-  const vfloat largest = v_scale3(v), square = v_dot3(v, v);
-  const vmask any = v_lt(v_set(0.0f), largest) & v_lt(v_set(0.0f), square) & v_finite(square);
-  const vfloat length = square * v_inverse_root(v_select(any, square, v_set(1.0f)));
-  /* v_scale3() has brought the largest component to 1..4 */
-  const vfloat reached = v_max(v_max(v_abs(v[0]), v_abs(v[1])), v_abs(v[2]));
-  return v_select(any, largest * (length * v_reciprocal(v_select(any, reached, v_set(1.0f)))), v_set(0.0f));
-}
-
-/* Colour and opacity between four entries. */
-INLINE void between_entries(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, vint column, vint row, vfloat across,
-  vfloat up, vmask mask, vfloat out[4])
-{
-  const vint entry = row * vi_set(a->transfer_2d.columns) + column, above = entry + vi_set(a->transfer_2d.columns);
-  vfloat corner[4][4];
-  gather_four(table, entry, mask, corner[0]);
-  gather_four(table, entry + vi_set(1), mask, corner[1]);
-  gather_four(table, above, mask, corner[2]);
-  gather_four(table, above + vi_set(1), mask, corner[3]);
-  for (int c = 0; c < 4; ++c) {
-    out[c] = v_lerp(v_lerp(corner[0][c], corner[1][c], across), v_lerp(corner[2][c], corner[3][c], across), up);
-  }
-}
 
 /* Makes colour and opacity over the length that opacities are of a layer: colour times alpha, and alpha, of `weight` samples. */
 INLINE void thicken_layer(CONSTANT stratus_ray_cast_arguments* a, vfloat weight, vfloat layer[4])
 {
-  const vfloat one = v_set(1.0f), opacity = v_clamp(layer[3], 0.0f, 1.0f);
-  const vfloat depth = v_select(v_lt(opacity, one), depth_of_opacity(opacity, one - opacity), v_set(1e18f));
-  layer[3] = v_absorbed(depth * (weight * v_set(a->transfer_2d.reach)));
+  layer[3] = v_absorbed(depth_of_entry(layer[3]) * (weight * v_set(a->transfer_2d.reach)));
   for (int c = 0; c < 3; ++c) {
     layer[c] = layer[c] * layer[3];
   }
@@ -79,33 +18,16 @@ INLINE void thicken_layer(CONSTANT stratus_ray_cast_arguments* a, vfloat weight,
 OUTLINE void RAY_NAME(shade_by_two)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, stratus_packet* k,
   const stratus_sample* sample, vint column, vfloat across, vmask mask)
 {
-  const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo), zero = v_set(0.0f);
-  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
-  const int by_gradient = !a->transfer_2d.second;
-  vfloat g[3] = { zero, zero, zero }, number, up, layer[4];
-  if (by_gradient) {
-    RAY_NAME(ray_gradient)(a, sample->values, k->grid, x, mask, g);
-    number = gradient_magnitude(a, g);
-  } else {
-    number = RAY_NAME(component_value)(a, k, sample, 1, mask);
-    mask = mask & v_finite(number);
-    number = v_select(mask, number, zero);
-  }
-  const vint row = entry_before(a, entry_place(a, 1, number), a->transfer_2d.rows, &up);
-  between_entries(a, table, column, row, across, up, mask, layer);
-  mask = mask & v_lt(zero, layer[3]);
+  vfloat layer[4];
+  stratus_lit_sample lighting;
+  mask = RAY_NAME(two_at)(a, table, k, sample, column, across, mask, layer, &lighting);
   if (m_any(mask)) {
     thicken_layer(a, sample->weight, layer);
     if (a->light.on) {
-      stratus_lit_sample lighting;
-      if (!by_gradient) {
-        RAY_NAME(ray_gradient)(a, sample->values, k->grid, x, mask, g);
-      }
-      light_at(&a->light, 0, x, k->d, g, lighting.diffuse, lighting.specular);
       light_layer(&lighting, layer);
     }
     for (int c = 0; c < 4; ++c) {
-      layer[c] = v_select(mask, layer[c], zero);
+      layer[c] = v_select(mask, layer[c], v_set(0.0f));
     }
     composite(a, k, mask, layer, sample->lo);
   }

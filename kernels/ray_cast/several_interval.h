@@ -6,6 +6,9 @@
 
 #include "several_state.h"
 #include "several_way.h"
+#if SEVERAL_CELLS
+#include "several_cells.h"
+#endif
 #ifndef STRATUS_DEVICE
 #include "several_mesh.h"
 #endif
@@ -36,10 +39,11 @@ INLINE void several_add_part(const several_source* from, const several_volume* v
   }
   const vfloat per_length = v_reciprocal(v_max(way->hi - way->lo, v_set(1e-6f)));
   const vfloat t0 = v_clamp((begin - way->lo) * per_length, 0.0f, 1.0f), t1 = v_clamp((end - way->lo) * per_length, 0.0f, 1.0f);
-  const vint e0 = table_entry(&a->table, from->table, v_fma(way->rise, t0, way->front)),
-             e1 = table_entry(&a->table, from->table, v_fma(way->rise, t1, way->front));
-  vfloat rate[4], width;
-  several_rate(from, way, vi_min(e0, e1), vi_max(e0, e1) + vi_set(1), mask, rate, &width);
+  several_end first = { v_fma(way->rise, t0, way->front), vi_set(0) }, last = { v_fma(way->rise, t1, way->front), vi_set(0) };
+  first.entry = table_entry(&a->table, from->table, first.value);
+  last.entry = table_entry(&a->table, from->table, last.value);
+  vfloat rate[4], across;
+  several_rate(from, way, &first, &last, mask, rate, &across);
   for (int c = 0; c < 4; ++c) {
     sum[c] = v_select(mask, v_fma(rate[c], end - begin, sum[c]), sum[c]);
   }
@@ -123,15 +127,15 @@ INLINE vmask several_walls(
   return stops;
 }
 
-/* Adds what the volume shows between two places: by its mean rate on the way, or, of a mesh's stretch, which may be many segments long, by
- * the values there if that is a part of it. */
+/* Adds what the volume shows between two places: by its mean rate on the way, or, of a stretch, by the values there if that is a part of
+ * it. */
 INLINE void several_add_way(const several_source* from, const several_volume* v, vfloat begin, vfloat end, vmask mask, vfloat sum[4])
 {
   const several_way* way = &v->ways[v->now];
   const vfloat length = end - begin;
   vmask part = m_none();
-  if (several_is_mesh(from)) {
-    part = mask & v_lt(begin, end) & (v_lt(way->lo, begin) | v_lt(end, way->hi));
+  if (several_has_stretches(from)) {
+    part = mask & v_lt(begin, end) & v_lt(v_set(0.0f), v_abs(way->rise)) & (v_lt(way->lo, begin) | v_lt(end, way->hi));
   }
   for (int c = 0; c < 4; ++c) {
     const vfloat whole = v_fma(way->rate[c], length, sum[c]);
@@ -181,29 +185,62 @@ INLINE void several_stretch(const several_source* from, const several_volume* vo
     }
     composite(from[0].a, k, stops, layer, nearest);
   }
-  k->live = m_andnot(k->live, v_lt(k->transparency, v_set(from[0].a->termination)));
+  k->live = m_andnot(k->live, stops | v_lt(k->transparency, v_set(from[0].a->termination)));
 }
 
-/* Composites what all volumes show from segment `since` to i on the rays of the mask: at once, or, where there are meshes, from one face to
- * the next. */
+#if SEVERAL_STRETCHES
+/* From `u` segments behind `since` on, at which the rays `going` are: gives those whose stretch has ended another, and takes from `going`
+ * those that have to wait for it. Lowers *until to where each ray's stretch ends or, at a whole segment before it where that is far,
+ * begins. live: rays that are not at their end. */
+INLINE void several_until(const several_source* from, several_volume* v, vint since, vfloat u, vmask live, vmask* going, vfloat* until)
+{
+  const several_way* way = &v->ways[v->now];
+  const vfloat s0 = v_from_int(since - v->offset), one = v_set(1.0f);
+  vmask ended = m_andnot(*going & v_le(way->hi - s0, u), way->stops);
+  while (m_any(ended)) {
+    vmask waits = m_none();
+#ifdef STRATUS_DEVICE
+    waits = several_cells_next(from, v, ended, *going, live);
+#else
+    if (from->mesh) {
+      several_mesh_next(from, v, ended);
+    } else {
+      waits = several_cells_next(from, v, ended, *going, live);
+    }
+#endif
+    *going = m_andnot(*going, waits);
+    ended = m_andnot(*going & v_le(way->hi - s0, u), way->stops);
+  }
+  const vfloat begins = way->lo - s0, ends = v_max(way->hi - s0, u);
+  const vfloat whole = v_from_int(v_to_int(v_clamp(begins, 0.0f, (float)SEVERAL_SEGMENTS_MOST)));
+  const vmask before = v_lt(u, begins),
+              far = before & v_le(one, begins - u) & v_lt(u, whole) & v_lt(begins, v_set((float)SEVERAL_SEGMENTS_MOST));
+  *until = v_min(v_select(far, whole, v_select(before, begins, ends)), *until);
+}
+#endif
+
+/* Composites what all volumes show from segment `since` to i on the rays of the mask: at once, or, where there are stretches, from one of
+ * their ends to the next. */
 INLINE void several_interval(
-  const several_source* from, several_volume* volumes, int count, vint since, int i, vmask mask, int meshes, stratus_packet* k)
+  const several_source* from, several_volume* volumes, int count, vint since, int i, vmask mask, int stretches, stratus_packet* k)
 {
   vfloat start = v_set(0.0f), stop = v_from_int(vi_set(i) - since);
-  if (!meshes) {
+  if (!stretches) {
     several_stretch(from, volumes, count, since, start, stop, mask, k);
     return;
   }
-#ifndef STRATUS_DEVICE
+#if SEVERAL_STRETCHES
   while (m_any(mask)) {
     vfloat until = stop;
+    vmask going = mask;
     for (int n = 0; n < count; ++n) {
-      if (from[n].mesh && volumes[n].shows) {
-        several_mesh_until(&from[n], &volumes[n], since, start, mask, &until);
+      if (several_has_stretches(&from[n]) && volumes[n].shows) {
+        several_until(&from[n], &volumes[n], since, start, k->live, &going, &until);
       }
     }
-    several_stretch(from, volumes, count, since, start, until, mask, k);
-    mask = mask & k->live & v_lt(until, stop);
+    until = v_select(going, until, start);
+    several_stretch(from, volumes, count, since, start, until, going, k);
+    mask = mask & k->live & (v_lt(until, stop) | m_andnot(mask, going));
     /* places stay near `since`, so that floats tell them apart */
     const vint whole = vi_select(mask, v_to_int(v_select(mask, until, v_set(0.0f))), vi_set(0));
     since = since + whole;

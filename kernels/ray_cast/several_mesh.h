@@ -6,11 +6,6 @@
 
 #include "several_way.h"
 
-/* Where the way is of a ray that has no stretch left. */
-#define SEVERAL_BEYOND 1e30f
-/* Segments between a ray's places are ints. */
-#define SEVERAL_SEGMENTS_MOST 1e9
-
 /* The number of segments from the eye to z = 0 of the mesh's rays (base) and for each unit of z (scale), and by how much a ray's lattice
  * lies farther. */
 INLINE void several_mesh_places(const several_mesh* m, int x, int y, double* base, double* scale, float* shift)
@@ -83,7 +78,7 @@ INLINE vmask several_mesh_cell(const several_source* from, several_volume* v, vm
 INLINE void several_mesh_next(const several_source* from, several_volume* v, vmask mask)
 {
   const vfloat zero = v_set(0.0f), beyond = v_set(SEVERAL_BEYOND);
-  several_way *way = &v->ways[v->now], *next = &v->ways[1 - v->now];
+  several_way* next = &v->ways[1 - v->now];
   vmask left = mask, found = m_none();
   next->lo = next->hi = beyond;
   next->front = next->rise = next->entries = next->wall[0] = next->wall[1] = next->wall[2] = zero;
@@ -107,18 +102,7 @@ INLINE void several_mesh_next(const several_source* from, several_volume* v, vma
   }
   several_shade(from, v, found);
   v->comes = -1; /* nothing is due of a mesh */
-  way->lo = v_select(mask, next->lo, way->lo);
-  way->hi = v_select(mask, next->hi, way->hi);
-  way->front = v_select(mask, next->front, way->front);
-  way->rise = v_select(mask, next->rise, way->rise);
-  way->entries = v_select(mask, next->entries, way->entries);
-  for (int c = 0; c < 4; ++c) {
-    way->rate[c] = v_select(mask, next->rate[c], way->rate[c]);
-  }
-  for (int c = 0; c < 3; ++c) {
-    way->wall[c] = v_select(mask, next->wall[c], way->wall[c]);
-  }
-  way->stops = m_andnot(way->stops, mask) | next->stops;
+  several_take(v, mask);
 }
 
 /* Makes the rays of the packet at pixel (x, y) ready, at their first stretch. whole: the segment before the one in which each enters. */
@@ -177,24 +161,6 @@ INLINE void several_mesh_load(const several_source* from, several_volume* v, int
     v->ways[0].rate[c] = v_select(v->k.live, v->ways[0].rate[c], v_set(0.0f));
   }
   v->shows = m_any(v->k.live) != 0;
-}
-
-/* From `u` segments behind `since` on, at which the rays of the mask are: gives those whose stretch has ended another. Lowers *until to
- * where each ray's stretch ends or, at a whole segment before it where that is far, begins. */
-INLINE void several_mesh_until(const several_source* from, several_volume* v, vint since, vfloat u, vmask mask, vfloat* until)
-{
-  const several_way* way = &v->ways[v->now];
-  const vfloat s0 = v_from_int(since - v->offset), one = v_set(1.0f);
-  vmask ended = mask & v_le(way->hi - s0, u);
-  while (m_any(ended)) {
-    several_mesh_next(from, v, ended);
-    ended = mask & v_le(way->hi - s0, u);
-  }
-  const vfloat begins = way->lo - s0;
-  const vfloat whole = v_from_int(v_to_int(v_clamp(begins, 0.0f, (float)SEVERAL_SEGMENTS_MOST)));
-  const vmask before = v_lt(u, begins),
-              far = before & v_le(one, begins - u) & v_lt(u, whole) & v_lt(begins, v_set((float)SEVERAL_SEGMENTS_MOST));
-  *until = v_min(v_select(far, whole, v_select(before, begins, way->hi - s0)), *until);
 }
 
 #endif

@@ -5,8 +5,27 @@
 #define STRATUS_SEVERAL_STATE_H
 
 #include "lighting.h"
+#include "ray_several_arguments.h"
 #ifndef STRATUS_DEVICE
 #include "tetra_tile.h"
+#endif
+/* 1: some volume has rays that go from cell to cell. A device compiles what these need only then. */
+#ifndef SEVERAL_CELLS
+#define SEVERAL_CELLS 1
+#endif
+/* 1: some volume is of several media. */
+#ifndef SEVERAL_MEDIA
+#define SEVERAL_MEDIA 1
+#endif
+#if SEVERAL_CELLS
+#include "cell_way.h"
+#include "local_runs.h"
+#endif
+/* Whether there may be sources of stretches. */
+#if SEVERAL_CELLS || !defined(STRATUS_DEVICE)
+#define SEVERAL_STRETCHES 1
+#else
+#define SEVERAL_STRETCHES 0
 #endif
 
 /* A device compiles a kernel for as many volumes as there are. */
@@ -14,6 +33,10 @@
 #define SEVERAL_MOST 8
 #endif
 #define SEVERAL_NEVER 0x7fffffff
+/* Where the way is of a ray that has no stretch left. */
+#define SEVERAL_BEYOND 1e30f
+/* Segments between a ray's places are ints. */
+#define SEVERAL_SEGMENTS_MOST 1e9
 
 /* Numbers of the lattice's segments from the eye on. */
 #ifdef STRATUS_DEVICE
@@ -29,6 +52,22 @@ typedef void several_value(CONSTANT stratus_ray_cast_arguments* a, value_source 
   const vfloat x[3], vmask mask, vfloat* value);
 typedef void several_gradient(
   CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* grid, const vfloat x[3], vmask mask, vfloat g[3]);
+/* The values at the corners of a cell, and a value by its indices: RAY_NAME(fetch_cell) and RAY_NAME(fetch_nearest). */
+typedef void several_corners(CONSTANT stratus_ray_cast_arguments* a, value_source values, const vint at[3], vmask mask, vfloat v[8]);
+typedef void several_nearest(CONSTANT stratus_ray_cast_arguments* a, value_source values, const vint at[3], vmask mask, vfloat* value);
+
+/* What a sample of several media shows: RAY_NAME(several_media). */
+typedef void several_media(CONSTANT stratus_ray_cast_arguments* a, int media, float segment, GLOBAL const void* table,
+  const stratus_packet* k, const stratus_sample* sample, vfloat rate[4]);
+
+/* How values of one type are read. */
+typedef struct several_reading {
+  several_value* value;
+  several_gradient* gradient;
+  several_corners* corners;
+  several_nearest* nearest;
+  several_media* media;
+} several_reading;
 #endif
 
 #ifndef STRATUS_DEVICE
@@ -52,18 +91,20 @@ typedef struct several_mesh_rays {
 typedef struct several_source {
   CONSTANT stratus_ray_cast_arguments* a;
   value_source values;
-  GLOBAL const uchar *hidden, *map;
+  GLOBAL const uchar *hidden, *map, *rough;
   GLOBAL const int* grid;
   /* Pre-integrated: running sums. Midpoint: for each entry its colour times optical depth, and optical depth, of a segment's length; and
    * with light or gradient opacity, what these read besides. */
   GLOBAL const void *table, *besides;
 #ifndef STRATUS_DEVICE
-  several_value* value;
-  several_gradient* gradient;
+  const several_reading* read;
   const several_mesh* mesh; /* NULL: a volume */
 #endif
   int stride;        /* segments of the lattice to a sample of this volume, at least 1 */
   int lit;           /* 1: it has light or gradient opacity */
+  int cells;         /* how its rays go */
+  int media;         /* what its samples are more than one value's colour and opacity by; 0: nothing */
+  float segment;     /* media: a segment's length in samples, of which its table is */
   int preintegrated; /* 1: between the values at both ends of a sample's way; 0: by the value in its middle */
 } several_source;
 
@@ -77,6 +118,18 @@ typedef struct several_way {
   stratus_lit_sample lighting; /* set where the volume has light or gradient opacity */
 } several_way;
 
+#if SEVERAL_CELLS
+/* Where rays are that go from cell to cell, at least in rough blocks. In all others walk.s is where the next sample begins. */
+typedef struct several_cells_rays {
+  cell_walk walk; /* its end is that of the run that rays are on */
+  cell_way way;   /* through the cell where the walk is */
+  vmask waiting;  /* rays that have pieces left of their way */
+  vmask rough;    /* rays that go from cell to cell */
+  vfloat end;     /* where rays end */
+  vint phase;     /* segments from the beginning of a sample to the one in which a ray enters */
+} several_cells_rays;
+#endif
+
 typedef struct several_volume {
   stratus_packet k; /* the rays as this volume has them */
   vint offset;      /* the packet's number of the segment in which a ray enters */
@@ -88,19 +141,21 @@ typedef struct several_volume {
   several_way ways[2];
   int now;          /* which of them is the way that rays are on; the other is the coming one */
   int shows, comes; /* whether anything shows on these */
+#if SEVERAL_CELLS
+  several_cells_rays cells;
+#endif
 #ifndef STRATUS_DEVICE
   several_mesh_rays mesh;
 #endif
 } several_volume;
 
-/* Whether it is a mesh, whose ways are its stretches and change within segments. */
-INLINE int several_is_mesh(const several_source* from)
+/* Whether its ways are stretches that begin and end within segments: those of a mesh, or of a volume by cells. */
+INLINE int several_has_stretches(const several_source* from)
 {
 #ifdef STRATUS_DEVICE
-  (void)from;
-  return 0;
+  return SEVERAL_CELLS && from->cells;
 #else
-  return from->mesh != 0;
+  return from->mesh != 0 || from->cells;
 #endif
 }
 
@@ -111,7 +166,7 @@ INLINE vfloat several_value_at(const several_source* from, const vfloat x[3], vm
   return RAY_NAME(ray_value)(from->a, from->values, from->hidden, from->grid, x, mask);
 #else
   vfloat value;
-  from->value(from->a, from->values, from->hidden, from->grid, x, mask, &value);
+  from->read->value(from->a, from->values, from->hidden, from->grid, x, mask, &value);
   return value;
 #endif
 }
@@ -121,9 +176,43 @@ INLINE void several_gradient_at(const several_source* from, const vfloat x[3], v
 #ifdef STRATUS_DEVICE
   RAY_NAME(ray_gradient)(from->a, from->values, from->grid, x, mask, g);
 #else
-  from->gradient(from->a, from->values, from->grid, x, mask, g);
+  from->read->gradient(from->a, from->values, from->grid, x, mask, g);
 #endif
 }
+
+#if SEVERAL_CELLS
+INLINE void several_corners_at(const several_source* from, const vint at[3], vmask mask, vfloat v[8])
+{
+#ifdef STRATUS_DEVICE
+  RAY_NAME(fetch_cell)(from->a, from->values, at[0], at[1], at[2], mask, v);
+#else
+  from->read->corners(from->a, from->values, at, mask, v);
+#endif
+}
+
+INLINE vfloat several_nearest_at(const several_source* from, const vint at[3], vmask mask)
+{
+#ifdef STRATUS_DEVICE
+  return RAY_NAME(fetch_nearest)(from->a, from->values, at[0], at[1], at[2], mask);
+#else
+  vfloat value;
+  from->read->nearest(from->a, from->values, at, mask, &value);
+  return value;
+#endif
+}
+#endif
+
+#if SEVERAL_MEDIA
+/* What samples show over a segment's length, on the live rays of k. */
+INLINE void several_media_at(const several_source* from, const stratus_packet* k, const stratus_sample* sample, vfloat rate[4])
+{
+#ifdef STRATUS_DEVICE
+  RAY_NAME(several_media)(from->a, from->media, from->segment, from->besides, k, sample, rate);
+#else
+  from->read->media(from->a, from->media, from->segment, from->besides, k, sample, rate);
+#endif
+}
+#endif
 
 /* The smallest number in the lanes of the mask. */
 INLINE int several_least(vint a, vmask mask)

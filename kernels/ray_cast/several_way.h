@@ -80,16 +80,39 @@ INLINE void several_light_rate(const several_way* way, vmask mask, vfloat rate[4
   }
 }
 
-/* What a segment's length of a way between two values shows. */
-INLINE vmask several_rate(
-  const several_source* from, const several_way* way, vint low, vint beyond, vmask mask, vfloat rate[4], vfloat* width)
+/* A value, and its entry in the table. */
+typedef struct several_end {
+  vfloat value;
+  vint entry;
+} several_end;
+
+/* What a segment's length of a way between two values shows. across: the width of what its colour may go through. */
+INLINE vmask several_rate(const several_source* from, const several_way* way, const several_end* begin, const several_end* end, vmask mask,
+  vfloat rate[4], vfloat* across)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
   GLOBAL const int* sums = (GLOBAL const int*)from->table;
+  const vint low = vi_min(begin->entry, end->entry), beyond = vi_max(begin->entry, end->entry) + vi_set(1);
   sums_between(sums, low, beyond, mask, rate);
   mask = mask & v_lt(v_set(0.0f), rate[3]);
-  *width = v_max(width_between(&a->table, sums, low, beyond, mask), v_set(1.0f));
-  const vfloat scale = v_select(mask, v_set(a->table.tau_scale) * v_reciprocal(*width), v_set(0.0f));
+  vfloat width = v_max(width_between(&a->table, sums, low, beyond, mask), v_set(1.0f));
+  *across = width;
+#if SEVERAL_CELLS
+  if (from->cells && RAY_RARE(RAY_JUMPS, a->table.jumps)) { /* whole entries at the ends count too much of one side */
+    const vmask parts = m_andnot(mask, way->stops);
+    table_end first, last;
+    vfloat sum[4];
+    table_end_at(&a->table, sums, begin->value, begin->entry, parts, &first);
+    table_end_at(&a->table, sums, end->value, end->entry, parts, &last);
+    width = v_select(parts, sums_from_to(&a->table, &first, &last, sum), width);
+    for (int c = 0; c < 4; ++c) {
+      rate[c] = v_select(parts, sum[c], rate[c]);
+    }
+    *across = v_max(width, v_select(parts, first.width + last.width, width)); /* a colour may jump between neighbours */
+    mask = mask & v_lt(v_set(0.0f), rate[3]);
+  }
+#endif
+  const vfloat scale = v_select(mask, v_set(a->table.tau_scale) * v_reciprocal(width), v_set(0.0f));
   for (int c = 0; c < 4; ++c) {
     rate[c] = rate[c] * scale;
   }
@@ -98,6 +121,26 @@ INLINE vmask several_rate(
   }
   return mask;
 }
+
+#if SEVERAL_MEDIA
+/* Makes the coming way one of what several media show in its middle. */
+INLINE void several_shade_media(const several_source* from, several_volume* v, vmask mask)
+{
+  several_way* way = &v->ways[1 - v->now];
+  stratus_packet k = v->k;
+  stratus_sample sample;
+  k.live = mask;
+  sample.value = way->front;
+  sample.lo = way->lo;
+  sample.weight = way->hi - way->lo;
+  sample.values = from->values;
+  sample.hidden = from->hidden;
+  several_media_at(from, &k, &sample, way->rate);
+  way->stops = m_none();
+  way->entries = v_set(0.0f);
+  v->comes = m_any(v_lt(v_set(0.0f), way->rate[3])) != 0;
+}
+#endif
 
 /* Makes the coming way one of the value in its middle. */
 INLINE void several_shade_middle(const several_source* from, several_volume* v, vmask mask)
@@ -112,6 +155,25 @@ INLINE void several_shade_middle(const several_source* from, several_volume* v, 
     several_light(from, &v->k, shown, way);
     several_light_rate(way, shown, way->rate);
   }
+}
+
+/* Puts the rays of the mask on the way that comes. */
+INLINE void several_take(several_volume* v, vmask mask)
+{
+  several_way* way = &v->ways[v->now];
+  const several_way* next = &v->ways[1 - v->now];
+  way->lo = v_select(mask, next->lo, way->lo);
+  way->hi = v_select(mask, next->hi, way->hi);
+  way->front = v_select(mask, next->front, way->front);
+  way->rise = v_select(mask, next->rise, way->rise);
+  way->entries = v_select(mask, next->entries, way->entries);
+  for (int c = 0; c < 4; ++c) {
+    way->rate[c] = v_select(mask, next->rate[c], way->rate[c]);
+  }
+  for (int c = 0; c < 3; ++c) {
+    way->wall[c] = v_select(mask, next->wall[c], way->wall[c]);
+  }
+  way->stops = m_andnot(way->stops, mask) | (next->stops & mask);
 }
 
 /* Makes the coming way of what the field does on it, in the lanes of the mask. */
@@ -147,9 +209,10 @@ INLINE void several_shade(const several_source* from, several_volume* v, vmask m
     }
     several_light(from, &v->k, lit, way);
   }
-  vfloat width;
-  shown = several_rate(from, way, vi_min(front, entry), vi_max(front, entry) + vi_set(1), shown, way->rate, &width);
-  way->entries = width * v_reciprocal(v_max(length, v_set(1e-3f)));
+  const several_end begin = { way->front, front }, end = { way->front + way->rise, entry };
+  vfloat across;
+  shown = several_rate(from, way, &begin, &end, shown, way->rate, &across);
+  way->entries = across * v_reciprocal(v_max(length, v_set(1e-3f)));
   v->comes = m_any(shown | way->stops) != 0;
 }
 

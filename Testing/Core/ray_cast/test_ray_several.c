@@ -287,9 +287,6 @@ static void no_structure_changes_a_bit(void** state)
     several_case m = { .count = 2 + (int)(seed % 3) };
     for (int n = 0; n < m.count; ++n) {
       case_create_random(*state, 9000 + 7 * seed + (uint32_t)n, &m.of[n]);
-      if (m.of[n].options.sampling == STRATUS_SAMPLING_CELLS) {
-        m.of[n].options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
-      }
       m.of[n].options.structure = (stratus_structure)(STRATUS_STRUCTURE_AUTO + (seed + (uint32_t)n) % 6);
       several_place(&m.of[n], 5 * seed + (uint32_t)n);
       if (m.of[n].volume.dimensions[0] == 1 || m.of[n].volume.dimensions[1] == 1) {
@@ -368,18 +365,18 @@ static void what_does_not_mix_is_refused(void** state)
   m.of[1].options.mode = STRATUS_MODE_MAXIMUM;
   REFUSED(STRATUS_UNSUPPORTED, "volume 1 of several has mode maximum");
   m.of[1].options.sampling = STRATUS_SAMPLING_CELLS;
-  REFUSED(STRATUS_UNSUPPORTED, "by cells");
+  m.of[1].options.shade = 1;
+  REFUSED(STRATUS_UNSUPPORTED, "by cells of a volume with light");
   m.of[1].options.crop = 1;
   m.of[1].options.crop_regions = 5;
   REFUSED(STRATUS_UNSUPPORTED, "crop regions");
   m.of[1].options.tolerance = -1.0;
   REFUSED(STRATUS_INVALID_ARGUMENT, "tolerance");
-  m.of[1].volume.components = 2;
-  m.of[1].volume.value_stride = 2;
-  m.of[1].options.dependent = 1;
-  REFUSED(STRATUS_UNSUPPORTED, "2 components");
-  m.of[1].volume.components = 1;
-  m.of[1].volume.value_stride = 1;
+  m.of[1].options.label_count = 3;
+  REFUSED(STRATUS_INVALID_ARGUMENT, "3 labels without a mask");
+  const stratus_transfer_2d empty = { .columns = 0, .rows = 1, .rgba = NULL };
+  m.of[1].options.transfer_2d = &empty;
+  REFUSED(STRATUS_INVALID_ARGUMENT, "0 x 1 entries");
   m.of[1].volume.spacing[0] = 0.0;
   REFUSED(STRATUS_INVALID_ARGUMENT, "spacing");
   m.of[1].volume.spacing[0] = 1.0;
