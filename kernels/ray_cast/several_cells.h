@@ -149,8 +149,8 @@ INLINE vmask several_cells_leap(const several_source* from, several_volume* v, v
   /* the first sample whose middle may lie outside the cube */
   const vint stride = vi_set(from->stride), phase = v->cells.phase;
   vint sample = several_sample_of(from, v_to_int(leave) + phase);
-  const vfloat half = v_set(0.5f * (float)from->stride);
-  sample = sample + vi_select(v_lt(v_from_int(sample * stride - phase) + half, leave), vi_set(1), vi_set(0));
+  const vfloat to_middle = v_set(0.5f * (float)from->stride);
+  sample = sample + vi_select(v_lt(v_from_int(sample * stride - phase) + to_middle, leave), vi_set(1), vi_set(0));
   const vfloat first = v_min(v_max(v_from_int(sample * stride - phase), hi), w->end);
   w->run = v_select(occupied, v_max(first, hi), w->run);
   k->skipped = k->skipped + vi_select(leaps, v_to_int((first - w->s) * v_set(1.0f / (float)from->stride)), vi_set(0));
