@@ -163,8 +163,10 @@ static void measure(stratus_context* context, const char* const group[MEMBERS], 
     const double all = together(context, m, count, &camera, size, rgba, reports);
     for (int n = 0; n < count; ++n) {
       stratus_ray_cast_options alike = m[n].options;
-      alike.sampling = reports[n].sampling;
-      alike.sample_distance = reports[n].sample_distance;
+      if (reports[n].sampling != STRATUS_SAMPLING_LOCAL) { /* which cannot be asked for */
+        alike.sampling = reports[n].sampling;
+        alike.sample_distance = reports[n].sample_distance;
+      }
       sums[0] += single(context, m[n].alone, &m[n], &m[n].options, &camera, size, rgba);
       sums[1] += single(context, m[n].alike, &m[n], &alike, &camera, size, rgba);
     }
