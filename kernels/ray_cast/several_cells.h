@@ -240,14 +240,14 @@ INLINE void several_cells_load(const several_source* from, several_volume* v, se
   several_cells_rays* c = &v->cells;
   several_way* way = &v->ways[0];
   const vfloat zero = v_set(0.0f);
-  const int nearest = RAY_RARE(RAY_NEAREST, a->values.nearest),
-            halves = nearest && (RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & HIDDEN_CELLS) && !a->values.clamp;
+  const int nearest = RAY_RARE(RAY_NEAREST, a->values.nearest) != 0,
+            halves = nearest & ((RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & HIDDEN_CELLS) != 0) & !a->values.clamp;
   int phase[STRATUS_WIDTH];
   if (nearest) {
     cell_boxes(a, k, halves);
   }
   const vint behind = k->last;
-  cell_begin(k, halves, nearest && !halves, &c->walk);
+  cell_begin(k, halves, nearest & !halves, &c->walk);
   c->way.k[0] = c->way.k[1] = c->way.k[2] = c->way.k[3] = c->way.lo = c->way.hi = zero;
   c->way.from = c->way.front = c->way.share = c->way.left = zero;
   c->waiting = m_none();
