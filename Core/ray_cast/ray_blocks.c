@@ -216,7 +216,8 @@ static stratus_status check(const blocks* b)
   for (int n = 0; n < b->count; ++n) {
     const stratus_ray_cast_input* in = &b->inputs[n];
     if (!in->caster || in->tetra) {
-      return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT, "block %d has no ray caster: blocks are volumes", n);
+      return stratus_fail(
+        b->context, STRATUS_INVALID_ARGUMENT, "block %d has no ray caster: caster is NULL, or tetra is not; blocks are volumes", n);
     }
     if (in->caster->context != b->context) {
       return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT, "the ray caster of block %d is of another context than that of block 0", n);

@@ -301,6 +301,14 @@ static void ray_casters(const small_scene* scene)
   REFUSES(stratus_ray_caster_render_several(several, 1, NULL, &image, NULL));
   REFUSES(stratus_ray_caster_render_several(several, 1, &scene->camera, NULL, NULL));
   ACCEPTS(stratus_ray_caster_render_several(several, 1, &scene->camera, &image, NULL));
+  IS_SILENT(stratus_ray_caster_render_blocks(NULL, 1, &scene->camera, &image, NULL));
+  IS_SILENT(stratus_ray_caster_render_blocks(several + 1, 1, &scene->camera, &image, NULL));
+  REFUSES(stratus_ray_caster_render_blocks(several, 2, &scene->camera, &image, NULL));
+  REFUSES(stratus_ray_caster_render_blocks(&no_volume, 1, &scene->camera, &image, NULL));
+  REFUSES(stratus_ray_caster_render_blocks(&no_transfer, 1, &scene->camera, &image, NULL));
+  REFUSES(stratus_ray_caster_render_blocks(several, 1, NULL, &image, NULL));
+  REFUSES(stratus_ray_caster_render_blocks(several, 1, &scene->camera, NULL, NULL));
+  ACCEPTS(stratus_ray_caster_render_blocks(several, 1, &scene->camera, &image, NULL));
   IS_SILENT(stratus_ray_caster_offer_tree(NULL, rgba, sizeof rgba));
   ACCEPTS(stratus_ray_caster_offer_tree(c, NULL, 8));
   stratus_ray_caster_destroy(c);

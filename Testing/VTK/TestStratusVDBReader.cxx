@@ -252,7 +252,7 @@ void test_memory(const std::string& folder)
   reader full(folder + "/haze.vdb", nullptr);
   full.reader->SetMemoryLimit(1);
   full.read();
-  check(full.errors->heard.find("as 1 blocks, and 8787") != std::string::npos, "blocks beyond the limit: " + full.errors->heard);
+  check(full.errors->heard.find("as 1 blocks, and 8788000") != std::string::npos, "blocks beyond the limit: " + full.errors->heard);
 }
 
 // Blocks have the grid's values, meet without overlap, and cover every cell with an active corner; few hold more than is active.
