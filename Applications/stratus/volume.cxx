@@ -296,21 +296,7 @@ void volume_drawing::draw_blocks(const stratus_ray_cast_options& cast, const str
   this->Report = *busiest;
   for (auto r = reports.begin(); r != reports.end(); ++r) {
     if (r != busiest) {
-      this->Report.rays += r->rays;
-      this->Report.samples += r->samples;
-      this->Report.skipped += r->skipped;
-      this->Report.lookups += r->lookups;
-      this->Report.blocks += r->blocks;
-      this->Report.occupied_blocks += r->occupied_blocks;
-      this->Report.structure_bytes += r->structure_bytes;
-      this->Report.range_ms += r->range_ms;
-      this->Report.table_ms += r->table_ms;
-      this->Report.occupancy_ms += r->occupancy_ms;
-      this->Report.structure_ms += r->structure_ms;
-      this->Report.upload_ms += r->upload_ms;
-      this->Report.probe_ms += r->probe_ms;
-      this->Report.probe_samples += r->probe_samples;
-      this->Report.cast_ms += r->cast_ms;
+      stratus_ray_cast_report_add(&this->Report, &*r);
     }
   }
 }

@@ -90,6 +90,18 @@ void stratus_image_fill_bytes(const stratus_image* image)
 {
   const size_t values = 4 * (size_t)image->width * (size_t)image->height;
   for (size_t i = 0; image->rgba8 && i < values; ++i) {
-    image->rgba8[i] = (uint8_t)(image->rgba[i] * 255.0f + 0.5f);
+    image->rgba8[i] = stratus_image_byte(image->rgba[i]);
+  }
+}
+
+void stratus_window_join(int window[4], const int other[4])
+{
+  if (other[0] >= other[1] || other[2] >= other[3]) {
+    return;
+  }
+  const bool none = window[0] >= window[1] || window[2] >= window[3];
+  for (int side = 0; side < 4; ++side) {
+    const bool farther = side % 2 ? other[side] > window[side] : other[side] < window[side];
+    window[side] = none || farther ? other[side] : window[side];
   }
 }

@@ -17,7 +17,15 @@ void stratus_image_part_destroy(stratus_context* context, stratus_image* part);
 /* Adds a part's premultiplied colours times weight, up to 1; its alpha likewise or, where pictures are opaque, the larger one. The nearer
  * depth stays. Samples add up. The sum's bytes are left as they are. */
 void stratus_image_add(const stratus_image* sum, const stratus_image* part, float weight, bool opaque);
+/* Rounds a colour, which is never negative, to a byte; those above 1 become 255. */
+static inline uint8_t stratus_image_byte(float color)
+{
+  const float value = color * 255.0f + 0.5f;
+  return (uint8_t)(int)(value < 255.0f ? value : 255.0f);
+}
 /* Sets the bytes, if there are any, from the colours in float. */
 void stratus_image_fill_bytes(const stratus_image* image);
+/* Widens a window of pixels, x0, x1, y0, y1, by another; either may be empty. */
+void stratus_window_join(int window[4], const int other[4]);
 
 #endif

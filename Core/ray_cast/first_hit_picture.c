@@ -187,7 +187,7 @@ static void shade_batch(const stratus_context* context, const first_hit_frame* f
       image->depth[at] = depth;
     }
     for (int c = 0; image->rgba8 && c < 4; ++c) {
-      image->rgba8[4 * at + (size_t)c] = (uint8_t)(image->rgba[4 * at + (size_t)c] * 255.0f + 0.5f); /* rgba is within 0..1 */
+      image->rgba8[4 * at + (size_t)c] = stratus_image_byte(image->rgba[4 * at + (size_t)c]);
     }
     if (image->samples) {
       image->samples[at] = hit->voxel[0] >= 0;

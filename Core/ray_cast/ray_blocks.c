@@ -5,6 +5,7 @@
 #include "camera.h"
 #include "picture.h"
 #include "ray_caster.h"
+#include "ray_frame.h"
 #include "vector.h"
 #include "volume.h"
 
@@ -13,10 +14,6 @@
 
 /* Blocks that reach into one another by less than this share of the shortest voxel edge lie side by side. */
 #define SLACK 1e-3
-/* The share of the tolerance that what lies behind the last transparency may have, and a transparency that floats can't tell from none, as
- * for the rays of one volume. */
-#define TERMINATION_SHARE 0.5
-#define TERMINATION_LEAST 0x1p-24
 
 typedef struct blocks {
   stratus_context* context;
@@ -78,8 +75,7 @@ static stratus_camera camera_of(const blocks* b, const int window[4])
 /* Gives the transparency below which a ray of the block's picture ends. */
 static float least_transparency(const stratus_ray_cast_options* options)
 {
-  const double given = options->termination > 0.0 ? 1.0 - options->termination : TERMINATION_SHARE * options->tolerance;
-  return (float)fmax(given, TERMINATION_LEAST);
+  return (float)(options->termination > 0.0 ? 1.0 - options->termination : stratus_ray_termination(options->tolerance));
 }
 
 /* Sets where the rays of a part end: at opaque geometry, and at once where the picture is opaque already. Returns whether any ray is left,
@@ -124,15 +120,6 @@ static void blend_behind(const blocks* b, const int window[4], const int inside[
         image->samples[to + (size_t)x] += b->part.samples[from + (size_t)x];
       }
     }
-  }
-}
-
-static void round_picture(const stratus_image* image)
-{
-  const size_t channels = 4 * (size_t)image->width * (size_t)image->height;
-  for (size_t i = 0; image->rgba8 && i < channels; ++i) {
-    const float value = image->rgba[i] * 255.0f + 0.5f;
-    image->rgba8[i] = (uint8_t)(int)(value < 255.0f ? value : 255.0f); /* rgba is never negative */
   }
 }
 
@@ -234,26 +221,6 @@ static stratus_status check(const blocks* b)
   return STRATUS_OK;
 }
 
-/* Makes room for the largest part. */
-static stratus_status make_room(blocks* b)
-{
-  const size_t pixels = (size_t)b->image->width * (size_t)b->image->height;
-  void* memory = NULL;
-  TRY(stratus_allocate(b->context, pixels, 4 * sizeof(float), &memory));
-  b->part.rgba = memory;
-  TRY(stratus_allocate(b->context, pixels, sizeof(float), &memory));
-  b->ends = memory;
-  if (b->image->depth) {
-    TRY(stratus_allocate(b->context, pixels, sizeof(float), &memory));
-    b->part.depth = memory;
-  }
-  if (b->image->samples) {
-    TRY(stratus_allocate(b->context, pixels, sizeof(uint32_t), &memory));
-    b->part.samples = memory;
-  }
-  return STRATUS_OK;
-}
-
 stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
   const stratus_image* image, stratus_ray_cast_report* reports)
 {
@@ -262,7 +229,7 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
   }
   blocks b = { .context = inputs[0].caster->context, .inputs = inputs, .count = count, .camera = camera, .image = image };
   stratus_status status = STRATUS_OK;
-  void *boxes = NULL, *order = NULL;
+  void *boxes = NULL, *order = NULL, *ends = NULL;
   stratus_block_eye eye;
   double slack = 0.0;
   if (count < 1) {
@@ -279,7 +246,9 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
   TRY_CLEANUP(stratus_allocate(b.context, (size_t)count, sizeof(int), &order));
   TRY_CLEANUP(measure(&b, boxes, &eye, &slack));
   TRY_CLEANUP(stratus_block_order(b.context, boxes, count, &eye, slack, order, b.overlap));
-  TRY_CLEANUP(make_room(&b));
+  TRY_CLEANUP(stratus_image_part_create(b.context, image, &b.part)); /* as large as the largest part may be */
+  TRY_CLEANUP(stratus_allocate(b.context, (size_t)image->width * (size_t)image->height, sizeof(float), &ends));
+  b.ends = ends;
   for (int i = 0; i < count; ++i) {
     const int number = ((const int*)order)[i];
     stratus_ray_cast_report report = { .expected_error = NAN, .tolerance_met = 1 };
@@ -294,13 +263,11 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
       reports[number] = report;
     }
   }
-  round_picture(image);
+  stratus_image_fill_bytes(image);
 cleanup:
   stratus_release(b.context, boxes);
   stratus_release(b.context, order);
-  stratus_release(b.context, b.part.rgba);
-  stratus_release(b.context, b.part.depth);
-  stratus_release(b.context, b.part.samples);
-  stratus_release(b.context, b.ends);
+  stratus_image_part_destroy(b.context, &b.part);
+  stratus_release(b.context, ends);
   return status;
 }

@@ -5,6 +5,7 @@
 #include "stratus/ray_cast.h"
 
 #include "instruction_set.h"
+#include "picture.h"
 #include "tiles.h"
 
 int stratus_ray_cast_type_is_fast(int type)
@@ -34,8 +35,7 @@ static void round_pixels(const stratus_ray_cast_frame* frame, int x0, int y0, in
     const float* restrict rgba = frame->rgba + first;
     uint8_t* restrict rgba8 = frame->rgba8 + first;
     for (size_t i = 0; i < count; ++i) {
-      const float value = rgba[i] * 255.0f + 0.5f;
-      rgba8[i] = (uint8_t)(int)(value < 255.0f ? value : 255.0f); /* rgba is never negative */
+      rgba8[i] = stratus_image_byte(rgba[i]);
     }
   }
 }

@@ -12,21 +12,11 @@ static bool draws_parts(const stratus_volume* volume, const stratus_ray_cast_opt
   return one_value && stratus_volume_components(volume) > 1 && !options->dependent;
 }
 
-/* Widens a window of pixels, x0, x1, y0, y1, by another; either may be empty. */
-static void add_window(int window[4], const int other[4])
+void stratus_ray_cast_report_add(stratus_ray_cast_report* sum, const stratus_ray_cast_report* part)
 {
-  if (other[0] >= other[1] || other[2] >= other[3]) {
+  if (!sum || !part) {
     return;
   }
-  const bool none = window[0] >= window[1] || window[2] >= window[3];
-  for (int side = 0; side < 4; ++side) {
-    const bool farther = side % 2 ? other[side] > window[side] : other[side] < window[side];
-    window[side] = none || farther ? other[side] : window[side];
-  }
-}
-
-static void add_report(stratus_ray_cast_report* sum, const stratus_ray_cast_report* part)
-{
   sum->rays += part->rays;
   sum->samples += part->samples;
   sum->skipped += part->skipped;
@@ -47,12 +37,18 @@ static void add_report(stratus_ray_cast_report* sum, const stratus_ray_cast_repo
   sum->cast_ms += part->cast_ms;
   sum->probe_ms += part->probe_ms;
   sum->structure_bytes += part->structure_bytes;
+  sum->probe_builds += part->probe_builds;
+  sum->probe_samples += part->probe_samples;
+  stratus_window_join(sum->window, part->window);
+}
+
+/* The finest distance and the largest error count. */
+static void add_component(stratus_ray_cast_report* sum, const stratus_ray_cast_report* part)
+{
+  stratus_ray_cast_report_add(sum, part);
   sum->sample_distance = fmin(sum->sample_distance, part->sample_distance);
   sum->expected_error = fmax(sum->expected_error, part->expected_error);
   sum->tolerance_met = sum->tolerance_met && part->tolerance_met;
-  sum->probe_builds += part->probe_builds;
-  sum->probe_samples += part->probe_samples;
-  add_window(sum->window, part->window);
 }
 
 /* In the report, counts and times are sums, the choices those of the first component. */
@@ -75,7 +71,7 @@ static stratus_status draw_parts(stratus_ray_caster* caster, const stratus_volum
     if (c == 0) {
       *report = mine;
     } else {
-      add_report(report, &mine);
+      add_component(report, &mine);
     }
   }
   stratus_image_fill_bytes(image);

@@ -118,19 +118,6 @@ cleanup:
   return status;
 }
 
-/* Widens a window by another; one without pixels has none to add. */
-static void join_windows(const int of[4], int window[4])
-{
-  if (of[0] >= of[1] || of[2] >= of[3]) {
-    return;
-  }
-  const bool any = window[0] < window[1];
-  for (int side = 0; side < 4; ++side) {
-    const bool farther = side % 2 ? of[side] > window[side] : of[side] < window[side];
-    window[side] = !any || farther ? of[side] : window[side];
-  }
-}
-
 /* Tells of a mesh what was counted. */
 static void report_mesh(const stratus_several* s, stratus_several_input* in, const stratus_ray_counts* counts, const int window[4])
 {
@@ -184,7 +171,7 @@ static stratus_status render(stratus_several* s, stratus_ray_cast_arguments* arg
     stratus_ray_cast_arguments* a = &arguments[frame.count];
     TRY(stratus_several_set_part(s, &s->inputs[n], frame.count, a, &frame.volumes[frame.count]));
     if (s->inputs[n].part >= 0) {
-      join_windows(a->camera.window, window);
+      stratus_window_join(window, a->camera.window);
       termination = fminf(termination, a->termination);
       ++frame.count;
     }

@@ -234,6 +234,10 @@ typedef struct stratus_ray_cast_report {
   int offered_tree; /* 1: the structure is the tree of stratus_ray_caster_offer_tree() */
 } stratus_ray_cast_report;
 
+/* Adds counts, builds, times, bytes and the window of a part of a picture, as of one of several blocks. What was chosen, the expected error
+ * and the reasons stay those of `sum`. Does nothing where one is NULL. */
+STRATUS_API void stratus_ray_cast_report_add(stratus_ray_cast_report* sum, const stratus_ray_cast_report* part);
+
 typedef struct stratus_ray_caster stratus_ray_caster;
 
 STRATUS_API stratus_status stratus_ray_caster_create(stratus_context* context, stratus_ray_caster** caster);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <queue>
 #include <utility>
 
 namespace {
@@ -83,9 +82,10 @@ private:
   }
 };
 
-struct SavesLess {
-  bool operator()(const Part& a, const Part& b) const { return a.Saves < b.Saves; }
-};
+bool SavesLess(const Part& a, const Part& b)
+{
+  return a.Saves < b.Saves;
+}
 } // namespace
 
 double vtkStratusVoxelsOf(const vtkStratusCellBox& box)
@@ -107,13 +107,18 @@ std::vector<vtkStratusCellBox> vtkStratusDivide(std::vector<vtkStratusCellBox> g
   for (const Box& one : given) {
     wanted += static_cast<double>((one.High[0] - one.Low[0]) * (one.High[1] - one.Low[1])) * static_cast<double>(one.High[2] - one.Low[2]);
   }
-  std::priority_queue<Part, std::vector<Part>, SavesLess> parts;
-  parts.emplace(std::move(given));
-  double voxels = vtkStratusVoxelsOf(parts.top().Around);
-  while (parts.size() < most && parts.top().Axis >= 0 && voxels > 2.0 * wanted) {
-    const Part whole = parts.top();
+  std::vector<Part> parts; // a heap, whose first saves the most
+  const auto add = [&parts](std::vector<Box>&& of) {
+    parts.emplace_back(std::move(of));
+    std::push_heap(parts.begin(), parts.end(), SavesLess);
+  };
+  add(std::move(given));
+  double voxels = vtkStratusVoxelsOf(parts.front().Around);
+  while (parts.size() < most && parts.front().Axis >= 0 && voxels > 2.0 * wanted) {
+    std::pop_heap(parts.begin(), parts.end(), SavesLess);
+    const Part whole = std::move(parts.back());
     std::vector<Box> below, above;
-    parts.pop();
+    parts.pop_back();
     for (const Box& one : whole.Of) {
       if (one.Low[whole.Axis] < whole.Plane) {
         below.push_back(one);
@@ -125,11 +130,11 @@ std::vector<vtkStratusCellBox> vtkStratusDivide(std::vector<vtkStratusCellBox> g
       }
     }
     voxels -= whole.Saves;
-    parts.emplace(std::move(below));
-    parts.emplace(std::move(above));
+    add(std::move(below));
+    add(std::move(above));
   }
-  for (; !parts.empty(); parts.pop()) {
-    result.push_back(parts.top().Around);
+  for (const Part& part : parts) {
+    result.push_back(part.Around);
   }
   return result;
 }

@@ -241,20 +241,13 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Cast(
   if (status != STRATUS_OK || !whole) {
     return status == STRATUS_OK;
   }
-  this->Scene.Milliseconds = 0.0;
-  std::fill_n(this->Scene.Window, 4, 0);
+  stratus_ray_cast_report all = stratus_ray_cast_report();
   for (size_t i = 0; i < reports.size(); ++i) {
-    const int* of = reports[i].window;
-    int* all = this->Scene.Window;
     this->Mappers[i]->Internal->Report = reports[i];
-    this->Scene.Milliseconds += reports[i].cast_ms;
-    if (of[0] < of[1] && of[2] < of[3]) {
-      const bool first = all[0] >= all[1];
-      for (int side = 0; side < 4; ++side) {
-        all[side] = first ? of[side] : side % 2 ? std::max(all[side], of[side]) : std::min(all[side], of[side]);
-      }
-    }
+    stratus_ray_cast_report_add(&all, &reports[i]);
   }
+  this->Scene.Milliseconds = all.cast_ms;
+  std::copy_n(all.window, 4, this->Scene.Window);
   return true;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusMultiVolume.h"
 
+#include "vtkStratusJointPicture.h"
 #include "vtkStratusMeshDescription.h"
 #include "vtkStratusTetrahedraMapper.h"
 #include "vtkStratusVolumeMapperInternals.h"
@@ -24,7 +25,6 @@ public:
   ~Internals();
 
   bool Render(vtkRenderer* renderer, std::string& error);
-  vtkImageData* GetLastImage();
   vtkStratusVolumeMapper* GetMapper(int port) const;
   int GetLowest() const; // the lowest port with a volume; -1: none
 
@@ -32,7 +32,7 @@ public:
   vtkSmartPointer<vtkVolume> Volumes[STRATUS_SEVERAL_MAX];
   stratus_ray_cast_report Reports[STRATUS_SEVERAL_MAX]; // of each port
   stratus_ray_cast_report Whole;                        // of the first of them that is drawn
-  vtkStratusDisplay Display;
+  vtkStratusJointPicture Picture;
   std::string LastError;
 
 private:
@@ -41,9 +41,7 @@ private:
   bool DescribeVolume(vtkRenderer* renderer, vtkVolume* volume, vtkStratusVolumeMapper* mapper, std::string& error);
   bool DescribeMesh(vtkVolume* volume, vtkStratusTetrahedraMapper* mapper, std::string& error);
   bool PrepareContext(std::string& error);
-  double ChooseCoarseness(vtkRenderer* renderer) const;
-  void LearnTime();
-  bool Cast(vtkRenderer* renderer, const float* opaqueDepth, bool bytes, std::string& error);
+  bool Cast(const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error);
 
   vtkStratusContext Context;
   stratus_ray_caster* Casters[STRATUS_SEVERAL_MAX] = {};
@@ -56,14 +54,7 @@ private:
   stratus_ray_cast_input Inputs[STRATUS_SEVERAL_MAX];
   vtkStratusVolumeMapper* First = nullptr; // the mapper whose settings hold for the whole picture
   vtkRenderer* Renderer = nullptr;
-  vtkStratusPicture Picture;
-  bool HasPicture = false, HasSamples = false;
-  double FullMilliseconds = 0.0; // estimated time of an exact picture, 0: unknown
-  vtkMTimeType LearnedFor = 0;
-  std::vector<float> Rgba, Depth, PartDepth;
-  std::vector<unsigned char> Bytes;
-  std::vector<uint32_t> Samples;
-  vtkSmartPointer<vtkImageData> LastImage;
+  vtkStratusJointPicture::Scene Scene;
 };
 
 vtkStratusMultiVolume::Internals::Internals(vtkStratusMultiVolume* prop)
@@ -192,45 +183,23 @@ bool vtkStratusMultiVolume::Internals::Describe(vtkRenderer* renderer, std::stri
   return error.empty();
 }
 
-// Returns the pixels between rays: fewer rays while the window asks for more pictures a second than exact ones allow.
-double vtkStratusMultiVolume::Internals::ChooseCoarseness(vtkRenderer* renderer) const
+bool vtkStratusMultiVolume::Internals::Cast(const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error)
 {
-  const vtkStratusVolumeMapper* mapper = this->First;
-  vtkRenderWindow* window = renderer->GetRenderWindow();
-  const bool interactive = mapper->AutoAdjustSampleDistances && window && window->GetDesiredUpdateRate() >= mapper->InteractiveUpdateRate;
-  const double allotted = 1000.0 * this->Prop->GetAllocatedRenderTime();
-  if (!interactive || !(allotted > 0.0) || this->FullMilliseconds <= allotted || this->LearnedFor != this->Prop->GetRedrawMTime()) {
-    return mapper->ImageSampleDistance;
-  }
-  const double wanted = mapper->ImageSampleDistance * std::sqrt(this->FullMilliseconds / allotted);
-  return std::max(mapper->ImageSampleDistance, std::min(wanted, mapper->MaximumImageSampleDistance));
-}
-
-void vtkStratusMultiVolume::Internals::LearnTime()
-{
-  const double rays = static_cast<double>(this->Picture.Size[0]) * this->Picture.Size[1];
-  const double base = this->First->ImageSampleDistance;
-  const double all = static_cast<double>(this->Picture.Rectangle[2]) * this->Picture.Rectangle[3] / (base * base);
-  this->FullMilliseconds = this->Whole.cast_ms * std::max(1.0, all / rays);
-  this->LearnedFor = this->Prop->GetRedrawMTime();
-}
-
-bool vtkStratusMultiVolume::Internals::Cast(vtkRenderer* renderer, const float* opaqueDepth, bool bytes, std::string& error)
-{
-  const stratus_image image = this->Picture.MakeRoom(
-    this->Rgba, this->Depth, opaqueDepth, this->HasSamples ? &this->Samples : nullptr, bytes ? &this->Bytes : nullptr);
   stratus_ray_cast_report reports[STRATUS_SEVERAL_MAX];
-  this->Renderer = renderer;
-  const stratus_status status = stratus_ray_caster_render_several(this->Inputs, this->Count, &this->Picture.Camera, &image, reports);
-  this->Renderer = nullptr;
+  const stratus_status status = stratus_ray_caster_render_several(this->Inputs, this->Count, &camera, &image, reports);
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
+  }
+  if (!whole) {
+    return status == STRATUS_OK;
   }
   std::fill(std::begin(this->Reports), std::end(this->Reports), stratus_ray_cast_report());
   this->Whole = status == STRATUS_OK ? reports[0] : stratus_ray_cast_report();
   for (int n = 0; status == STRATUS_OK && n < this->Count; ++n) {
     this->Reports[this->Ports[n]] = reports[n];
   }
+  this->Scene.Milliseconds = this->Whole.cast_ms;
+  std::copy_n(this->Whole.window, 4, this->Scene.Window);
   return status == STRATUS_OK;
 }
 
@@ -240,21 +209,19 @@ bool vtkStratusMultiVolume::Internals::Render(vtkRenderer* renderer, std::string
   if (lowest < 0) {
     return true;
   }
-  if (!this->Display.Begin(renderer, this->Prop, this->Volumes[lowest]->GetMapper(), this->LastError, error)) {
+  if (!this->Picture.Begin(renderer, this->Prop, this->Volumes[lowest]->GetMapper(), this->LastError, error)) {
     return error.empty();
   }
-  this->HasPicture = false; // a refused picture leaves no image
   if (!this->Describe(renderer, error) || this->Count == 0) {
     return error.empty();
   }
-  this->HasSamples = this->First->CountSamples != 0;
   if (!this->PrepareContext(error)) {
     return false;
   }
-  std::vector<vtkStratusPicture::Box> boxes;
+  this->Scene.Boxes.clear();
   for (int n = 0; n < this->Count; ++n) {
     if (this->Inputs[n].mesh) {
-      boxes.push_back({ &this->Meshes[n].Box, nullptr });
+      this->Scene.Boxes.push_back({ &this->Meshes[n].Box, nullptr });
       continue;
     }
     if (stratus_volume_check(this->Context.Get(), this->Inputs[n].volume) != STRATUS_OK) { // the rectangle relies on it
@@ -262,51 +229,18 @@ bool vtkStratusMultiVolume::Internals::Render(vtkRenderer* renderer, std::string
       return false;
     }
     const bool boxed = this->Options[n].crop && this->Options[n].crop_regions == STRATUS_CROP_INSIDE;
-    boxes.push_back({ this->Inputs[n].volume, boxed ? this->Options[n].crop_bounds : nullptr });
+    this->Scene.Boxes.push_back({ this->Inputs[n].volume, boxed ? this->Options[n].crop_bounds : nullptr });
   }
-  if (!this->Picture.Set(renderer, boxes, this->ChooseCoarseness(renderer))) {
-    error = "the camera's projection has no inverse";
-    return false;
-  }
-  this->HasPicture = this->Picture.IsEmpty();
-  if (this->HasPicture) {
-    return true;
-  }
-  const vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, this->Prop, [](vtkProp* other) {
-    return vtkStratusMultiVolume::SafeDownCast(other) != nullptr; // writes no depth
-  });
-  const float* opaqueDepth = this->Picture.ReadOpaqueDepth(renderer, others);
-  this->Rgba.resize(4 * static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1]);
-  this->Bytes.resize(this->Rgba.size());
-  vtkStratusDisplay::Pixels pixels =
-    vtkStratusDisplay::ChoosePixels(renderer, others, this->First->FinalColorWindow, this->First->FinalColorLevel, this->Bytes);
-  if (!this->Cast(renderer, opaqueDepth, pixels.Bytes != nullptr, error)) {
-    return false;
-  }
-  this->HasPicture = true;
-  this->LearnTime();
-  pixels.Rgba = this->Rgba.data();
-  std::copy_n(this->Whole.window, 4, pixels.Window);
-  pixels.Depth = &this->Depth;
-  pixels.Cast = [this](const float* depths, std::vector<float>& rgba) {
-    if (this->Picture.IsWhole(depths)) {
-      rgba = this->Rgba;
-      return true;
-    }
-    const stratus_image image = this->Picture.MakeRoom(rgba, this->PartDepth, depths);
-    stratus_ray_cast_report reports[STRATUS_SEVERAL_MAX];
-    return stratus_ray_caster_render_several(this->Inputs, this->Count, &this->Picture.Camera, &image, reports) == STRATUS_OK;
+  this->Scene.Renderer = renderer;
+  this->Scene.Prop = this->Prop;
+  this->Scene.Settings = this->First;
+  this->Scene.Cast = [this](const stratus_camera& camera, const stratus_image& image, bool whole, std::string& why) {
+    return this->Cast(camera, image, whole, why);
   };
-  return this->Display.Draw(renderer, this->Picture, pixels, error);
-}
-
-vtkImageData* vtkStratusMultiVolume::Internals::GetLastImage()
-{
-  if (!this->HasPicture) {
-    return nullptr;
-  }
-  this->LastImage = this->Picture.MakeImage(this->Rgba, this->Depth, this->HasSamples ? &this->Samples : nullptr);
-  return this->LastImage;
+  this->Renderer = renderer;
+  const bool drawn = this->Picture.Render(this->Scene, error);
+  this->Renderer = nullptr;
+  return drawn;
 }
 
 // ---------------------------------------------------------------- the prop
@@ -419,7 +353,7 @@ int vtkStratusMultiVolume::RenderVolumetricGeometry(vtkViewport* viewport)
 
 void vtkStratusMultiVolume::ReleaseGraphicsResources(vtkWindow* window)
 {
-  this->Internal->Display.ReleaseGraphicsResources(window);
+  this->Internal->Picture.ReleaseGraphicsResources(window);
   this->Superclass::ReleaseGraphicsResources(window);
 }
 
@@ -430,7 +364,7 @@ const char* vtkStratusMultiVolume::GetLastError()
 
 vtkImageData* vtkStratusMultiVolume::GetLastImage()
 {
-  return this->Internal->GetLastImage();
+  return this->Internal->Picture.GetLastImage();
 }
 
 #define REPORT(type, getter, field)                                                                                                        \

@@ -291,6 +291,9 @@ static void ray_casters(const small_scene* scene)
   REFUSES(stratus_ray_caster_render(c, v, t, &scene->camera, NULL, &blank, NULL));
   IS_SILENT(stratus_ray_caster_render(c, v, t, &scene->camera, &options, &image, NULL)); /* labels without a mask */
   ACCEPTS(stratus_ray_caster_render(c, v, t, &scene->camera, NULL, &image, NULL));
+  stratus_ray_cast_report report = { 0 };
+  TAKES(stratus_ray_cast_report_add(NULL, &report));
+  TAKES(stratus_ray_cast_report_add(&report, NULL));
   const stratus_ray_cast_input several[2] = { { .caster = c, .volume = v, .transfer = t }, { .volume = v, .transfer = t } };
   const stratus_ray_cast_input no_volume = { .caster = c, .transfer = t }, no_transfer = { .caster = c, .volume = v };
   IS_SILENT(stratus_ray_caster_render_several(NULL, 1, &scene->camera, &image, NULL));

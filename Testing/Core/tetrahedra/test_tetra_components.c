@@ -240,6 +240,23 @@ static void set_thin(several* s, double unit)
   }
 }
 
+/* The default tolerance is a quarter of a step of 255. */
+static void compare_with_reference(stratus_context* context, several* s, uint32_t seed)
+{
+  double largest;
+  for (int c = 0; c < s->count; ++c) {
+    s->part[c].mesh.cell_values = s->whole.mesh.cell_values;
+  }
+  tetra_camera(context, &s->whole, 3, (int)(seed % 8), seed & 1);
+  draw_reference(s);
+  draw(context, s, &picture);
+  const double error = tetra_error(picture.rgba, reference, &largest);
+  if (!(error < 0.255)) {
+    print_error("seed %u, %d components: %.3f of 255, at most %.2f\n", seed, s->count, error, largest);
+  }
+  assert_true(error < 0.255);
+}
+
 /* Light and opacity by gradients are cut into pieces by bounds, within the same tolerance. */
 static void lit_components_are_right(void** state)
 {
@@ -257,23 +274,11 @@ static void lit_components_are_right(void** state)
       set_thin(&s, kind == 3 ? 255.0 : 1.0);
       s.whole.options.gradient_distance = seed % 2 == 1 ? 0.5 : 0.0;
     }
-    for (int c = 0; c < s.count; ++c) {
-      s.part[c].mesh.cell_values = s.whole.mesh.cell_values;
-    }
-    tetra_camera(*state, &s.whole, 3, (int)(seed % 8), seed & 1);
-    draw_reference(&s);
-    draw(*state, &s, &picture);
-    double largest;
-    const double error = tetra_error(picture.rgba, reference, &largest);
-    if (!(error < 0.255)) {
-      print_error("seed %u, %d components: %.3f of 255, at most %.2f\n", seed, s.count, error, largest);
-    }
-    assert_true(error < 0.255);
+    compare_with_reference(*state, &s, seed);
     destroy(&s);
   }
 }
 
-/* The default tolerance is a quarter of a step of 255. */
 static void components_are_right(void** state)
 {
   for (uint32_t seed = 0; seed < 12; ++seed) {
@@ -283,18 +288,7 @@ static void components_are_right(void** state)
     s.whole.options.mean_components = kind == 1;
     s.whole.options.dependent = kind > 1;
     s.whole.mesh.cell_values = seed / 4 == 1;
-    for (int c = 0; c < s.count; ++c) {
-      s.part[c].mesh.cell_values = s.whole.mesh.cell_values;
-    }
-    tetra_camera(*state, &s.whole, 3, (int)(seed % 8), seed & 1);
-    draw_reference(&s);
-    draw(*state, &s, &picture);
-    double largest;
-    const double error = tetra_error(picture.rgba, reference, &largest);
-    if (!(error < 0.255)) {
-      print_error("seed %u, %d components: %.3f of 255, at most %.2f\n", seed, s.count, error, largest);
-    }
-    assert_true(error < 0.255);
+    compare_with_reference(*state, &s, seed);
     assert_string_equal(picture.report.why, "march as asked");
     destroy(&s);
   }
