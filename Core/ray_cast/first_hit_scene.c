@@ -97,12 +97,16 @@ static void set_borders(const double* x, int64_t n, bool cells, double* at)
 {
   const double whole = cells ? (double)n : (double)(n - 1), per_unit = whole / (x[cells ? n : n - 1] - x[0]);
   for (int64_t i = 0; i <= n; ++i) {
+    if (cells) { /* of which there may be one alone */
+      at[i] = (x[i] - x[0]) * per_unit;
+      continue;
+    }
     const int64_t below = i > 0 ? i - 1 : 0, above = i < n ? i : n - 1;
     const double middle = 0.5 * ((x[below] - x[0]) + (x[above] - x[0]));
     const double outwards = i == 0 ? 0.5 * (x[0] - x[1])
       : i == n                     ? 0.5 * (x[n - 1] - x[n - 2])
                                    : 0.0; /* the ends reach as far as inwards */
-    at[i] = cells ? (x[i] - x[0]) * per_unit : (middle + outwards) * per_unit + 0.5;
+    at[i] = (middle + outwards) * per_unit + 0.5;
   }
   at[-1] = at[0] - 1.0;
   for (int64_t i = n + 1; i <= STRATUS_BORDERS_BEYOND(n); ++i) {

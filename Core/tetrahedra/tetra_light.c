@@ -179,7 +179,8 @@ static void set_bend(stratus_tetra_arguments* a)
   }
 }
 
-static void set_lights(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options)
+/* mask: the components that have gradients; no other is lit, as of dependent ones all but the last. */
+static void set_lights(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options, unsigned mask)
 {
   stratus_tetra_arguments* a = &frame->arguments;
   const stratus_shading* shading = &options->shading;
@@ -207,7 +208,7 @@ static void set_lights(stratus_tetra_frame* frame, const stratus_mesh* mesh, con
     for (int i = 0; i < 4; ++i) {
       a->light.material[m][i] = (float)numbers[i];
     }
-    a->light.on |= material.shade ? 1 << m : 0;
+    a->light.on |= material.shade && mask >> m & 1 ? 1 << m : 0;
   }
   if (a->light.on) { /* else the lights are unchecked and unused */
     stratus_lights_set(c, shading, origin, unit, &a->light);
@@ -228,7 +229,8 @@ void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_c
 {
   stratus_tetra_arguments* a = &frame->arguments;
   const stratus_tetra_gradients* g = &caster->gradients;
-  frame->lit = stratus_tetra_light_mask(mesh, transfers, options) != 0;
+  const unsigned mask = stratus_tetra_light_mask(mesh, transfers, options);
+  frame->lit = mask != 0;
   if (!frame->lit) {
     return;
   }
@@ -248,5 +250,5 @@ void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_c
       a->factor_scale[c] = (float)fmin(g->unit[c] * g->spacing * (double)caster->factor_scale[c], 1e30);
     }
   }
-  set_lights(frame, mesh, options);
+  set_lights(frame, mesh, options, mask);
 }
