@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusTetrahedraRepresentation.h"
 
+#include "vtkStratusCompositePass.h"
 #include "vtkStratusLODVolume.h"
 #include "vtkStratusScalarChoice.h"
 #include "vtkStratusTetrahedraMapper.h"
 
 #include "vtkAlgorithmOutput.h"
+#include "vtkAppendFilter.h"
+#include "vtkBoundingBox.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkContourValues.h"
 #include "vtkDataSet.h"
@@ -13,9 +16,12 @@
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
 #include "vtkPVRenderView.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkRenderer.h"
 #include "vtkUnstructuredGrid.h"
@@ -33,6 +39,33 @@ void bounds_of(vtkDataObject* data, double bounds[6])
   } else if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data)) {
     blocks->GetBounds(bounds);
   }
+}
+
+// Copies composite data block by block, for arrays may be added to them. Among several ranks blocks become one grid: ParaView's
+// redistribution loses composite data.
+vtkSmartPointer<vtkDataObject> Copy(vtkDataObject* data)
+{
+  auto* blocks = vtkCompositeDataSet::SafeDownCast(data);
+  vtkMultiProcessController* ranks = vtkMultiProcessController::GetGlobalController();
+  vtkSmartPointer<vtkDataObject> copy;
+  if (!blocks || !ranks || ranks->GetNumberOfProcesses() == 1) {
+    copy.TakeReference(data->NewInstance());
+    copy->ShallowCopy(data);
+    return copy;
+  }
+  vtkNew<vtkAppendFilter> join;
+  for (vtkDataSet* block : vtkCompositeDataSet::GetDataSets(blocks)) {
+    if (block->GetNumberOfCells() > 0) {
+      join->AddInputData(block);
+    }
+  }
+  if (join->GetNumberOfInputConnections(0) > 0) {
+    join->Update();
+    copy = join->GetOutput();
+  } else {
+    copy = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  }
+  return copy;
 }
 } // namespace
 
@@ -64,8 +97,7 @@ int vtkStratusTetrahedraRepresentation::RequestData(vtkInformation* request, vtk
   // A rank without data, a client for one, shows the outline of what the others draw.
   this->Actor->SetEnableLOD(data ? 0 : 1);
   if (data) {
-    this->Cache.TakeReference(data->NewInstance());
-    this->Cache->ShallowCopy(data); // composite data block by block: arrays may be added to them
+    this->Cache = Copy(data);
     if (this->UseSeparateOpacityArray) {
       this->AppendOpacityComponent(vtkDataSet::SafeDownCast(this->Cache));
     }
@@ -93,10 +125,11 @@ int vtkStratusTetrahedraRepresentation::ProcessViewRequest(vtkInformationRequest
     vtkPVRenderView::SetPiece(in, this, this->Cache, this->DataSize, 0);
     vtkPVRenderView::SetPiece(in, this, this->OutlineSource->GetOutputDataObject(0), 0, 1);
     vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(in, this, false, false, 0);
-    // Ranks draw convex parts, which ParaView can put in order: it cuts the cells' space by planes, and gives each cell to one rank.
+    // ParaView cuts the cells' space into a box a rank, which it can put in order. Cells that reach into several boxes are whole on each of
+    // their ranks, and the mapper clips them (ClipTo).
     vtkPVRenderView::SetOrderedCompositingConfiguration(
       in, this, vtkPVRenderView::DATA_IS_REDISTRIBUTABLE | vtkPVRenderView::USE_DATA_FOR_LOAD_BALANCING);
-    vtkPVRenderView::SetRedistributionModeToUniquelyAssignBoundaryCells(in, this);
+    vtkPVRenderView::SetRedistributionModeToDuplicateBoundaryCells(in, this);
     vtkPVRenderView::SetRequiresDistributedRendering(in, this, true);
     vtkPVRenderView::SetGeometryBounds(in, this, this->DataBounds, matrix);
   } else if (request == vtkPVView::REQUEST_UPDATE_LOD()) {
@@ -131,6 +164,38 @@ void vtkStratusTetrahedraRepresentation::UpdateMapper(vtkDataObject* data)
   this->Actor->SetMapper(this->Mapper);
 }
 
+// Draws what lies in a rank's box. Faces of the box that are faces of all boxes together cut nothing, since cells beyond them are drawn,
+// too.
+void vtkStratusTetrahedraRepresentation::ClipTo(const std::vector<vtkBoundingBox>& boxes, int rank)
+{
+  vtkBoundingBox whole;
+  for (const vtkBoundingBox& box : boxes) {
+    if (box.IsValid()) {
+      whole.AddBox(box);
+    }
+  }
+  vtkNew<vtkPlaneCollection> planes;
+  const vtkBoundingBox& own = boxes[static_cast<size_t>(rank)];
+  vtkNew<vtkMatrix4x4> matrix, inverse;
+  this->Actor->GetMatrix(matrix);
+  vtkMatrix4x4::Invert(matrix, inverse);
+  for (int face = 0; face < 6 && own.IsValid(); ++face) {
+    if (own.GetBound(face) != whole.GetBound(face)) {
+      double point[4] = { 0.0, 0.0, 0.0, 1.0 }, normal[3]; // of the world
+      point[face / 2] = own.GetBound(face);
+      matrix->MultiplyPoint(point, point);
+      for (int axis = 0; axis < 3; ++axis) {
+        normal[axis] = (face % 2 ? -1.0 : 1.0) * inverse->GetElement(face / 2, axis);
+      }
+      vtkNew<vtkPlane> plane;
+      plane->SetOrigin(point);
+      plane->SetNormal(normal);
+      planes->AddItem(plane);
+    }
+  }
+  this->Mapper->SetClippingPlanes(planes->GetNumberOfItems() > 0 ? planes.Get() : nullptr);
+}
+
 bool vtkStratusTetrahedraRepresentation::AddToView(vtkView* view)
 {
   auto* render_view = vtkPVRenderView::SafeDownCast(view);
@@ -138,6 +203,10 @@ bool vtkStratusTetrahedraRepresentation::AddToView(vtkView* view)
     return false;
   }
   render_view->GetRenderer()->AddActor(this->Actor);
+  vtkStratusCompositePass::Enter(
+    render_view->GetRenderer(), this, [this](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>& boxes) {
+      this->ClipTo(boxes, ranks->GetLocalProcessId());
+    });
   return this->Superclass::AddToView(view);
 }
 
@@ -148,6 +217,7 @@ bool vtkStratusTetrahedraRepresentation::RemoveFromView(vtkView* view)
     return false;
   }
   render_view->GetRenderer()->RemoveActor(this->Actor);
+  vtkStratusCompositePass::Leave(render_view->GetRenderer(), this);
   return this->Superclass::RemoveFromView(view);
 }
 

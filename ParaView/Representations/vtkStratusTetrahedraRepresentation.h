@@ -4,7 +4,8 @@
  * @brief   ParaView's volume rendering of cells by vtkStratusTetrahedraMapper
  *
  * Draws unstructured and structured grids and composite data of them as they are: nothing divides their cells before the mapper does.
- * Several ranks redistribute the cells as ParaView asks, so that each draws a convex part. Arrays of several components are drawn by their
+ * Several ranks redistribute the cells as ParaView asks, so that each has all cells that reach into a box of its own, and draws what of
+ * them lies in the box. Arrays of several components are drawn by their
  * magnitude or one component, as the colour map says. The mapper refuses the rest by an error in ParaView's messages.
  *
  * @sa vtkStratusTetrahedraMapper
@@ -17,6 +18,9 @@
 #include "vtkSmartPointer.h"                      // For vtkSmartPointer
 #include "vtkVolumeRepresentation.h"
 
+#include <vector> // For std::vector
+
+class vtkBoundingBox;
 class vtkPolyDataMapper;
 class vtkStratusTetrahedraMapper;
 
@@ -73,6 +77,7 @@ private:
   void operator=(const vtkStratusTetrahedraRepresentation&) = delete;
 
   void UpdateMapper(vtkDataObject* data);
+  void ClipTo(const std::vector<vtkBoundingBox>& boxes, int rank);
 
   vtkNew<vtkStratusTetrahedraMapper> Mapper;
   vtkNew<vtkPolyDataMapper> OutlineMapper;

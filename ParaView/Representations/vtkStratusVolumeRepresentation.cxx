@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusVolumeRepresentation.h"
 
+#include "vtkStratusCompositePass.h"
 #include "vtkStratusLODVolume.h"
 #include "vtkStratusMultiBlockVolumeMapper.h"
 #include "vtkStratusVolumeMapper.h"
@@ -9,14 +10,28 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataSet.h"
+#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
+#include "vtkPVRenderView.h"
 #include "vtkPolyDataMapper.h"
+#include "vtkRenderer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+
+namespace {
+
+int CountRanks()
+{
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  return controller ? controller->GetNumberOfProcesses() : 1;
+}
+} // namespace
 
 vtkStandardNewMacro(vtkStratusVolumeRepresentation);
 
@@ -26,45 +41,157 @@ vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation()
   this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
+  vtkMath::UninitializeBounds(this->WholeBounds);
 }
 
 vtkStratusVolumeRepresentation::~vtkStratusVolumeRepresentation() = default;
 
-vtkStratusVolumeMapper* vtkStratusVolumeRepresentation::GetSettings()
+vtkStratusMultiBlockVolumeMapper* vtkStratusVolumeRepresentation::GetMapper()
 {
-  return vtkStratusMultiBlockVolumeMapper::SafeDownCast(this->VolumeMapper)->GetSettings();
+  return vtkStratusMultiBlockVolumeMapper::SafeDownCast(this->VolumeMapper);
 }
 
-// The superclass takes composite data for its own mapper alone.
+vtkStratusVolumeMapper* vtkStratusVolumeRepresentation::GetSettings()
+{
+  return this->GetMapper()->GetSettings();
+}
+
+int vtkStratusVolumeRepresentation::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  const int done = this->Superclass::RequestUpdateExtent(request, input, output);
+  if (CountRanks() > 1 && input[0]->GetNumberOfInformationObjects() == 1) {
+    input[0]->GetInformationObject(0)->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 1);
+  }
+  return done;
+}
+
+// The superclass cuts ghost cells off, and takes composite data for its own mapper alone.
 int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  vtkDataObjectTree* tree = input[0]->GetNumberOfInformationObjects() == 1 ? vtkDataObjectTree::GetData(input[0], 0) : nullptr;
-  if (!tree) {
+  vtkDataObject* data = input[0]->GetNumberOfInformationObjects() == 1 ? vtkDataObject::GetData(input[0], 0) : nullptr;
+  if (!data) {
     return this->Superclass::RequestData(request, input, output);
   }
-  vtkMath::UninitializeBounds(this->DataBounds);
-  this->Cache.TakeReference(tree->NewInstance());
-  this->Cache->ShallowCopy(tree);
-  auto* blocks = vtkDataObjectTree::SafeDownCast(this->Cache);
+  this->Cache.TakeReference(data->NewInstance());
+  this->Cache->ShallowCopy(data); // composite data block by block: arrays may be added to them
   if (this->UseSeparateOpacityArray) {
-    for (vtkDataSet* block : vtkCompositeDataSet::GetDataSets(blocks)) {
-      this->AppendOpacityComponent(block);
+    if (auto* grid = vtkDataSet::SafeDownCast(this->Cache)) {
+      this->AppendOpacityComponent(grid);
+    } else {
+      for (vtkDataSet* block : vtkCompositeDataSet::GetDataSets(vtkDataObjectTree::SafeDownCast(this->Cache))) {
+        this->AppendOpacityComponent(block);
+      }
     }
   }
   this->Actor->SetEnableLOD(0);
-  blocks->GetBounds(this->DataBounds);
+  this->VolumeMapper->SetInputDataObject(this->Cache);
+  this->VolumeMapper->GetBounds(this->DataBounds);
   if (vtkMath::AreBoundsInitialized(this->DataBounds)) {
     this->OutlineSource->SetBounds(this->DataBounds);
     this->OutlineSource->Update();
   }
-  this->DataSize = blocks->GetActualMemorySize();
+  this->DataSize = this->Cache->GetActualMemorySize();
   return this->vtkVolumeRepresentation::RequestData(request, input, output);
+}
+
+int vtkStratusVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out)
+{
+  if (!this->Superclass::ProcessViewRequest(request, in, out)) {
+    return 0;
+  }
+  if (request == vtkPVView::REQUEST_UPDATE()) {
+    this->ShareBounds();
+  }
+  return 1;
+}
+
+// Finds the bounds of all ranks' data, by which a crop is set. Every rank must call it.
+void vtkStratusVolumeRepresentation::ShareBounds()
+{
+  std::copy_n(this->DataBounds, 6, this->WholeBounds);
+  if (CountRanks() > 1) {
+    double negated[6], least[6]; // lower bounds, and upper ones with their sign changed
+    for (int i = 0; i < 6; ++i) {
+      negated[i] = vtkMath::AreBoundsInitialized(this->DataBounds) ? (i % 2 ? -1.0 : 1.0) * this->DataBounds[i] : VTK_DOUBLE_MAX;
+    }
+    vtkMultiProcessController::GetGlobalController()->AllReduce(negated, least, 6, vtkCommunicator::MIN_OP);
+    for (int i = 0; i < 6 && least[0] < VTK_DOUBLE_MAX; ++i) {
+      this->WholeBounds[i] = i % 2 ? -least[i] : least[i];
+    }
+  }
+}
+
+// When what follows from the data and from how they are shown was changed last, but for what ranks agree on.
+vtkMTimeType vtkStratusVolumeRepresentation::GetSamplingTime()
+{
+  return std::max(
+    { this->Cache ? this->Cache->GetMTime() : 0, this->Property->GetMTime(), this->Actor->GetMTime(), this->VolumeMapper->GetMTime() });
+}
+
+// Takes the sampling that serves all ranks: the rule that is asked for where the field bends most, and of it the shortest step and the
+// least error. Settings of the user's own stay. Every rank must call it.
+void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks)
+{
+  const bool open_rule = this->Sampling == vtkStratusVolumeMapper::AUTO_SAMPLING;
+  int changed = this->GetSamplingTime() > this->AgreedFor, any_changed = 0;
+  ranks->AllReduce(&changed, &any_changed, 1, vtkCommunicator::MAX_OP);
+  if (any_changed) {
+    vtkStratusVolumeMapper* settings = this->GetSettings();
+    this->ApplySampling();
+    const bool draws = this->Actor->GetVisibility() != 0;
+    double rule = 0.0, choice[3] = { 0.0, 0.0, 0.0 };
+    bool any = draws && this->GetMapper()->MeasureSampling(renderer, this->Actor, choice);
+    const double own = any ? choice[0] : 0.0;
+    ranks->AllReduce(&own, &rule, 1, vtkCommunicator::MAX_OP);
+    if (any && open_rule && rule != own) {
+      settings->SetSampling(static_cast<int>(rule));
+      any = this->GetMapper()->MeasureSampling(renderer, this->Actor, choice);
+    }
+    const double lengths[2] = { any ? choice[1] : VTK_DOUBLE_MAX, any ? choice[2] : VTK_DOUBLE_MAX };
+    double least[2];
+    ranks->AllReduce(lengths, least, 2, vtkCommunicator::MIN_OP);
+    this->Agreed[0] = rule;
+    this->Agreed[1] = least[0];
+    this->Agreed[2] = least[1];
+  }
+  if (this->Agreed[0] > 0.0) {
+    vtkStratusVolumeMapper* settings = this->GetSettings();
+    settings->SetSampling(static_cast<int>(this->Agreed[0]));
+    settings->SetSampleDistance(this->Agreed[1]);
+    settings->SetCellError(this->Agreed[2]);
+  }
+  this->AgreedFor = this->GetSamplingTime();
+}
+
+bool vtkStratusVolumeRepresentation::AddToView(vtkView* view)
+{
+  if (auto* render_view = vtkPVRenderView::SafeDownCast(view)) {
+    vtkRenderer* renderer = render_view->GetRenderer();
+    vtkStratusCompositePass::Enter(renderer, this,
+      [this, renderer](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>&) { this->AgreeOnSampling(renderer, ranks); });
+  }
+  return this->Superclass::AddToView(view);
+}
+
+bool vtkStratusVolumeRepresentation::RemoveFromView(vtkView* view)
+{
+  if (auto* render_view = vtkPVRenderView::SafeDownCast(view)) {
+    vtkStratusCompositePass::Leave(render_view->GetRenderer(), this);
+  }
+  return this->Superclass::RemoveFromView(view);
 }
 
 void vtkStratusVolumeRepresentation::UpdateMapperParameters()
 {
   this->Superclass::UpdateMapperParameters();
   vtkStratusVolumeMapper* mapper = this->GetSettings();
+  if (this->VolumeMapper->GetCropping()) { // the superclass scales the bounds of each rank's own data
+    double planes[6];
+    for (int i = 0; i < 6; ++i) {
+      planes[i] = this->CroppingOrigin[i / 2] + this->WholeBounds[i] * this->CroppingScale[i / 2];
+    }
+    this->VolumeMapper->SetCroppingRegionPlanes(planes);
+  }
   this->Actor->SetVisibility(this->Actor->GetVisibility() && this->GetVisibility());
   // A colour map shows a vector's magnitude or one of its components; components that the property takes as colour and opacity are left
   // as they are.
@@ -116,19 +243,29 @@ void vtkStratusVolumeRepresentation::SetStructure(int structure)
   this->GetSettings()->SetStructure(structure);
 }
 
+void vtkStratusVolumeRepresentation::ApplySampling()
+{
+  this->GetSettings()->SetSampling(this->Sampling);
+  this->GetSettings()->SetSampleDistance(this->SampleDistance);
+  this->GetSettings()->SetCellError(this->CellError);
+}
+
 void vtkStratusVolumeRepresentation::SetSampling(int sampling)
 {
-  this->GetSettings()->SetSampling(sampling);
+  this->Sampling = sampling;
+  this->ApplySampling();
 }
 
 void vtkStratusVolumeRepresentation::SetSampleDistance(double distance)
 {
-  this->GetSettings()->SetSampleDistance(distance);
+  this->SampleDistance = distance;
+  this->ApplySampling();
 }
 
 void vtkStratusVolumeRepresentation::SetCellError(double error)
 {
-  this->GetSettings()->SetCellError(error);
+  this->CellError = error;
+  this->ApplySampling();
 }
 
 void vtkStratusVolumeRepresentation::SetImageErrorTolerance(double tolerance)

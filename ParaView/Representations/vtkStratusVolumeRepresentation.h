@@ -4,6 +4,8 @@
  * @brief   ParaView's volume rendering of uniform and rectilinear grids by vtkStratusVolumeMapper
  *
  * Composite data are drawn block by block, in exact order (vtkStratusMultiBlockVolumeMapper).
+ * On several ranks each draws the cells that it owns; a layer of ghost cells is asked for, so that light and values at borders are those of
+ * the whole. All ranks sample alike: they agree on what the automatic settings of each would take.
  * Supports everything of ParaView's own representation "Volume" that the mapper supports. The mapper refuses the rest by an error in
  * ParaView's messages. vtkStratusVolumeMapper documents the setters below.
  *
@@ -15,6 +17,9 @@
 #include "StratusParaViewRepresentationsModule.h" // For export macro
 #include "vtkImageVolumeRepresentation.h"
 
+class vtkMultiProcessController;
+class vtkRenderer;
+class vtkStratusMultiBlockVolumeMapper;
 class vtkStratusVolumeMapper;
 
 class STRATUSPARAVIEWREPRESENTATIONS_EXPORT vtkStratusVolumeRepresentation : public vtkImageVolumeRepresentation
@@ -23,6 +28,8 @@ public:
   static vtkStratusVolumeRepresentation* New();
   vtkTypeMacro(vtkStratusVolumeRepresentation, vtkImageVolumeRepresentation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out) override;
 
   //@{
   /**
@@ -52,18 +59,32 @@ protected:
   vtkStratusVolumeRepresentation();
   ~vtkStratusVolumeRepresentation() override;
 
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
   int RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  bool AddToView(vtkView* view) override;
+  bool RemoveFromView(vtkView* view) override;
   void UpdateMapperParameters() override;
 
 private:
   vtkStratusVolumeRepresentation(const vtkStratusVolumeRepresentation&) = delete;
   void operator=(const vtkStratusVolumeRepresentation&) = delete;
 
+  vtkStratusMultiBlockVolumeMapper* GetMapper();
   vtkStratusVolumeMapper* GetSettings();
   void ApplyBlendMode();
+  void ApplySampling();
+  void ShareBounds();
+  vtkMTimeType GetSamplingTime();
+  void AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks);
 
   int BlendMode = 0;
   int Projection = 0;
+  int Sampling = 0; // of the user, as are the next two
+  double SampleDistance = -1.0;
+  double CellError = 0.0;
+  double WholeBounds[6];             // of all ranks
+  vtkMTimeType AgreedFor = 0;        // of what the ranks have agreed on last
+  double Agreed[3] = { 0., 0., 0. }; // sampling, sample distance, cell error
 };
 
 #endif

@@ -52,6 +52,15 @@ void main()
   gl_FragData[0] = color;
 }
 )";
+
+// Whether the frame buffer has more than 8 bits a channel.
+bool IsDeep(vtkOpenGLRenderWindow* window)
+{
+  vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
+  vtkTextureObject* target = frame->GetNumberOfColorAttachments() > 0 ? frame->GetColorAttachmentAsTextureObject(0) : nullptr;
+  return target && target->GetVTKDataType() != VTK_UNSIGNED_CHAR;
+}
+
 const char* const Unshown = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
 } // namespace
 
@@ -440,7 +449,7 @@ bool vtkStratusDisplay::Begin(
 }
 
 // Bytes are precise enough on a black background, because no blend rounds after them, and in a window with multisampling, whose frame
-// buffer rounds to bytes before it blends.
+// buffer rounds to bytes before it blends. A frame buffer with more bits a channel than bytes have takes floats.
 vtkStratusDisplay::Pixels vtkStratusDisplay::ChoosePixels(vtkRenderer* renderer, const vtkStratusPicture::Others& others, float finalWindow,
   float finalLevel, const std::vector<unsigned char>& bytes)
 {
@@ -452,7 +461,7 @@ vtkStratusDisplay::Pixels vtkStratusDisplay::ChoosePixels(vtkRenderer* renderer,
     background[0] == 0.0 && background[1] == 0.0 && background[2] == 0.0 && renderer->GetLayer() == 0;
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
   const bool blends = window && window->GetRenderFramebuffer()->GetMultiSamples() > 0 && !renderer->GetPass();
-  if ((onBlack || blends) && !renderer->GetSelector() && pixels.Scale == 1.0f && pixels.Bias == 0.0f) {
+  if ((onBlack || blends) && !(window && IsDeep(window)) && !renderer->GetSelector() && pixels.Scale == 1.0f && pixels.Bias == 0.0f) {
     pixels.Bytes = bytes.data();
   }
   pixels.Alone = !others.Any && !renderer->GetPreserveColorBuffer() && !renderer->GetSelector() && renderer->GetBackgroundAlpha() == 0.0;

@@ -8,6 +8,7 @@
 #include "vtkBoundingBox.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObjectTree.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMath.h"
@@ -17,9 +18,11 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -29,6 +32,33 @@ struct Block {
   vtkDataSet* Grid = nullptr;
   double Bounds[6];
 };
+
+// The bounds of a structured grid without the cells that another piece owns, which lie about those that this one owns. Returns false where
+// it owns none.
+bool OwnedBounds(vtkDataSet* grid, double bounds[6])
+{
+  vtkUnsignedCharArray* flags = grid->GetCellGhostArray();
+  if (!flags || flags->GetNumberOfValues() != grid->GetNumberOfCells()) {
+    grid->GetBounds(bounds);
+    return vtkMath::AreBoundsInitialized(bounds);
+  }
+  const auto owned = [](unsigned char flag) { return !(flag & vtkDataSetAttributes::DUPLICATECELL); };
+  const unsigned char* begin = flags->GetPointer(0);
+  const unsigned char* end = begin + flags->GetNumberOfValues();
+  const unsigned char* first = std::find_if(begin, end, owned);
+  if (first == end) {
+    return false;
+  }
+  const unsigned char* last = std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(begin), owned).base() - 1;
+  vtkBoundingBox box;
+  for (const unsigned char* cell : { first, last }) {
+    double corner[6];
+    grid->GetCellBounds(cell - begin, corner);
+    box.AddBounds(corner);
+  }
+  box.GetBounds(bounds);
+  return true;
+}
 
 bool Overlap(const Block& a, const Block& b)
 {
@@ -48,6 +78,7 @@ public:
   ~Internals();
 
   std::vector<Block> Find(vtkDataObject* input, vtkStratusMultiBlockVolumeMapper* mapper, std::string& warning);
+  void Configure(vtkStratusMultiBlockVolumeMapper* from, const std::vector<Block>& blocks); // makes a mapper of each block
   void Configure(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to) const;
   // Draws all mappers' blocks in one picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* volume, std::string& error);
@@ -133,11 +164,24 @@ std::vector<Block> vtkStratusMultiBlockVolumeMapper::Internals::Find(
     } else {
       Block block;
       block.Grid = grid;
-      grid->GetBounds(block.Bounds);
-      blocks.push_back(block);
+      if (OwnedBounds(grid, block.Bounds)) {
+        blocks.push_back(block);
+      }
     }
   }
   return blocks;
+}
+
+void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlockVolumeMapper* from, const std::vector<Block>& blocks)
+{
+  this->Mappers.resize(blocks.size());
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    if (!this->Mappers[i]) {
+      this->Mappers[i] = vtkSmartPointer<vtkStratusVolumeMapper>::New();
+    }
+    this->Configure(from, this->Mappers[i]);
+    this->Mappers[i]->SetInputDataObject(blocks[i].Grid);
+  }
 }
 
 void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to) const
@@ -277,13 +321,8 @@ void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* 
   std::string error, warning;
   const std::vector<Block> blocks = this->Internal->Find(this->GetInputDataObject(0, 0), this, warning);
   auto& mappers = this->Internal->Mappers;
-  mappers.resize(blocks.size());
+  this->Internal->Configure(this, blocks);
   for (size_t i = 0; i < blocks.size(); ++i) {
-    if (!mappers[i]) {
-      mappers[i] = vtkSmartPointer<vtkStratusVolumeMapper>::New();
-    }
-    this->Internal->Configure(this, mappers[i]);
-    mappers[i]->SetInputDataObject(blocks[i].Grid);
     for (size_t j = 0; j < i && warning.empty(); ++j) {
       if (Overlap(blocks[i], blocks[j])) {
         warning = "blocks overlap, and are drawn one over the other";
@@ -313,6 +352,24 @@ vtkImageData* vtkStratusMultiBlockVolumeMapper::GetLastImage()
   return mappers.size() == 1 ? mappers[0]->GetLastImage() : this->Internal->Picture.GetLastImage();
 }
 
+bool vtkStratusMultiBlockVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3])
+{
+  std::string warning;
+  const std::vector<Block> blocks = this->Internal->Find(this->GetInputDataObject(0, 0), this, warning);
+  this->Internal->Configure(this, blocks);
+  bool any = false;
+  for (const auto& mapper : this->Internal->Mappers) {
+    double own[3];
+    if (mapper->MeasureSampling(renderer, volume, own)) {
+      choice[0] = any ? std::max(choice[0], own[0]) : own[0];
+      choice[1] = any ? std::min(choice[1], own[1]) : own[1];
+      choice[2] = any ? std::min(choice[2], own[2]) : own[2];
+      any = true;
+    }
+  }
+  return any;
+}
+
 vtkStratusVolumeMapper* vtkStratusMultiBlockVolumeMapper::GetSettings()
 {
   return this->Internal->Settings;
@@ -339,12 +396,17 @@ double* vtkStratusMultiBlockVolumeMapper::GetBounds()
   if (this->GetNumberOfInputConnections(0) > 0) {
     this->GetInputAlgorithm()->Update();
     vtkDataObject* input = this->GetInputDataObject(0, 0);
+    double bounds[6];
     if (auto* grid = vtkDataSet::SafeDownCast(input)) {
-      grid->GetBounds(this->Bounds);
+      if (OwnedBounds(grid, bounds)) {
+        std::copy_n(bounds, 6, this->Bounds);
+      }
     } else if (auto* tree = vtkCompositeDataSet::SafeDownCast(input)) {
       vtkBoundingBox box;
       for (vtkDataSet* block : vtkCompositeDataSet::GetDataSets(tree)) {
-        box.AddBounds(block->GetBounds());
+        if (OwnedBounds(block, bounds)) {
+          box.AddBounds(bounds);
+        }
       }
       if (box.IsValid()) {
         box.GetBounds(this->Bounds);

@@ -59,6 +59,9 @@ public:
    */
   const char* GetLastError();
 
+  /**
+   * Get the bounds of what is drawn: without cells that other pieces of the data own (DUPLICATECELL).
+   */
   double* GetBounds() VTK_SIZEHINT(6) override;
   using Superclass::GetBounds;
   vtkMTimeType GetMTime() override;
@@ -68,6 +71,13 @@ public:
    */
   void Render(vtkRenderer* renderer, vtkVolume* volume) override;
   void ReleaseGraphicsResources(vtkWindow* window) override;
+
+  /**
+   * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
+   * As of vtkStratusVolumeMapper, for all blocks: the largest sampling of any, and the shortest distance and least error. Returns false
+   * where no block would be drawn.
+   */
+  bool MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3]);
 
 protected:
   vtkStratusMultiBlockVolumeMapper();

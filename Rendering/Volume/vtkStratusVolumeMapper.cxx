@@ -45,6 +45,11 @@ void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->TimeToDraw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+bool vtkStratusVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3])
+{
+  return this->Internal->Measure(renderer, volume, choice);
+}
+
 void vtkStratusVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Internal->Display.ReleaseGraphicsResources(window);

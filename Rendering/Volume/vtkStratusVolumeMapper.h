@@ -560,6 +560,14 @@ public:
   void Render(vtkRenderer* ren, vtkVolume* vol) override;
   void ReleaseGraphicsResources(vtkWindow* window) override;
 
+  /**
+   * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
+   * Get what automatic settings would take, without a picture, so that the pieces of a larger volume can agree on one: the sampling (of
+   * SamplingType; CELLS_SAMPLING also where a mix of cells and midpoints would be taken), the sample distance and the cell error, 0 where
+   * it has no part. Builds what the next picture needs. Returns false where nothing would be drawn; the next picture tells why.
+   */
+  bool MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3]);
+
 protected:
   vtkStratusVolumeMapper();
   ~vtkStratusVolumeMapper() override;

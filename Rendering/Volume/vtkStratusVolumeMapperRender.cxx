@@ -118,6 +118,31 @@ bool vtkStratusVolumeMapper::Internals::Describe(
     this->PrepareInput(prop, error) && this->SetOptions(property, options, error) && this->SetShading(renderer, property, options, error);
 }
 
+// What is chosen hangs on no camera, so that a picture of one ray tells it.
+bool vtkStratusVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume* prop, double choice[3])
+{
+  std::string error;
+  stratus_ray_cast_options options;
+  if (!this->Describe(renderer, prop, options, error) || !this->PrepareContext(error)) {
+    return false;
+  }
+  float rgba[4];
+  stratus_image image = stratus_image();
+  image.width = image.height = 1;
+  image.rgba = rgba;
+  stratus_camera camera = stratus_camera();
+  camera.forward[2] = camera.right[0] = camera.up[1] = 1.0;
+  camera.far_k = 1.0;
+  stratus_ray_cast_report report;
+  options.audit = 0;
+  const stratus_status status =
+    stratus_ray_caster_render(this->Caster, &this->Image.GetVolume(), this->Functions.data(), &camera, &options, &image, &report);
+  choice[0] = std::min<int>(report.sampling, CELLS_SAMPLING);
+  choice[1] = report.sample_distance;
+  choice[2] = report.cell_error;
+  return status == STRATUS_OK;
+}
+
 bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
 {
   if (!this->Display.Begin(renderer, prop, this->Mapper, this->LastError, error)) {

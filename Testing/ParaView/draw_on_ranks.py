@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws each kind of data set on so many ranks: pvbatch --sym draw_on_ranks.py PLUGIN FOLDER, by mpiexec. Pictures are FOLDER/NAME-RANKS.png.
-One rank writes the data; more find it there. The largest differences to one rank's pictures are in FOLDER/differences-RANKS."""
+"""Draws scenes on so many ranks: pvbatch --sym draw_on_ranks.py PLUGIN FOLDER, by mpiexec. Pictures are FOLDER/NAME-RANKS.png. One rank
+writes the data; more find it there. FOLDER/differences-RANKS gets a line a scene: the largest difference to one rank's picture, and how many
+thousandths of the lit pixels differ. What differs, 16 times as large, is FOLDER/NAME-RANKS-difference.png."""
 import os
 import sys
 
+import numpy
 from paraview import simple
-from paraview.vtk import vtkIOImage
-from paraview.vtk.util.numpy_support import vtk_to_numpy
+from paraview.vtk import vtkIOImage, vtkCommonDataModel
+from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from grids import COLORS, OPACITY, write_all
@@ -15,6 +17,7 @@ from showing import make_view, show_volume
 plugin, folder = sys.argv[1:3]
 process = simple.servermanager.vtkProcessModule.GetProcessModule()
 ranks, rank = process.GetNumberOfLocalPartitions(), process.GetPartitionId()
+SIZE = 500, 400
 os.makedirs(folder, exist_ok=True)
 if ranks == 1:
     write_all(folder)
@@ -27,18 +30,79 @@ def picture(name, count):
     return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int)
 
 
+def write_difference(name, difference):
+    image = vtkCommonDataModel.vtkImageData()
+    image.SetDimensions(*SIZE, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(numpy.clip(16 * difference, 0, 255).astype(numpy.uint8), deep=True))
+    writer = vtkIOImage.vtkPNGWriter()
+    writer.SetInputData(image)
+    writer.SetFileName(os.path.join(folder, f"{name}-{ranks}-difference.png"))
+    writer.Write()
+
+
+def ball(view, opacity, **place):
+    source = simple.Sphere(ThetaResolution=64, PhiResolution=64, **place)
+    shown = simple.Show(source, view)
+    shown.Ambient, shown.Diffuse, shown.Specular, shown.Opacity = 1, 0, 0, opacity
+    shown.AmbientColor = shown.DiffuseColor = [0.2, 0.5, 0.9]
+
+
+def opaque(view, shown):
+    ball(view, 1, Center=[118, 0, 17], Radius=7)
+
+
+def translucent(view, shown):
+    ball(view, 0.5, Center=[120, 2, 17], Radius=9)
+
+
+def background(view, shown):
+    view.Background = [0.32, 0.34, 0.43]
+
+
+def shade(view, shown):
+    for name in "StratusShade", "StratusCellsShade":
+        if name in shown.ListProperties():
+            setattr(shown, name, 1)
+    shown.Ambient, shown.Diffuse, shown.Specular = 0.1, 0.9, 0.3
+
+
+def crop(view, shown):
+    shown.UseCropping, shown.CroppingScale = 1, [1, 1, 0.6]
+
+
+def close(view, shown):
+    view.CameraPosition, view.CameraFocalPoint = [4, 3, 2], [1, 0.5, 0.5]
+    shown.ScalarOpacityUnitDistance = 0.2
+
+
+SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POINTS", [shade]), ("image-crop", "even.vti", "POINTS", [crop]),
+          ("image-opaque", "even.vti", "POINTS", [opaque]), ("image-background", "even.vti", "POINTS", [opaque, background]),
+          ("image-translucent", "even.vti", "POINTS", [translucent]), ("image-cells", "boxes.vti", "CELLS", []), ("two-cells", "two.vti", "POINTS", [close]),
+          ("rectilinear", "levels.vtr", "POINTS", []), ("rectilinear-shade", "levels.vtr", "POINTS", [shade]),
+          ("blocks", "parts.vtm", "POINTS", []), ("structured", "hills.vts", "POINTS", []), ("structured-shade", "hills.vts", "POINTS", [shade]),
+          ("unstructured", "cells.vtu", "POINTS", []), ("unstructured-opaque", "cells.vtu", "POINTS", [opaque])]
+wanted = sys.argv[3:]
+
 simple.LoadPlugin(plugin, ns=vars(simple))
 simple._DisableFirstRenderCameraReset()
 differences = []
-for name in "levels.vtr", "hills.vts", "cells.vtu":
-    view = make_view(500, 400)
-    show_volume(os.path.join(folder, name), "hill", OPACITY, COLORS, 1, view)
+for name, file, of, changes in SCENES:
+    if wanted and name not in wanted:
+        continue
+    view = make_view(*SIZE)
+    source, shown = show_volume(os.path.join(folder, file), "hill", OPACITY, COLORS, 1, view, of=of)
     view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [160, 50, 60], [120, 2, 17], [0, 0, 1]
-    simple.SaveScreenshot(os.path.join(folder, f"{name}-{ranks}.png"), view, ImageResolution=[500, 400], TransparentBackground=0)
+    for change in changes:
+        change(view, shown)
+    simple.SaveScreenshot(os.path.join(folder, f"{name}-{ranks}.png"), view, ImageResolution=list(SIZE), TransparentBackground=0)
+    simple.Delete(view)
     if rank == 0 and ranks > 1:
         one = picture(name, 1)
-        if (one.max(axis=1) > 30).sum() < 20000:
+        lit = abs(one - one[0]).max(axis=1) > 30
+        if lit.sum() < 15000:
             raise SystemExit(f"{name} does not show on one rank")
-        differences.append(f"{name} {abs(picture(name, ranks) - one).max()}")
+        difference = abs(picture(name, ranks) - one)
+        write_difference(name, difference)
+        differences.append(f"{name} {difference.max()} {round(1000 * (difference.max(axis=1) > 0).sum() / lit.sum())}")
 if rank == 0 and ranks > 1:
     open(os.path.join(folder, f"differences-{ranks}"), "w").write("\n".join(differences) + "\n")

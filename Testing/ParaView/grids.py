@@ -65,6 +65,24 @@ def rectilinear():
     return fill(grid)
 
 
+def image(cells=False):
+    """Even in all axes, with a ripple that bends within a few voxels; cells: its array is of cells."""
+    counts = (61, 47, 33)
+    grid = vtkCommonDataModel.vtkImageData()
+    grid.SetDimensions(*counts)
+    grid.SetOrigin(100, -20, 5)
+    grid.SetSpacing(0.65, 0.97, 0.83)
+    n = [count - 1 for count in counts] if cells else counts
+    places = numpy.stack(numpy.meshgrid(*[o + s * (numpy.arange(m) + (0.5 if cells else 0)) for o, s, m in
+                                          zip(grid.GetOrigin(), grid.GetSpacing(), n)], indexing="ij"), axis=-1)
+    u = (places - [120, 2, 18]) / [18, 20, 12]
+    hill = numpy.clip(1 - (u**2).sum(axis=-1) + 0.2 * numpy.sin(9 * u[..., 0]) * numpy.cos(8 * u[..., 1]), 0, None)
+    array = numpy_to_vtk(numpy.ascontiguousarray(hill.reshape(-1, order="F")), deep=True)
+    array.SetName("hill")
+    (grid.GetCellData() if cells else grid.GetPointData()).AddArray(array)
+    return grid
+
+
 def structured():
     """Layers over hills."""
     p = points()
@@ -100,7 +118,14 @@ def unstructured(grid):
 
 
 def write_all(folder):
-    """Returns the names of four files: levels.vtr, hills.vts, cells.vtu (the cells of hills.vts) and parts.vtm (blocks of levels.vtr)."""
+    """Returns the names of four files: levels.vtr, hills.vts, cells.vtu (the cells of hills.vts) and parts.vtm (blocks of levels.vtr).
+    Also writes even.vti; boxes.vti, whose values are of cells; and two.vti, of two cells."""
+    for name, cells in ("even.vti", False), ("boxes.vti", True):
+        write(image(cells), vtkIOXML.vtkXMLImageDataWriter(), folder, name)
+    two = vtkCommonDataModel.vtkImageData()
+    two.SetDimensions(3, 2, 2)
+    add(two, "hill", numpy.arange(12.0).reshape(3, 2, 2) / 10)
+    write(two, vtkIOXML.vtkXMLImageDataWriter(), folder, "two.vti")
     return (write(rectilinear(), vtkIOXML.vtkXMLRectilinearGridWriter(), folder, "levels.vtr"),
             write(structured(), vtkIOXML.vtkXMLStructuredGridWriter(), folder, "hills.vts"),
             write(unstructured(structured()), vtkIOXML.vtkXMLUnstructuredGridWriter(), folder, "cells.vtu"),

@@ -20,13 +20,14 @@ def make_view(width, height):
     return view
 
 
-def show_volume(path, array, opacity, color, unit, view, representation=None, component=None):
-    """Returns the file's reader and its representation. representation: where the reader's is another; component: of a vector, by name."""
+def show_volume(path, array, opacity, color, unit, view, representation=None, component=None, of="POINTS"):
+    """Returns the file's reader and its representation. representation: where the reader's is another; component: of a vector, by name; of:
+    what the array is of, POINTS or CELLS."""
     reader, usual = READERS[os.path.splitext(path)[1]]
     source = getattr(simple, reader)(FileName=[path])
     source.UpdatePipeline()
     shown = simple.Show(source, view, representation or usual)
-    simple.ColorBy(shown, ("POINTS", array, component) if component else ("POINTS", array))
+    simple.ColorBy(shown, (of, array, component) if component else (of, array))
     look, fade = simple.GetColorTransferFunction(array), simple.GetOpacityTransferFunction(array)
     look.ColorSpace, look.UseLogScale = "RGB", 0
     look.RGBPoints = [number for point in color for number in point]

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusCompositePass.h"
+
+#include "vtkStratusRankBlend.h"
+
+#include "vtkBoundingBox.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCameraPass.h"
+#include "vtkIceTCompositePass.h"
+#include "vtkImageProcessingPass.h"
+#include "vtkMultiProcessController.h"
+#include "vtkObjectFactory.h"
+#include "vtkOpenGLFramebufferObject.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLState.h"
+#include "vtkOrderedCompositingHelper.h"
+#include "vtkPVDataRepresentation.h"
+#include "vtkProp.h"
+#include "vtkPropCollection.h"
+#include "vtkRenderState.h"
+#include "vtkRenderer.h"
+
+#include "vtk_glew.h"
+
+#include <algorithm>
+#include <map>
+
+// IceT keeps of a rank's picture what lies within the rank's bounds. Rank 0, which hands in the picture of all, has this prop with the
+// bounds of all. It draws nothing.
+class vtkStratusWholeBounds : public vtkProp
+{
+public:
+  static vtkStratusWholeBounds* New();
+  vtkTypeMacro(vtkStratusWholeBounds, vtkProp);
+
+  double* GetBounds() override { return this->Bounds; }
+  double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+};
+
+vtkStandardNewMacro(vtkStratusWholeBounds);
+vtkStandardNewMacro(vtkStratusCompositePass);
+
+namespace {
+std::map<vtkRenderer*, vtkSmartPointer<vtkStratusCompositePass>> Passes;
+}
+
+vtkStratusCompositePass::vtkStratusCompositePass()
+{
+  this->Whole->PickableOff();
+}
+
+vtkStratusCompositePass::~vtkStratusCompositePass() = default;
+
+void vtkStratusCompositePass::Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree)
+{
+  vtkSmartPointer<vtkStratusCompositePass>& pass = Passes[renderer];
+  if (!pass) {
+    pass = vtkSmartPointer<vtkStratusCompositePass>::New();
+    pass->SetRenderer(renderer);
+  }
+  pass->Users.emplace_back(user, agree);
+}
+
+void vtkStratusCompositePass::Leave(vtkRenderer* renderer, vtkPVDataRepresentation* user)
+{
+  const auto found = Passes.find(renderer);
+  if (found != Passes.end()) {
+    auto& users = found->second->Users;
+    users.erase(std::remove_if(users.begin(), users.end(), [user](const auto& other) { return other.first == user; }), users.end());
+  }
+}
+
+void vtkStratusCompositePass::SetRenderer(vtkRenderer* renderer)
+{
+  this->Renderer = renderer;
+  vtkNew<vtkCallbackCommand> start, end;
+  start->SetClientData(this);
+  start->SetCallback([](vtkObject*, unsigned long, void* pass, void*) { static_cast<vtkStratusCompositePass*>(pass)->Begin(); });
+  renderer->AddObserver(vtkCommand::StartEvent, start);
+  end->SetCallback([](vtkObject* deleted, unsigned long, void*, void*) { Passes.erase(static_cast<vtkRenderer*>(deleted)); });
+  renderer->AddObserver(vtkCommand::DeleteEvent, end);
+}
+
+void vtkStratusCompositePass::ReleaseGraphicsResources(vtkWindow* window)
+{
+  this->Deep->ReleaseGraphicsResources(window);
+  this->Source->ReleaseGraphicsResources(window);
+  if (this->Delegate) {
+    this->Delegate->ReleaseGraphicsResources(window);
+  }
+}
+
+bool vtkStratusCompositePass::HasRanks() const
+{
+  return this->IceT && this->IceT->GetController() && this->IceT->GetController()->GetNumberOfProcesses() > 1;
+}
+
+// Puts this pass around ParaView's default pass, unless it is there.
+bool vtkStratusCompositePass::Install()
+{
+  vtkRenderPass* outer = this->Renderer->GetPass();
+  while (auto* image = vtkImageProcessingPass::SafeDownCast(outer)) {
+    outer = image->GetDelegatePass();
+  }
+  auto* camera = vtkCameraPass::SafeDownCast(outer);
+  if (!camera) {
+    return false;
+  }
+  this->IceT = vtkIceTCompositePass::SafeDownCast(camera->GetDelegatePass());
+  vtkRenderPass* inner = this->IceT ? this->IceT->GetRenderPass() : camera->GetDelegatePass();
+  if (inner == this) {
+    return true;
+  }
+  if (!inner || !inner->IsA("vtkPVDefaultPass")) {
+    return false;
+  }
+  this->Delegate = inner;
+  if (this->IceT) {
+    this->IceT->SetRenderPass(this);
+  } else {
+    camera->SetDelegatePass(this);
+  }
+  return true;
+}
+
+// When a frame starts. All that decides here is the same on all ranks.
+void vtkStratusCompositePass::Begin()
+{
+  const bool visible = std::any_of(this->Users.begin(), this->Users.end(), [](const auto& user) { return user.first->GetVisibility(); });
+  this->Whole->VisibilityOff();
+  this->Active = visible && !this->Renderer->GetSelector() && this->Install();
+  if (!this->Active || !this->IceT) {
+    return;
+  }
+  vtkOrderedCompositingHelper* order = this->IceT->GetUseOrderedCompositing() ? this->IceT->GetOrderedCompositingHelper() : nullptr;
+  if (order && this->HasRanks()) {
+    for (const auto& user : this->Users) {
+      if (user.first->GetVisibility()) {
+        user.second(this->IceT->GetController(), order->GetBoundingBoxes());
+      }
+    }
+  }
+  const int* tiles = this->IceT->GetTileDimensions();
+  this->Active = order && tiles[0] == 1 && tiles[1] == 1;
+  if (this->Active && this->HasRanks()) {
+    this->IceT->SetRenderEmptyImages(true); // every rank must come to Render()
+    this->ShareBounds();
+  }
+}
+
+void vtkStratusCompositePass::ShareBounds()
+{
+  double mine[6], whole[6];
+  this->Renderer->ComputeVisiblePropBounds(mine);
+  const vtkBoundingBox box(mine);
+  double least[3] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX }, most[3] = { -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
+  if (box.IsValid()) {
+    box.GetMinPoint(least);
+    box.GetMaxPoint(most);
+  }
+  double all_least[3], all_most[3];
+  this->IceT->GetController()->AllReduce(least, all_least, 3, vtkCommunicator::MIN_OP);
+  this->IceT->GetController()->AllReduce(most, all_most, 3, vtkCommunicator::MAX_OP);
+  if (all_least[0] > all_most[0]) {
+    return; // there is nothing to draw
+  }
+  for (int a = 0; a < 3; ++a) {
+    whole[2 * a] = all_least[a];
+    whole[2 * a + 1] = all_most[a];
+  }
+  std::copy_n(whole, 6, this->Whole->Bounds);
+  if (!this->Renderer->GetViewProps()->IsItemPresent(this->Whole)) {
+    this->Renderer->AddViewProp(this->Whole);
+  }
+  this->Whole->VisibilityOn();
+}
+
+// Makes the deep texture a copy of what the frame buffer shows. Returns false where the frame buffer is of another kind than ParaView's.
+bool vtkStratusCompositePass::Prepare(vtkOpenGLRenderWindow* window)
+{
+  vtkOpenGLFramebufferObject* frame = window ? window->GetRenderFramebuffer() : nullptr;
+  vtkTextureObject* bytes = frame && frame->GetNumberOfColorAttachments() == 1 ? frame->GetColorAttachmentAsTextureObject(0) : nullptr;
+  if (!bytes || frame->GetMultiSamples() > 0 || bytes->GetTarget() != GL_TEXTURE_2D || bytes->GetVTKDataType() != VTK_UNSIGNED_CHAR ||
+    bytes->GetComponents() != 4) {
+    return false;
+  }
+  GLint bound = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+  if (static_cast<unsigned int>(bound) != frame->GetFBOIndex()) {
+    return false;
+  }
+  const unsigned int width = bytes->GetWidth(), height = bytes->GetHeight();
+  this->Deep->SetContext(window);
+  if (!this->Deep->GetHandle() || this->Deep->GetWidth() != width || this->Deep->GetHeight() != height) {
+    this->Deep->SetFormat(GL_RGBA);
+    this->Deep->SetInternalFormat(GL_RGBA16);
+    this->Deep->SetDataType(GL_UNSIGNED_SHORT);
+    if (!this->Deep->Allocate2D(width, height, 4, VTK_UNSIGNED_SHORT)) {
+      return false;
+    }
+  }
+  vtkOpenGLState* state = window->GetState();
+  state->PushReadFramebufferBinding();
+  frame->Bind(GL_READ_FRAMEBUFFER);
+  frame->ActivateReadBuffer(0);
+  this->Deep->CopyFromFrameBuffer(0, 0, 0, 0, static_cast<int>(width), static_cast<int>(height));
+  this->Deep->Deactivate();
+  state->PopReadFramebufferBinding();
+  return true;
+}
+
+void vtkStratusCompositePass::Render(const vtkRenderState* state)
+{
+  this->NumberOfRenderedProps = 0;
+  if (!this->Delegate) {
+    return;
+  }
+  this->Whole->VisibilityOff();
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(state->GetRenderer()->GetRenderWindow());
+  int prepared = this->Active && this->Prepare(window);
+  if (this->Active && this->HasRanks()) {
+    int all = 0;
+    this->IceT->GetController()->AllReduce(&prepared, &all, 1, vtkCommunicator::MIN_OP);
+    prepared = all;
+  }
+  if (!prepared) {
+    this->Delegate->Render(state);
+    this->NumberOfRenderedProps = this->Delegate->GetNumberOfRenderedProps();
+    return;
+  }
+  vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
+  const vtkSmartPointer<vtkTextureObject> bytes = frame->GetColorAttachmentAsTextureObject(0);
+  frame->AddColorAttachment(0, this->Deep);
+  this->Delegate->Render(state);
+  this->NumberOfRenderedProps = this->Delegate->GetNumberOfRenderedProps();
+  if (this->HasRanks()) {
+    this->BlendRanks(window, bytes);
+  } else {
+    this->Round(window, bytes);
+  }
+}
+
+// Gives the frame buffer its bytes back, and rounds what was drawn to them.
+void vtkStratusCompositePass::Round(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes)
+{
+  vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
+  vtkOpenGLState* state = window->GetState();
+  const int width = static_cast<int>(bytes->GetWidth()), height = static_cast<int>(bytes->GetHeight());
+  frame->AddColorAttachment(0, bytes);
+  vtkOpenGLState::ScopedglEnableDisable scissor(state, GL_SCISSOR_TEST);
+  state->vtkglDisable(GL_SCISSOR_TEST);
+  state->PushReadFramebufferBinding();
+  this->Source->SetContext(window);
+  this->Source->Bind(GL_READ_FRAMEBUFFER);
+  this->Source->AddColorAttachment(0, this->Deep);
+  this->Source->ActivateReadBuffer(0);
+  state->vtkglBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  state->PopReadFramebufferBinding();
+}
+
+// Gives the frame buffer its bytes back: on rank 0 the picture of all ranks, on the others none.
+void vtkStratusCompositePass::BlendRanks(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes)
+{
+  vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
+  vtkOpenGLState* state = window->GetState();
+  const int size[2] = { static_cast<int>(bytes->GetWidth()), static_cast<int>(bytes->GetHeight()) };
+  this->Picture.resize(4 * static_cast<size_t>(size[0]) * static_cast<size_t>(size[1]));
+  state->PushReadFramebufferBinding();
+  frame->Bind(GL_READ_FRAMEBUFFER);
+  frame->ActivateReadBuffer(0);
+  state->vtkglPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, size[0], size[1], GL_RGBA, GL_UNSIGNED_SHORT, this->Picture.data());
+  state->PopReadFramebufferBinding();
+  frame->AddColorAttachment(0, bytes);
+
+  vtkMultiProcessController* controller = this->IceT->GetController();
+  const std::vector<int> order = this->IceT->GetOrderedCompositingHelper()->ComputeSortOrder(this->Renderer->GetActiveCamera());
+  stratus::blend_ranks(controller, order, size, this->Picture, this->Bytes);
+  this->Bytes.resize(this->Picture.size(), 0);
+  bytes->Activate();
+  state->vtkglPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size[0], size[1], GL_RGBA, GL_UNSIGNED_BYTE, this->Bytes.data());
+  bytes->Deactivate();
+}

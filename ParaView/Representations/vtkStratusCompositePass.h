@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Draws a view's frames with 16 bits a channel and rounds them to bytes once. Private to the module.
+//
+// ParaView's ranks draw what they have into frame buffers of bytes, and IceT blends these, bytes again. Each rounds, so that N ranks whose
+// pieces lie behind one another differ by N of 255 from one rank. Here the frame buffer has 16 bits a channel while a view draws, and ranks
+// blend what they have drawn before it is rounded (vtkStratusRankBlend.h). Rank 0 then has the whole picture and all others an empty one,
+// which IceT joins without a change. Channels are numbers in 0..1, as those of bytes: light of surfaces beyond 1 is cut off where it is in
+// ParaView's own pictures.
+//
+// A pass belongs to a renderer as long as a representation uses it. It puts itself around ParaView's default pass when a frame starts, for
+// ParaView makes its passes anew where settings of the view change. Other passes (ray tracing, values of surfaces), picking and tiled
+// displays are left alone.
+#pragma once
+
+#include "vtkNew.h"
+#include "vtkRenderPass.h"
+#include "vtkSmartPointer.h"
+#include "vtkTextureObject.h"
+#include "vtkWeakPointer.h"
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+class vtkBoundingBox;
+class vtkIceTCompositePass;
+class vtkMultiProcessController;
+class vtkOpenGLFramebufferObject;
+class vtkOpenGLRenderWindow;
+class vtkPVDataRepresentation;
+class vtkRenderer;
+class vtkStratusWholeBounds;
+
+class vtkStratusCompositePass : public vtkRenderPass
+{
+public:
+  static vtkStratusCompositePass* New();
+  vtkTypeMacro(vtkStratusCompositePass, vtkRenderPass);
+
+  // A representation that is drawn in the renderer, until it leaves. The pass works where one of them is visible. agree: called on all of
+  // several ranks before each picture, with the box of each rank's part, unless the representation is hidden.
+  using Agree = std::function<void(vtkMultiProcessController*, const std::vector<vtkBoundingBox>&)>;
+  static void Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree);
+  static void Leave(vtkRenderer* renderer, vtkPVDataRepresentation* user);
+
+  void Render(const vtkRenderState* state) override;
+  void ReleaseGraphicsResources(vtkWindow* window) override;
+
+protected:
+  vtkStratusCompositePass();
+  ~vtkStratusCompositePass() override;
+
+private:
+  vtkStratusCompositePass(const vtkStratusCompositePass&) = delete;
+  void operator=(const vtkStratusCompositePass&) = delete;
+
+  void SetRenderer(vtkRenderer* renderer);
+  void Begin();
+  bool Install();
+  void ShareBounds();
+  bool Prepare(vtkOpenGLRenderWindow* window);
+  void Round(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes);
+  void BlendRanks(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes);
+  bool HasRanks() const;
+
+  vtkWeakPointer<vtkRenderer> Renderer;
+  vtkSmartPointer<vtkRenderPass> Delegate;
+  vtkIceTCompositePass* IceT = nullptr;                          // of this frame; nullptr: there is one rank
+  std::vector<std::pair<vtkPVDataRepresentation*, Agree>> Users; // in the order in which they entered, the same on all ranks
+  bool Active = false;                                           // in this frame
+  vtkNew<vtkTextureObject> Deep;
+  vtkNew<vtkOpenGLFramebufferObject> Source;
+  vtkNew<vtkStratusWholeBounds> Whole;
+  std::vector<unsigned short> Picture;
+  std::vector<unsigned char> Bytes;
+};

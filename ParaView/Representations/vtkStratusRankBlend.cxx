@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusRankBlend.h"
+
+#include "vtkMultiProcessController.h"
+
+#include <algorithm>
+
+namespace {
+
+struct Rectangle {
+  int x0 = 0, x1 = 0, y0 = 0, y1 = 0; // pixels [x0, x1) x [y0, y1)
+
+  size_t values() const { return x0 < x1 && y0 < y1 ? 4 * static_cast<size_t>(x1 - x0) * static_cast<size_t>(y1 - y0) : 0; }
+  Rectangle rows(int from, int to) const { return { x0, x1, std::max(y0, from), std::min(y1, to) }; }
+};
+
+// Rows that a rank blends: [first_row(rank), first_row(rank + 1)).
+int first_row(int rank, int ranks, int height)
+{
+  return static_cast<int>(static_cast<long long>(height) * rank / ranks);
+}
+
+Rectangle find_shown(const std::vector<unsigned short>& picture, const int size[2])
+{
+  Rectangle shown = { size[0], 0, size[1], 0 };
+  for (int y = 0; y < size[1]; ++y) {
+    const unsigned short* row = picture.data() + 4 * static_cast<size_t>(y) * static_cast<size_t>(size[0]);
+    const auto any = [row](int x) { return row[4 * x] || row[4 * x + 1] || row[4 * x + 2] || row[4 * x + 3]; };
+    int from = 0, to = size[0];
+    while (from < to && !any(from)) {
+      ++from;
+    }
+    while (to > from && !any(to - 1)) {
+      --to;
+    }
+    if (from < to) {
+      shown = { std::min(shown.x0, from), std::max(shown.x1, to), std::min(shown.y0, y), y + 1 };
+    }
+  }
+  return shown;
+}
+
+std::vector<unsigned short> cut(const std::vector<unsigned short>& picture, int width, const Rectangle& part)
+{
+  std::vector<unsigned short> values;
+  values.reserve(part.values());
+  for (int y = part.y0; y < part.y1 && part.x0 < part.x1; ++y) {
+    const auto row = picture.begin() + 4 * static_cast<ptrdiff_t>(y) * width;
+    values.insert(values.end(), row + 4 * static_cast<ptrdiff_t>(part.x0), row + 4 * static_cast<ptrdiff_t>(part.x1));
+  }
+  return values;
+}
+
+// Puts a part of a picture behind what is there.
+void blend_behind(std::vector<float>& sums, int width, int first, const Rectangle& part, const unsigned short* values)
+{
+  for (int y = part.y0; y < part.y1; ++y) {
+    float* to = sums.data() + 4 * (static_cast<size_t>(y - first) * static_cast<size_t>(width) + static_cast<size_t>(part.x0));
+    for (int x = part.x0; x < part.x1; ++x, to += 4, values += 4) {
+      const float left = (1.0f - to[3]) / 65535.0f;
+      for (int c = 0; c < 4; ++c) {
+        to[c] += left * static_cast<float>(values[c]);
+      }
+    }
+  }
+}
+} // namespace
+
+void stratus::blend_ranks(vtkMultiProcessController* controller, const std::vector<int>& order, const int size[2],
+  const std::vector<unsigned short>& picture, std::vector<unsigned char>& bytes)
+{
+  const int ranks = controller->GetNumberOfProcesses(), me = controller->GetLocalProcessId(), width = size[0], height = size[1];
+  const Rectangle mine = find_shown(picture, size);
+  std::vector<Rectangle> shown(static_cast<size_t>(ranks));
+  controller->AllGather(&mine.x0, &shown[0].x0, 4);
+
+  std::vector<vtkIdType> lengths(static_cast<size_t>(ranks)), offsets(static_cast<size_t>(ranks));
+  std::vector<unsigned short> parts;
+  for (int owner = 0; owner < ranks; ++owner) {
+    const int from = first_row(owner, ranks, height), to = first_row(owner + 1, ranks, height);
+    vtkIdType all = 0;
+    for (size_t rank = 0; rank < shown.size(); ++rank) {
+      lengths[rank] = static_cast<vtkIdType>(shown[rank].rows(from, to).values());
+      offsets[rank] = all;
+      all += lengths[rank];
+    }
+    const std::vector<unsigned short> sent = cut(picture, width, mine.rows(from, to));
+    std::vector<unsigned short> got(owner == me ? static_cast<size_t>(all) : 0);
+    controller->GatherV(sent.data(), got.data(), static_cast<vtkIdType>(sent.size()), lengths.data(), offsets.data(), owner);
+    if (owner == me) {
+      parts.swap(got);
+    }
+  }
+
+  const int first = first_row(me, ranks, height), last = first_row(me + 1, ranks, height);
+  std::vector<float> sums(4 * static_cast<size_t>(width) * static_cast<size_t>(last - first), 0.0f);
+  std::vector<size_t> begins(static_cast<size_t>(ranks) + 1, 0);
+  for (size_t rank = 0; rank < shown.size(); ++rank) {
+    begins[rank + 1] = begins[rank] + shown[rank].rows(first, last).values();
+  }
+  for (const int rank : order) {
+    const Rectangle part = shown[static_cast<size_t>(rank)].rows(first, last);
+    if (part.values() > 0) {
+      blend_behind(sums, width, first, part, parts.data() + begins[static_cast<size_t>(rank)]);
+    }
+  }
+
+  std::vector<unsigned char> rounded(sums.size());
+  std::transform(sums.begin(), sums.end(), rounded.begin(),
+    [](float value) { return static_cast<unsigned char>(std::min(255.0f, 255.0f * value + 0.5f)); });
+  for (int rank = 0; rank < ranks; ++rank) {
+    offsets[static_cast<size_t>(rank)] = 4 * static_cast<vtkIdType>(width) * first_row(rank, ranks, height);
+    lengths[static_cast<size_t>(rank)] =
+      4 * static_cast<vtkIdType>(width) * first_row(rank + 1, ranks, height) - offsets[static_cast<size_t>(rank)];
+  }
+  bytes.assign(me == 0 ? 4 * static_cast<size_t>(width) * static_cast<size_t>(height) : 0, 0);
+  controller->GatherV(rounded.data(), bytes.data(), static_cast<vtkIdType>(rounded.size()), lengths.data(), offsets.data(), 0);
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Blends the pictures of several ranks before they are rounded to bytes.
+#pragma once
+
+#include <vector>
+
+class vtkMultiProcessController;
+
+namespace stratus {
+
+// Blends the ranks' pictures of width * height pixels over one another, in float, and rounds once. Pixels are red, green, blue and alpha in
+// 0..65535, colours multiplied by alpha. order: every rank that draws, nearest first, the same on all ranks. Rank 0 gets the picture in
+// `bytes`; the others get nothing there. Every rank of the controller must call it. Of a picture, only the smallest rectangle that is not
+// empty is sent: each rank blends a stretch of the rows of all.
+void blend_ranks(vtkMultiProcessController* controller, const std::vector<int>& order, const int size[2],
+  const std::vector<unsigned short>& picture, std::vector<unsigned char>& bytes);
+} // namespace stratus
