@@ -6,24 +6,41 @@
 #include "vtkBoundingBox.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCameraPass.h"
+#include "vtkDualDepthPeelingPass.h"
 #include "vtkIceTCompositePass.h"
 #include "vtkImageProcessingPass.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
+#include "vtkOpenGLFXAAFilter.h"
 #include "vtkOpenGLFramebufferObject.h"
 #include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLRenderer.h"
 #include "vtkOpenGLState.h"
 #include "vtkOrderedCompositingHelper.h"
+#include "vtkOverlayPass.h"
 #include "vtkPVDataRepresentation.h"
 #include "vtkProp.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderState.h"
 #include "vtkRenderer.h"
+#include "vtkTranslucentPass.h"
+#include "vtkVolumetricPass.h"
 
 #include "vtk_glew.h"
 
 #include <algorithm>
 #include <map>
+
+namespace {
+
+bool MakeDeep(vtkTextureObject* texture, int width, int height)
+{
+  texture->SetFormat(GL_RGBA);
+  texture->SetInternalFormat(GL_RGBA16);
+  texture->SetDataType(GL_UNSIGNED_SHORT);
+  return texture->Allocate2D(static_cast<unsigned int>(width), static_cast<unsigned int>(height), 4, VTK_UNSIGNED_SHORT);
+}
+} // namespace
 
 // IceT keeps of a rank's picture what lies within the rank's bounds. Rank 0, which hands in the picture of all, has this prop with the
 // bounds of all. It draws nothing.
@@ -37,6 +54,34 @@ public:
   double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
 };
 
+// VTK's peeling, with 16 bits a channel. VTK makes textures only where there are none.
+class vtkStratusDeepPeelingPass : public vtkDualDepthPeelingPass
+{
+public:
+  static vtkStratusDeepPeelingPass* New();
+  vtkTypeMacro(vtkStratusDeepPeelingPass, vtkDualDepthPeelingPass);
+
+  void Render(const vtkRenderState* state) override
+  {
+    if (!this->Textures[BackTemp]) {
+      state->GetRenderer()->GetTiledSizeAndOrigin(&this->ViewportWidth, &this->ViewportHeight, &this->ViewportX, &this->ViewportY);
+      for (int name = BackTemp; name < NumberOfTextures; ++name) {
+        vtkTextureObject* texture = this->Textures[name] = vtkTextureObject::New();
+        if (name == DepthA || name == DepthB) {
+          this->InitDepthTexture(texture, state);
+        } else if (name == OpaqueDepth) {
+          this->InitOpaqueDepthTexture(texture, state);
+        } else {
+          texture->SetContext(vtkOpenGLRenderWindow::SafeDownCast(state->GetRenderer()->GetRenderWindow()));
+          MakeDeep(texture, this->ViewportWidth, this->ViewportHeight);
+        }
+      }
+    }
+    this->Superclass::Render(state);
+  }
+};
+
+vtkStandardNewMacro(vtkStratusDeepPeelingPass);
 vtkStandardNewMacro(vtkStratusWholeBounds);
 vtkStandardNewMacro(vtkStratusCompositePass);
 
@@ -47,6 +92,9 @@ std::map<vtkRenderer*, vtkSmartPointer<vtkStratusCompositePass>> Passes;
 vtkStratusCompositePass::vtkStratusCompositePass()
 {
   this->Whole->PickableOff();
+  const vtkNew<vtkTranslucentPass> translucent;
+  this->Peeling->SetTranslucentPass(translucent);
+  this->Peeling->SetVolumetricPass(this->Volumes);
 }
 
 vtkStratusCompositePass::~vtkStratusCompositePass() = default;
@@ -84,6 +132,8 @@ void vtkStratusCompositePass::SetRenderer(vtkRenderer* renderer)
 void vtkStratusCompositePass::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Deep->ReleaseGraphicsResources(window);
+  this->Peeling->ReleaseGraphicsResources(window);
+  this->FXAA->ReleaseGraphicsResources();
   this->Source->ReleaseGraphicsResources(window);
   if (this->Delegate) {
     this->Delegate->ReleaseGraphicsResources(window);
@@ -128,7 +178,7 @@ void vtkStratusCompositePass::Begin()
 {
   const bool visible = std::any_of(this->Users.begin(), this->Users.end(), [](const auto& user) { return user.first->GetVisibility(); });
   this->Whole->VisibilityOff();
-  this->Active = visible && !this->Renderer->GetSelector() && this->Install();
+  this->Active = visible && !this->Renderer->GetSelector() && !this->Renderer->GetUseShadows() && this->Install();
   if (!this->Active || !this->IceT) {
     return;
   }
@@ -192,10 +242,7 @@ bool vtkStratusCompositePass::Prepare(vtkOpenGLRenderWindow* window)
   const unsigned int width = bytes->GetWidth(), height = bytes->GetHeight();
   this->Deep->SetContext(window);
   if (!this->Deep->GetHandle() || this->Deep->GetWidth() != width || this->Deep->GetHeight() != height) {
-    this->Deep->SetFormat(GL_RGBA);
-    this->Deep->SetInternalFormat(GL_RGBA16);
-    this->Deep->SetDataType(GL_UNSIGNED_SHORT);
-    if (!this->Deep->Allocate2D(width, height, 4, VTK_UNSIGNED_SHORT)) {
+    if (!MakeDeep(this->Deep, static_cast<int>(width), static_cast<int>(height))) {
       return false;
     }
   }
@@ -231,13 +278,102 @@ void vtkStratusCompositePass::Render(const vtkRenderState* state)
   vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
   const vtkSmartPointer<vtkTextureObject> bytes = frame->GetColorAttachmentAsTextureObject(0);
   frame->AddColorAttachment(0, this->Deep);
-  this->Delegate->Render(state);
-  this->NumberOfRenderedProps = this->Delegate->GetNumberOfRenderedProps();
+  this->DrawScene(state, window);
   if (this->HasRanks()) {
     this->BlendRanks(window, bytes);
   } else {
     this->Round(window, bytes);
   }
+}
+
+// Does what vtkOpenGLRenderer::UpdateGeometry does, but that it peels with 16 bits, and that ranks share depths.
+void vtkStratusCompositePass::DrawScene(const vtkRenderState* state, vtkOpenGLRenderWindow* window)
+{
+  vtkRenderer* renderer = state->GetRenderer();
+  auto* drawing = vtkOpenGLRenderer::SafeDownCast(renderer);
+  this->ClearLights(renderer);
+  this->UpdateLightGeometry(renderer);
+  this->UpdateLights(renderer);
+  renderer->DeviceRenderOpaqueGeometry(state->GetFrameBuffer());
+  if (this->HasRanks()) {
+    this->ShareSurfaces(window);
+  }
+  vtkProp** props = state->GetPropArray();
+  const bool translucent =
+    std::any_of(props, props + state->GetPropArrayCount(), [](vtkProp* prop) { return prop->HasTranslucentPolygonalGeometry() != 0; });
+  const bool peels = renderer->GetUseDepthPeeling() && renderer->GetUseDepthPeelingForVolumes() && drawing->IsDualDepthPeelingSupported();
+  if (translucent && peels) {
+    this->Peeling->SetMaximumNumberOfPeels(renderer->GetMaximumNumberOfPeels());
+    this->Peeling->SetOcclusionRatio(renderer->GetOcclusionRatio());
+    this->Peeling->Render(state);
+  } else if (translucent) {
+    renderer->DeviceRenderTranslucentPolygonalGeometry(state->GetFrameBuffer());
+  }
+  if (renderer->GetUseFXAA()) { // volumes need none
+    if (renderer->GetFXAAOptions()) {
+      this->FXAA->UpdateConfiguration(renderer->GetFXAAOptions());
+    }
+    this->FXAA->Execute(drawing);
+  }
+  if (!translucent || !peels) {
+    this->Volumes->Render(state);
+  }
+  this->Overlays->Render(state);
+  this->NumberOfRenderedProps = state->GetPropArrayCount();
+}
+
+void vtkStratusCompositePass::Read(vtkOpenGLRenderWindow* window, std::vector<unsigned short>& picture)
+{
+  vtkOpenGLState* state = window->GetState();
+  const int width = static_cast<int>(this->Deep->GetWidth()), height = static_cast<int>(this->Deep->GetHeight());
+  picture.resize(4 * static_cast<size_t>(width) * static_cast<size_t>(height));
+  state->PushReadFramebufferBinding();
+  window->GetRenderFramebuffer()->Bind(GL_READ_FRAMEBUFFER);
+  window->GetRenderFramebuffer()->ActivateReadBuffer(0);
+  state->vtkglPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_SHORT, picture.data());
+  state->PopReadFramebufferBinding();
+}
+
+// Lets the depth buffer hold the least depths of all ranks' opaque surfaces, and takes from the frame buffer the pixels of this rank's
+// surfaces that are the nearest.
+void vtkStratusCompositePass::ShareSurfaces(vtkOpenGLRenderWindow* window)
+{
+  vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
+  vtkTextureObject* depth = frame->GetDepthAttachmentAsTextureObject();
+  vtkMultiProcessController* controller = this->IceT->GetController();
+  vtkOpenGLState* state = window->GetState();
+  const int width = static_cast<int>(this->Deep->GetWidth()), height = static_cast<int>(this->Deep->GetHeight());
+  const vtkIdType count = static_cast<vtkIdType>(width) * height;
+  this->Layers.resize(1);
+  this->Depths.resize(static_cast<size_t>(count));
+  state->PushReadFramebufferBinding();
+  frame->Bind(GL_READ_FRAMEBUFFER);
+  state->vtkglPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, this->Depths.data());
+  state->PopReadFramebufferBinding();
+  const bool surfaces = std::any_of(this->Depths.begin(), this->Depths.end(), [](float z) { return z < 1.0f; });
+  const int opaque[2] = { !depth, surfaces };
+  int any[2] = { 0, 0 }; // a depth buffer that can't be written, opaque surfaces
+  controller->AllReduce(opaque, any, 2, vtkCommunicator::MAX_OP);
+  if (any[0] || !any[1]) {
+    return;
+  }
+  std::vector<float> least(this->Depths.size());
+  controller->AllReduce(this->Depths.data(), least.data(), count, vtkCommunicator::MIN_OP);
+  this->Layers.resize(2);
+  this->Read(window, this->Layers[1]);
+  for (size_t pixel = 0; pixel < least.size(); ++pixel) {
+    if (this->Depths[pixel] > least[pixel]) {
+      std::fill_n(&this->Layers[1][4 * pixel], 4, static_cast<unsigned short>(0));
+    }
+  }
+  const float nothing[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+  glClearBufferfv(GL_COLOR, 0, nothing);
+  depth->Activate();
+  state->vtkglPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, least.data());
+  depth->Deactivate();
 }
 
 // Gives the frame buffer its bytes back, and rounds what was drawn to them.
@@ -264,19 +400,13 @@ void vtkStratusCompositePass::BlendRanks(vtkOpenGLRenderWindow* window, vtkTextu
   vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
   vtkOpenGLState* state = window->GetState();
   const int size[2] = { static_cast<int>(bytes->GetWidth()), static_cast<int>(bytes->GetHeight()) };
-  this->Picture.resize(4 * static_cast<size_t>(size[0]) * static_cast<size_t>(size[1]));
-  state->PushReadFramebufferBinding();
-  frame->Bind(GL_READ_FRAMEBUFFER);
-  frame->ActivateReadBuffer(0);
-  state->vtkglPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, size[0], size[1], GL_RGBA, GL_UNSIGNED_SHORT, this->Picture.data());
-  state->PopReadFramebufferBinding();
+  this->Read(window, this->Layers[0]);
   frame->AddColorAttachment(0, bytes);
 
   vtkMultiProcessController* controller = this->IceT->GetController();
   const std::vector<int> order = this->IceT->GetOrderedCompositingHelper()->ComputeSortOrder(this->Renderer->GetActiveCamera());
-  stratus::blend_ranks(controller, order, size, this->Picture, this->Bytes);
-  this->Bytes.resize(this->Picture.size(), 0);
+  stratus::blend_ranks(controller, order, size, this->Layers, this->Bytes);
+  this->Bytes.resize(this->Layers[0].size(), 0);
   bytes->Activate();
   state->vtkglPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size[0], size[1], GL_RGBA, GL_UNSIGNED_BYTE, this->Bytes.data());

@@ -5,7 +5,10 @@
 // pieces lie behind one another differ by N of 255 from one rank. Here the frame buffer has 16 bits a channel while a view draws, and ranks
 // blend what they have drawn before it is rounded (vtkStratusRankBlend.h). Rank 0 then has the whole picture and all others an empty one,
 // which IceT joins without a change. Channels are numbers in 0..1, as those of bytes: light of surfaces beyond 1 is cut off where it is in
-// ParaView's own pictures.
+// ParaView's own pictures. Layers of translucent surfaces and what volumes add between them have 16 bits, too.
+//
+// Each rank has surfaces of its own, but a ray's last segment in a piece may reach beyond the piece. So all ranks' opaque surfaces share
+// their depths before anything translucent is drawn.
 //
 // A pass belongs to a renderer as long as a representation uses it. It puts itself around ParaView's default pass when a frame starts, for
 // ParaView makes its passes anew where settings of the view change. Other passes (ray tracing, values of surfaces), picking and tiled
@@ -25,11 +28,15 @@
 class vtkBoundingBox;
 class vtkIceTCompositePass;
 class vtkMultiProcessController;
+class vtkOpenGLFXAAFilter;
 class vtkOpenGLFramebufferObject;
 class vtkOpenGLRenderWindow;
+class vtkOverlayPass;
 class vtkPVDataRepresentation;
 class vtkRenderer;
+class vtkStratusDeepPeelingPass;
 class vtkStratusWholeBounds;
+class vtkVolumetricPass;
 
 class vtkStratusCompositePass : public vtkRenderPass
 {
@@ -59,6 +66,9 @@ private:
   bool Install();
   void ShareBounds();
   bool Prepare(vtkOpenGLRenderWindow* window);
+  void DrawScene(const vtkRenderState* state, vtkOpenGLRenderWindow* window);
+  void ShareSurfaces(vtkOpenGLRenderWindow* window);
+  void Read(vtkOpenGLRenderWindow* window, std::vector<unsigned short>& picture);
   void Round(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes);
   void BlendRanks(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes);
   bool HasRanks() const;
@@ -71,6 +81,11 @@ private:
   vtkNew<vtkTextureObject> Deep;
   vtkNew<vtkOpenGLFramebufferObject> Source;
   vtkNew<vtkStratusWholeBounds> Whole;
-  std::vector<unsigned short> Picture;
+  vtkNew<vtkStratusDeepPeelingPass> Peeling;
+  vtkNew<vtkVolumetricPass> Volumes;
+  vtkNew<vtkOverlayPass> Overlays;
+  vtkNew<vtkOpenGLFXAAFilter> FXAA;
+  std::vector<std::vector<unsigned short>> Layers; // of this frame: what is translucent, and opaque surfaces
   std::vector<unsigned char> Bytes;
+  std::vector<float> Depths;
 };

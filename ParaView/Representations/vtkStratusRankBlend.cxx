@@ -67,24 +67,34 @@ void blend_behind(std::vector<float>& sums, int width, int first, const Rectangl
 } // namespace
 
 void stratus::blend_ranks(vtkMultiProcessController* controller, const std::vector<int>& order, const int size[2],
-  const std::vector<unsigned short>& picture, std::vector<unsigned char>& bytes)
+  const std::vector<std::vector<unsigned short>>& layers, std::vector<unsigned char>& bytes)
 {
   const int ranks = controller->GetNumberOfProcesses(), me = controller->GetLocalProcessId(), width = size[0], height = size[1];
-  const Rectangle mine = find_shown(picture, size);
-  std::vector<Rectangle> shown(static_cast<size_t>(ranks));
-  controller->AllGather(&mine.x0, &shown[0].x0, 4);
+  const size_t count = layers.size();
+  std::vector<Rectangle> mine, shown(count * static_cast<size_t>(ranks)); // rank by rank
+  for (const auto& layer : layers) {
+    mine.push_back(find_shown(layer, size));
+  }
+  controller->AllGather(&mine[0].x0, &shown[0].x0, 4 * static_cast<vtkIdType>(count));
 
   std::vector<vtkIdType> lengths(static_cast<size_t>(ranks)), offsets(static_cast<size_t>(ranks));
   std::vector<unsigned short> parts;
   for (int owner = 0; owner < ranks; ++owner) {
     const int from = first_row(owner, ranks, height), to = first_row(owner + 1, ranks, height);
     vtkIdType all = 0;
-    for (size_t rank = 0; rank < shown.size(); ++rank) {
-      lengths[rank] = static_cast<vtkIdType>(shown[rank].rows(from, to).values());
+    for (size_t rank = 0; rank < lengths.size(); ++rank) {
+      lengths[rank] = 0;
+      for (size_t layer = 0; layer < count; ++layer) {
+        lengths[rank] += static_cast<vtkIdType>(shown[rank * count + layer].rows(from, to).values());
+      }
       offsets[rank] = all;
       all += lengths[rank];
     }
-    const std::vector<unsigned short> sent = cut(picture, width, mine.rows(from, to));
+    std::vector<unsigned short> sent;
+    for (size_t layer = 0; layer < count; ++layer) {
+      const std::vector<unsigned short> part = cut(layers[layer], width, mine[layer].rows(from, to));
+      sent.insert(sent.end(), part.begin(), part.end());
+    }
     std::vector<unsigned short> got(owner == me ? static_cast<size_t>(all) : 0);
     controller->GatherV(sent.data(), got.data(), static_cast<vtkIdType>(sent.size()), lengths.data(), offsets.data(), owner);
     if (owner == me) {
@@ -94,14 +104,16 @@ void stratus::blend_ranks(vtkMultiProcessController* controller, const std::vect
 
   const int first = first_row(me, ranks, height), last = first_row(me + 1, ranks, height);
   std::vector<float> sums(4 * static_cast<size_t>(width) * static_cast<size_t>(last - first), 0.0f);
-  std::vector<size_t> begins(static_cast<size_t>(ranks) + 1, 0);
-  for (size_t rank = 0; rank < shown.size(); ++rank) {
-    begins[rank + 1] = begins[rank] + shown[rank].rows(first, last).values();
+  std::vector<size_t> begins(shown.size() + 1, 0);
+  for (size_t part = 0; part < shown.size(); ++part) {
+    begins[part + 1] = begins[part] + shown[part].rows(first, last).values();
   }
-  for (const int rank : order) {
-    const Rectangle part = shown[static_cast<size_t>(rank)].rows(first, last);
-    if (part.values() > 0) {
-      blend_behind(sums, width, first, part, parts.data() + begins[static_cast<size_t>(rank)]);
+  for (size_t layer = 0; layer < count; ++layer) {
+    for (const int rank : order) {
+      const size_t part = static_cast<size_t>(rank) * count + layer;
+      if (begins[part + 1] > begins[part]) {
+        blend_behind(sums, width, first, shown[part].rows(first, last), parts.data() + begins[part]);
+      }
     }
   }
 
@@ -109,9 +121,9 @@ void stratus::blend_ranks(vtkMultiProcessController* controller, const std::vect
   std::transform(sums.begin(), sums.end(), rounded.begin(),
     [](float value) { return static_cast<unsigned char>(std::min(255.0f, 255.0f * value + 0.5f)); });
   for (int rank = 0; rank < ranks; ++rank) {
-    offsets[static_cast<size_t>(rank)] = 4 * static_cast<vtkIdType>(width) * first_row(rank, ranks, height);
-    lengths[static_cast<size_t>(rank)] =
-      4 * static_cast<vtkIdType>(width) * first_row(rank + 1, ranks, height) - offsets[static_cast<size_t>(rank)];
+    const size_t r = static_cast<size_t>(rank);
+    offsets[r] = 4 * static_cast<vtkIdType>(width) * first_row(rank, ranks, height);
+    lengths[r] = 4 * static_cast<vtkIdType>(width) * first_row(rank + 1, ranks, height) - offsets[r];
   }
   bytes.assign(me == 0 ? 4 * static_cast<size_t>(width) * static_cast<size_t>(height) : 0, 0);
   controller->GatherV(rounded.data(), bytes.data(), static_cast<vtkIdType>(rounded.size()), lengths.data(), offsets.data(), 0);

@@ -159,7 +159,7 @@ bool vtkStratusPeels::CopyFront(vtkOpenGLRenderWindow* window, const int size[2]
   const unsigned int width = static_cast<unsigned int>(size[0]), height = static_cast<unsigned int>(size[1]);
   this->Front->SetContext(window);
   if (this->Front->GetWidth() != width || this->Front->GetHeight() != height) {
-    if (!this->Front->Create2D(width, height, 4, VTK_UNSIGNED_CHAR, false)) {
+    if (!this->Front->Create2D(width, height, 4, VTK_FLOAT, false)) { // the pass may have more bits than bytes have
       return false;
     }
   }
