@@ -283,6 +283,30 @@ void vtkStratusVolumeRepresentation::SetDevice(const char* device)
   this->GetSettings()->SetDevice(device);
 }
 
+#define SUM_OF_BLOCKS(getter)                                                                                                              \
+  double vtkStratusVolumeRepresentation::getter()                                                                                          \
+  {                                                                                                                                        \
+    double sum = 0.0;                                                                                                                      \
+    for (int block = 0; block < this->GetMapper()->GetNumberOfBlocks(); ++block) {                                                         \
+      sum += static_cast<double>(this->GetMapper()->GetBlockMapper(block)->getter());                                                      \
+    }                                                                                                                                      \
+    return sum;                                                                                                                            \
+  }
+SUM_OF_BLOCKS(GetSamplesTaken)
+SUM_OF_BLOCKS(GetSamplesSkipped)
+SUM_OF_BLOCKS(GetCastTime)
+
+#define OF_FIRST_BLOCK(type, getter, from, none)                                                                                           \
+  type vtkStratusVolumeRepresentation::getter()                                                                                            \
+  {                                                                                                                                        \
+    vtkStratusVolumeMapper* first = this->GetMapper()->GetBlockMapper(0);                                                                  \
+    return first ? first->from() : none;                                                                                                   \
+  }
+OF_FIRST_BLOCK(double, GetUsedSampleDistance, GetUsedSampleDistance, 0.0)
+OF_FIRST_BLOCK(const char*, GetSamplingUsed, GetSamplingUsedAsString, "")
+OF_FIRST_BLOCK(const char*, GetStructureUsed, GetStructureUsedAsString, "")
+OF_FIRST_BLOCK(const char*, GetReason, GetReason, "")
+
 void vtkStratusVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

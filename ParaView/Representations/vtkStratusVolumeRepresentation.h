@@ -55,6 +55,20 @@ public:
   void SetDevice(const char* device);
   //@}
 
+  //@{
+  /**
+   * Get what the last picture took on this rank: numbers of all blocks together, and how the first block was drawn. Milliseconds are those
+   * of casting rays.
+   */
+  double GetSamplesTaken();
+  double GetSamplesSkipped();
+  double GetCastTime();
+  double GetUsedSampleDistance();
+  const char* GetSamplingUsed();
+  const char* GetStructureUsed();
+  const char* GetReason();
+  //@}
+
 protected:
   vtkStratusVolumeRepresentation();
   ~vtkStratusVolumeRepresentation() override;
