@@ -29,6 +29,7 @@
 #include "vtk_glew.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace {
@@ -121,7 +122,10 @@ void vtkStratusCompositePass::Leave(vtkRenderer* renderer, vtkPVDataRepresentati
 void vtkStratusCompositePass::SetRenderer(vtkRenderer* renderer)
 {
   this->Renderer = renderer;
-  vtkNew<vtkCallbackCommand> start, end;
+  vtkNew<vtkCallbackCommand> before, start, end;
+  before->SetClientData(this);
+  before->SetCallback([](vtkObject*, unsigned long, void* pass, void*) { static_cast<vtkStratusCompositePass*>(pass)->KeepBackground(); });
+  renderer->AddObserver(vtkCommand::StartEvent, before, 1.0f); // before vtkSynchronizedRenderers, which makes it black
   start->SetClientData(this);
   start->SetCallback([](vtkObject*, unsigned long, void* pass, void*) { static_cast<vtkStratusCompositePass*>(pass)->Begin(); });
   renderer->AddObserver(vtkCommand::StartEvent, start);
@@ -171,6 +175,15 @@ bool vtkStratusCompositePass::Install()
     camera->SetDelegatePass(this);
   }
   return true;
+}
+
+void vtkStratusCompositePass::KeepBackground()
+{
+  const bool plain = !this->Renderer->GetGradientBackground() && !this->Renderer->GetTexturedBackground();
+  for (int c = 0; c < 3; ++c) {
+    const double value = plain ? this->Renderer->GetBackground()[c] : 0.0;
+    this->Background[c] = std::floor(255.0f * std::min(std::max(static_cast<float>(value), 0.0f), 1.0f) + 0.5f);
+  }
 }
 
 // When a frame starts. All that decides here is the same on all ranks.
@@ -405,7 +418,7 @@ void vtkStratusCompositePass::BlendRanks(vtkOpenGLRenderWindow* window, vtkTextu
 
   vtkMultiProcessController* controller = this->IceT->GetController();
   const std::vector<int> order = this->IceT->GetOrderedCompositingHelper()->ComputeSortOrder(this->Renderer->GetActiveCamera());
-  stratus::blend_ranks(controller, order, size, this->Layers, this->Bytes);
+  stratus::blend_ranks(controller, order, size, this->Layers, this->Background, this->Bytes);
   this->Bytes.resize(this->Layers[0].size(), 0);
   bytes->Activate();
   state->vtkglPixelStorei(GL_UNPACK_ALIGNMENT, 1);

@@ -62,6 +62,7 @@ private:
   void operator=(const vtkStratusCompositePass&) = delete;
 
   void SetRenderer(vtkRenderer* renderer);
+  void KeepBackground();
   void Begin();
   bool Install();
   void ShareBounds();
@@ -78,6 +79,7 @@ private:
   vtkIceTCompositePass* IceT = nullptr;                          // of this frame; nullptr: there is one rank
   std::vector<std::pair<vtkPVDataRepresentation*, Agree>> Users; // in the order in which they entered, the same on all ranks
   bool Active = false;                                           // in this frame
+  float Background[3] = { 0.0f, 0.0f, 0.0f };                    // 0..255, whole numbers; black where it is not the same everywhere
   vtkNew<vtkTextureObject> Deep;
   vtkNew<vtkOpenGLFramebufferObject> Source;
   vtkNew<vtkStratusWholeBounds> Whole;

@@ -4,6 +4,7 @@
 #include "vtkMultiProcessController.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -64,10 +65,25 @@ void blend_behind(std::vector<float>& sums, int width, int first, const Rectangl
     }
   }
 }
+
+// ParaView blends the bytes over the background, and rounds once more. The colours are such that this gives the rounded colours of the
+// whole: alpha alone is rounded to the nearest.
+void round_over(const std::vector<float>& sums, const float background[3], std::vector<unsigned char>& rounded)
+{
+  for (size_t pixel = 0; pixel < sums.size(); pixel += 4) {
+    const float alpha = std::floor(255.0f * std::min(sums[pixel + 3], 1.0f) + 0.5f);
+    for (size_t c = 0; c < 3; ++c) {
+      const float whole = std::floor(255.0f * sums[pixel + c] + (1.0f - sums[pixel + 3]) * background[c] + 0.5f);
+      const float rest = (255.0f - alpha) / 255.0f * background[c];
+      rounded[pixel + c] = static_cast<unsigned char>(std::min(std::max(std::floor(whole - rest + 0.5f), 0.0f), 255.0f));
+    }
+    rounded[pixel + 3] = static_cast<unsigned char>(alpha);
+  }
+}
 } // namespace
 
 void stratus::blend_ranks(vtkMultiProcessController* controller, const std::vector<int>& order, const int size[2],
-  const std::vector<std::vector<unsigned short>>& layers, std::vector<unsigned char>& bytes)
+  const std::vector<std::vector<unsigned short>>& layers, const float background[3], std::vector<unsigned char>& bytes)
 {
   const int ranks = controller->GetNumberOfProcesses(), me = controller->GetLocalProcessId(), width = size[0], height = size[1];
   const size_t count = layers.size();
@@ -118,8 +134,7 @@ void stratus::blend_ranks(vtkMultiProcessController* controller, const std::vect
   }
 
   std::vector<unsigned char> rounded(sums.size());
-  std::transform(sums.begin(), sums.end(), rounded.begin(),
-    [](float value) { return static_cast<unsigned char>(std::min(255.0f, 255.0f * value + 0.5f)); });
+  round_over(sums, background, rounded);
   for (int rank = 0; rank < ranks; ++rank) {
     const size_t r = static_cast<size_t>(rank);
     offsets[r] = 4 * static_cast<vtkIdType>(width) * first_row(rank, ranks, height);

@@ -80,6 +80,7 @@ public:
   std::vector<Block> Find(vtkDataObject* input, vtkStratusMultiBlockVolumeMapper* mapper, std::string& warning);
   void Configure(vtkStratusMultiBlockVolumeMapper* from, const std::vector<Block>& blocks); // makes a mapper of each block
   void Configure(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to) const;
+  bool Measure(vtkRenderer* renderer, vtkVolume* volume, double choice[3]); // vtkStratusMultiBlockVolumeMapper::MeasureSampling()
   // Draws all mappers' blocks in one picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* volume, std::string& error);
 
@@ -181,6 +182,9 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
     }
     this->Configure(from, this->Mappers[i]);
     this->Mappers[i]->SetInputDataObject(blocks[i].Grid);
+  }
+  if (blocks.size() == 1) { // several have a context in common, and their mappers none
+    this->Mappers[0]->SetDevice(this->Settings->GetDevice());
   }
 }
 
@@ -295,6 +299,28 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Cast(
   return true;
 }
 
+bool vtkStratusMultiBlockVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume* volume, double choice[3])
+{
+  if (this->Mappers.size() == 1) {
+    return this->Mappers[0]->MeasureSampling(renderer, volume, choice);
+  }
+  std::string unused;
+  if (!this->Describe(renderer, volume, unused) || !this->PrepareContext(unused)) {
+    return false;
+  }
+  bool any = false;
+  for (size_t i = 0; i < this->Mappers.size(); ++i) {
+    double own[3];
+    if (this->Mappers[i]->Internal->Probe(this->Casters[i], this->Options[i], own)) {
+      choice[0] = any ? std::max(choice[0], own[0]) : own[0];
+      choice[1] = any ? std::min(choice[1], own[1]) : own[1];
+      choice[2] = any ? std::min(choice[2], own[2]) : own[2];
+      any = true;
+    }
+  }
+  return any;
+}
+
 bool vtkStratusMultiBlockVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* volume, std::string& error)
 {
   if (!this->Picture.Begin(renderer, volume, volume->GetMapper(), this->Error, error)) {
@@ -330,7 +356,6 @@ void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* 
     }
   }
   if (blocks.size() == 1) { // draws and tells by itself
-    mappers[0]->SetDevice(this->Internal->Settings->GetDevice());
     mappers[0]->Render(renderer, volume);
     error = mappers[0]->GetLastError();
   } else if (!blocks.empty()) {
@@ -354,20 +379,9 @@ vtkImageData* vtkStratusMultiBlockVolumeMapper::GetLastImage()
 
 bool vtkStratusMultiBlockVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3])
 {
-  std::string warning;
-  const std::vector<Block> blocks = this->Internal->Find(this->GetInputDataObject(0, 0), this, warning);
-  this->Internal->Configure(this, blocks);
-  bool any = false;
-  for (const auto& mapper : this->Internal->Mappers) {
-    double own[3];
-    if (mapper->MeasureSampling(renderer, volume, own)) {
-      choice[0] = any ? std::max(choice[0], own[0]) : own[0];
-      choice[1] = any ? std::min(choice[1], own[1]) : own[1];
-      choice[2] = any ? std::min(choice[2], own[2]) : own[2];
-      any = true;
-    }
-  }
-  return any;
+  std::string unused;
+  this->Internal->Configure(this, this->Internal->Find(this->GetInputDataObject(0, 0), this, unused));
+  return this->Internal->Measure(renderer, volume, choice);
 }
 
 vtkStratusVolumeMapper* vtkStratusMultiBlockVolumeMapper::GetSettings()

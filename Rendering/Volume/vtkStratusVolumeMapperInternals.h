@@ -31,6 +31,8 @@ public:
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   // vtkStratusVolumeMapper::MeasureSampling().
   bool Measure(vtkRenderer* renderer, vtkVolume* prop, double choice[3]);
+  // The same by a caster, with options of Describe().
+  bool Probe(stratus_ray_caster* caster, stratus_ray_cast_options options, double choice[3]);
   // Checks everything that is drawn but the camera, and sets Image, Functions and the options by it. Needs no context.
   bool Describe(vtkRenderer* renderer, vtkVolume* prop, stratus_ray_cast_options& options, std::string& error);
   // Offers the input's tree to a caster of the context. A damaged tree is reported once, and the caster builds its own.

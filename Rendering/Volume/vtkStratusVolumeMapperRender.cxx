@@ -118,14 +118,16 @@ bool vtkStratusVolumeMapper::Internals::Describe(
     this->PrepareInput(prop, error) && this->SetOptions(property, options, error) && this->SetShading(renderer, property, options, error);
 }
 
-// What is chosen hangs on no camera, so that a picture of one ray tells it.
 bool vtkStratusVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume* prop, double choice[3])
 {
   std::string error;
   stratus_ray_cast_options options;
-  if (!this->Describe(renderer, prop, options, error) || !this->PrepareContext(error)) {
-    return false;
-  }
+  return this->Describe(renderer, prop, options, error) && this->PrepareContext(error) && this->Probe(this->Caster, options, choice);
+}
+
+// What is chosen hangs on no camera, so that a picture of one ray tells it.
+bool vtkStratusVolumeMapper::Internals::Probe(stratus_ray_caster* caster, stratus_ray_cast_options options, double choice[3])
+{
   float rgba[4];
   stratus_image image = stratus_image();
   image.width = image.height = 1;
@@ -136,7 +138,7 @@ bool vtkStratusVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume
   stratus_ray_cast_report report;
   options.audit = 0;
   const stratus_status status =
-    stratus_ray_caster_render(this->Caster, &this->Image.GetVolume(), this->Functions.data(), &camera, &options, &image, &report);
+    stratus_ray_caster_render(caster, &this->Image.GetVolume(), this->Functions.data(), &camera, &options, &image, &report);
   choice[0] = std::min<int>(report.sampling, CELLS_SAMPLING);
   choice[1] = report.sample_distance;
   choice[2] = report.cell_error;

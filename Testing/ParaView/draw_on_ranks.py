@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws scenes on so many ranks: pvbatch --sym draw_on_ranks.py PLUGIN FOLDER, by mpiexec. Pictures are FOLDER/NAME-RANKS.png. One rank
-writes the data; more find it there. FOLDER/differences-RANKS gets a line a scene: the largest difference to one rank's picture, and how many
-thousandths of the lit pixels differ. What differs, 16 times as large, is FOLDER/NAME-RANKS-difference.png."""
+writes the data; more find it there. FOLDER/differences-RANKS gets a line a scene: the largest difference to one rank's picture, what it may
+be, and how many thousandths of the lit pixels differ. What differs, 16 times as large, is FOLDER/NAME-RANKS-difference.png."""
 import os
 import sys
 
@@ -81,6 +81,9 @@ SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POIN
           ("rectilinear", "levels.vtr", "POINTS", []), ("rectilinear-shade", "levels.vtr", "POINTS", [shade]),
           ("blocks", "parts.vtm", "POINTS", []), ("structured", "hills.vts", "POINTS", []), ("structured-shade", "hills.vts", "POINTS", [shade]),
           ("unstructured", "cells.vtu", "POINTS", []), ("unstructured-opaque", "cells.vtu", "POINTS", [opaque])]
+# Other scenes may differ by 1. ParaView cuts translucent surfaces at the ranks' borders. The light of a mesh comes from gradients at its points, and
+# the cells about a rank's points are not all on the rank.
+MORE = {"image-shade": 2, "image-translucent": 4, "blocks": 2, "structured-shade": 4}
 wanted = sys.argv[3:]
 
 simple.LoadPlugin(plugin, ns=vars(simple))
@@ -103,6 +106,6 @@ for name, file, of, changes in SCENES:
             raise SystemExit(f"{name} does not show on one rank")
         difference = abs(picture(name, ranks) - one)
         write_difference(name, difference)
-        differences.append(f"{name} {difference.max()} {round(1000 * (difference.max(axis=1) > 0).sum() / lit.sum())}")
+        differences.append(f"{name} {difference.max()} {MORE.get(name, 1)} {round(1000 * (difference.max(axis=1) > 0).sum() / lit.sum())}")
 if rank == 0 and ranks > 1:
     open(os.path.join(folder, f"differences-{ranks}"), "w").write("\n".join(differences) + "\n")

@@ -125,6 +125,16 @@ def filters(cloud, shown, view, before):
     check(sorted(set(leaves)) == [0, 1, 2, 3] and (numpy.diff(leaves) >= 0).all(), "four leaves, one after the other")
 
 
+def statistics(shown):
+    """The panel tells of the last picture."""
+    shown.StratusSampling = "Midpoint"
+    simple.Render()
+    shown.SMProxy.UpdatePropertyInformation()
+    check(shown.StratusSamplesTaken > 0 and shown.StratusCastTime > 0 and shown.StratusUsedSampleDistance == 5,
+          "samples, time and step are told")
+    check(shown.StratusStructureUsed == "hybrid" and shown.StratusSamplingUsed == "midpoint" and shown.StratusReason, "what was chosen is told")
+
+
 def tetgen_files():
     base = os.path.join(folder, "two")
     open(base + ".node", "w").write("5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n")
@@ -143,6 +153,7 @@ colors = [(0, 0.3, 0.4, 0.7), (0.5, 0.9, 0.9, 0.9), (most, 1, 0.9, 0.7)]
 cloud, shown, view, png, _ = draw(cloud_path, "density", [(0.05, 0), (most, 0.4)], colors, 1.0, 55)
 translucent(shown, view)
 filters(cloud, shown, view, png)
+statistics(shown)
 tetgen_files()
 isabel = os.path.realpath("../shared/data/isabel_02.vti")
 whole = os.path.exists(isabel)
