@@ -59,7 +59,7 @@ static void set_tables(const stratus_ray_caster* caster, const stratus_ray_cast_
   const stratus_volume* volume = &caster->traversed;
   const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
   a->media.components = shading->components;
-  a->media.dependent = caster->dependent;
+  a->media.dependent = caster->dependent ? a->media.components - 1 : 0;
   a->media.mean = options->mean_components && !caster->dependent;
   a->media.factor_reach = 0.0f;
   a->media.factor_last = (float)STRATUS_SHADING_FACTORS;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The reference's ray through several volumes. It knows no lattice, no table and no structure: between the places where the ray enters or
- * leaves a volume, or a cell of a mesh, it takes even steps, and at the middle of each asks every volume and cell. */
+ * leaves a volume, or a cell of a mesh, it takes even steps, and at the middle of each asks every volume and cell. Steps whose halves show
+ * otherwise are halved. */
 #include "reference_several.h"
 
 #include "reference_field.h"
@@ -12,6 +13,9 @@
 
 /* The optical depth of a unit of what has opacity 1. */
 #define WALL 1e9
+/* By how much of 1 a part of a ray may show otherwise than its halves, and how often one is halved: edges of functions are sharp. */
+#define PARTS_AGREE 1e-9
+#define HALVINGS_MOST 24
 
 typedef struct medium {
   const reference_scene* scene;
@@ -198,9 +202,68 @@ typedef struct passage {
   double* cuts;
 } passage;
 
+/* A part of a ray, taken as even: what its middle has per length. */
+typedef struct part {
+  double middle, length, tau, glow[3];
+} part;
+
+static part part_about(const passage* p, const line* r, double middle, double length)
+{
+  part at = { .middle = middle, .length = length };
+  for (int m = 0; m < p->count; ++m) {
+    if (middle > p->media[m].begin && middle < p->media[m].end) {
+      add_medium(&p->media[m], r, middle, &at.tau, at.glow);
+    }
+  }
+  for (size_t m = 0; m < p->cell_count; ++m) {
+    if (middle > p->cells[m].begin && middle < p->cells[m].end) {
+      add_cell(&p->cells[m], middle, &at.tau, at.glow);
+    }
+  }
+  return at;
+}
+
+/* What has been composited so far. */
+typedef struct composited {
+  double color[3], left, first;
+} composited;
+
+static void composite_part(const part* at, composited* so_far)
+{
+  if (at->tau > 0.0) {
+    const double kept = -expm1(-at->tau * at->length);
+    for (int a = 0; a < 3; ++a) {
+      so_far->color[a] += so_far->left * kept * at->glow[a] / at->tau;
+    }
+    so_far->left *= 1.0 - kept;
+    so_far->first = fmin(at->middle, so_far->first);
+  }
+}
+
+/* Composites a part as two halves, or, where these show otherwise than it does, the halves in turn as theirs. */
+static void composite_halves(const passage* p, const line* r, const part* whole, int deeper, composited* so_far)
+{
+  const double half = 0.5 * whole->length;
+  const part near_half = part_about(p, r, whole->middle - 0.5 * half, half), far_half = part_about(p, r, whole->middle + 0.5 * half, half);
+  composited as_one = *so_far, as_two = *so_far;
+  composite_part(whole, &as_one);
+  composite_part(&near_half, &as_two);
+  composite_part(&far_half, &as_two);
+  double apart = fabs(as_two.left - as_one.left);
+  for (int a = 0; a < 3; ++a) {
+    apart = fmax(apart, fabs(as_two.color[a] - as_one.color[a]));
+  }
+  if (apart <= PARTS_AGREE || deeper == 0) {
+    *so_far = as_two;
+    return;
+  }
+  composite_halves(p, r, &near_half, deeper - 1, so_far);
+  composite_halves(p, r, &far_half, deeper - 1, so_far);
+}
+
 static double trace_several(const passage* p, const line* r, double longest, float pixel[4])
 {
-  double left = 1.0, sum[3] = { 0.0, 0.0, 0.0 }, first = (double)INFINITY;
+  composited so_far = { .left = 1.0, .first = (double)INFINITY };
   double* cuts = p->cuts;
   size_t n = 0;
   for (int i = 0; i < p->count; ++i) {
@@ -218,34 +281,16 @@ static double trace_several(const passage* p, const line* r, double longest, flo
   for (size_t c = 1; c < n; ++c) {
     const double length = cuts[c] - cuts[c - 1];
     const int64_t steps = (int64_t)ceil(length / longest);
-    for (int64_t i = 0; i < steps && left > 1e-12; ++i) {
-      const double s = cuts[c - 1] + ((double)i + 0.5) * length / (double)steps;
-      double tau = 0.0, glow[3] = { 0.0, 0.0, 0.0 };
-      for (int m = 0; m < p->count; ++m) {
-        if (s > p->media[m].begin && s < p->media[m].end) {
-          add_medium(&p->media[m], r, s, &tau, glow);
-        }
-      }
-      for (size_t m = 0; m < p->cell_count; ++m) {
-        if (s > p->cells[m].begin && s < p->cells[m].end) {
-          add_cell(&p->cells[m], s, &tau, glow);
-        }
-      }
-      if (tau > 0.0) {
-        const double kept = -expm1(-tau * length / (double)steps);
-        for (int a = 0; a < 3; ++a) {
-          sum[a] += left * kept * glow[a] / tau;
-        }
-        left *= 1.0 - kept;
-        first = s < first ? s : first;
-      }
+    for (int64_t i = 0; i < steps && so_far.left > 1e-12; ++i) {
+      const part step = part_about(p, r, cuts[c - 1] + ((double)i + 0.5) * length / (double)steps, length / (double)steps);
+      composite_halves(p, r, &step, HALVINGS_MOST, &so_far);
     }
   }
   for (int a = 0; a < 3; ++a) {
-    pixel[a] = (float)sum[a];
+    pixel[a] = (float)so_far.color[a];
   }
-  pixel[3] = (float)(1.0 - left);
-  return first;
+  pixel[3] = (float)(1.0 - so_far.left);
+  return so_far.first;
 }
 
 /* Draws a row of pixels. Returns 0, or -1 without memory. */

@@ -34,7 +34,8 @@ typedef struct reference_mixture {
 int reference_render_mixture(const reference_mixture* mixture, int width, int height, double step, float* rgba, float* depth);
 
 /* Draws 1..8 scenes, all from the camera and with the opaque depth of the first, as reference_render() does, in midpoint steps between the
- * places where a ray enters or leaves a volume. step: the largest, in units of the shortest voxel edge of all volumes, > 0. */
+ * places where a ray enters or leaves a volume, halved where it shows. step: the largest, in units of the shortest voxel edge of all
+ * volumes, > 0. */
 int reference_render_several(const reference_scene* scenes, int count, int width, int height, double step, float* rgba, float* depth);
 
 /* As reference_converged(), from a step of 1/4 on to 1/512. */

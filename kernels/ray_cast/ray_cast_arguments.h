@@ -156,7 +156,8 @@ typedef struct stratus_ray_mode {
 /* Shading by several tables: each component and each label has a table of its own, and each component a gradient opacity. All stand in one
  * array of floats. */
 typedef struct stratus_ray_media {
-  int components, dependent;          /* components 0 and 1: one value */
+  int components;                     /* 0 and 1: one value */
+  int dependent;                      /* the last component, which has the opacity, where the others have the colour; else 0 */
   int mean;                           /* independent components count by their share of the optical depth */
   int component_bytes;                /* from a value to the next component's */
   float gradient_length[3];           /* takes a value's index gradient to value per mean spacing */

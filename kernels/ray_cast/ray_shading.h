@@ -88,7 +88,7 @@ INLINE void RAY_NAME(add_independent)(
 INLINE void RAY_NAME(add_dependent)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[5])
 {
-  const int last = a->media.components - 1;
+  const int last = a->media.dependent;
   vfloat value = RAY_NAME(component_value)(a, k, sample, last, k->live), layer[4], color[4];
   vmask valid = k->live & v_finite(value);
   gather_four((GLOBAL const float*)table + a->media.first[last], shading_entry(a, table, last, value), valid, layer);
