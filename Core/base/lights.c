@@ -24,6 +24,12 @@ static stratus_status check_light(stratus_context* context, const stratus_light*
         light->vector[1], light->vector[2], light->color[0], light->color[1], light->color[2], STRATUS_LIGHT_MAX);
     }
   }
+  for (int i = 0; light->separate_specular && i < 3; ++i) {
+    if (!(light->specular_color[i] >= 0.0 && light->specular_color[i] <= STRATUS_LIGHT_MAX)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light %d has highlights of colour (%g, %g, %g), must be 0..%g", number,
+        light->specular_color[0], light->specular_color[1], light->specular_color[2], STRATUS_LIGHT_MAX);
+    }
+  }
   if (!light->positional && light->vector[0] == 0.0 && light->vector[1] == 0.0 && light->vector[2] == 0.0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light %d has the direction (0, 0, 0), must have a length", number);
   }
@@ -92,6 +98,7 @@ static void set_light(const stratus_light* light, const double origin[3], double
   for (int axis = 0; axis < 3; ++axis) {
     a->vector[number][axis] = (float)(vector[axis] / length);
     a->color[number][axis] = (float)light->color[axis];
+    a->specular_color[number][axis] = (float)(light->separate_specular ? light->specular_color : light->color)[axis];
   }
   a->positional[number] = near;
   const bool dimmed = near && (light->attenuation[0] != 0.0 || light->attenuation[1] != 0.0 || light->attenuation[2] != 0.0);

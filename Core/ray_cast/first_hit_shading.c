@@ -201,9 +201,10 @@ static void illuminate(
       stratus_vector_dot(to, direction) - 2.0 * cosine * stratus_vector_dot(normal, direction); /* R . V, with V = -direction */
     const double shine = shading->specular > 0.0 && mirrored > 0.0 ? shading->specular * pow(mirrored, shading->specular_power) : 0.0;
     const double part = shader->lights[i].positional ? reaching(&shader->lights[i], to, distance) : 1.0;
+    const double* specular_color = shader->lights[i].separate_specular ? shader->lights[i].specular_color : shader->lights[i].color;
     for (int c = 0; c < 3; ++c) {
       light[c] += part * shading->diffuse * cosine * shader->lights[i].color[c];
-      gloss[c] += part * shine * shader->lights[i].color[c];
+      gloss[c] += part * shine * specular_color[c];
     }
   }
   for (int c = 0; c < 3; ++c) {

@@ -70,6 +70,8 @@ typedef struct stratus_light {
   double cone_angle;
   double axis[3]; /* world: where the light shines, of any length > 0 */
   double cone_exponent;
+  int separate_specular;    /* 1: highlights have the next colour. 0 (default): they have `color`, and the next is not read. */
+  double specular_color[3]; /* as `color` */
 } stratus_light;
 
 /* What light makes of one component. */
@@ -78,11 +80,11 @@ typedef struct stratus_material {
   double ambient, diffuse, specular, specular_power; /* as in stratus_shading */
 } stratus_material;
 
-/* Phong shading. With the transfer function's colour C, c = ambient C + sum over lights of l (diffuse max(0, N L) C + specular max(0, R
- * V)^power). Samples of volumes (composite) are lit as VTK's mappers light them: N H replaces R V, where H is half way between L and V
- * (Blinn), and specular counts only where N L > 0. N points against the gradient, found by central differences, and is 0 where the gradient
- * is 0. Where nothing is lit, the other numbers of a shading are neither read nor checked: in first hits if `on` is 0, in composite and
- * isosurface if `shade` is 0, and in all other modes. */
+/* Phong shading. With the transfer function's colour C, c = ambient C + sum over lights of diffuse max(0, N L) l C + specular max(0, R
+ * V)^power s, where l is a light's colour and s that of its highlights. Samples of volumes (composite) are lit as VTK's mappers light them:
+ * N H replaces R V, where H is half way between L and V (Blinn), and specular counts only where N L > 0. N points against the gradient,
+ * found by central differences, and is 0 where the gradient is 0. Where nothing is lit, the other numbers of a shading are neither read nor
+ * checked: in first hits if `on` is 0, in composite and isosurface if `shade` is 0, and in all other modes. */
 typedef struct stratus_shading {
   int on;                /* first hits; 0: c = C. Default 1. Composite reads stratus_ray_cast_options.shade instead. */
   double ambient;        /* 0..STRATUS_LIGHT_MAX, as are the next three; default .1 */

@@ -165,16 +165,18 @@ stratus_status stratus_tetra_light_update(stratus_tetra_caster* caster, const st
  * several materials the one that changes most counts. */
 static void set_bend(stratus_tetra_arguments* a)
 {
-  double strength = 0.0;
+  double matt = 0.0, shine = 0.0;
   for (int i = 0; i < a->light.count; ++i) {
-    strength += fmax(fmax((double)a->light.color[i][0], (double)a->light.color[i][1]), (double)a->light.color[i][2]);
+    const float *color = a->light.color[i], *specular_color = a->light.specular_color[i];
+    matt += (double)fmaxf(fmaxf(color[0], color[1]), color[2]);
+    shine += (double)fmaxf(fmaxf(specular_color[0], specular_color[1]), specular_color[2]);
   }
   for (int c = 0; c < STRATUS_COMPONENTS_MAX; ++c) {
     const float* m = a->light.material[c];
-    const double diffuse = (double)m[1], specular = (double)m[2], power = fmax((double)m[3], 1.0);
+    const double diffuse = matt * (double)m[1], specular = shine * (double)m[2], power = fmax((double)m[3], 1.0);
     if (a->light.on >> c & 1) {
-      a->bend[0] = fmaxf(a->bend[0], (float)fmin(strength * (diffuse + sqrt(power) * specular), 1e15));
-      a->bend[1] = fmaxf(a->bend[1], (float)fmin(strength * (diffuse + power * specular), 1e15));
+      a->bend[0] = fmaxf(a->bend[0], (float)fmin(diffuse + sqrt(power) * specular, 1e15));
+      a->bend[1] = fmaxf(a->bend[1], (float)fmin(diffuse + power * specular, 1e15));
     }
   }
 }

@@ -202,13 +202,7 @@ void vtkStratusVolumeRepresentation::UpdateMapperParameters()
                                                                     : vtkStratusVolumeMapper::COMPONENT);
   mapper->SetTransfer2DYAxisArray(
     this->UseTransfer2D && !this->UseGradientForTransfer2D && !this->ColorArray2Name.empty() ? this->ColorArray2Name.c_str() : nullptr);
-  const int component = std::max(colors->GetVectorComponent(), 0);
-  mapper->SetVectorComponent(component);
-  if (!magnitude && component > 0 && component < VTK_MAX_VRCOMP) { // ParaView edits the first component's functions, whichever shows
-    this->Property->SetColor(component, colors);
-    this->Property->SetScalarOpacity(component, this->Property->GetScalarOpacity(0));
-    this->Property->SetScalarOpacityUnitDistance(component, this->Property->GetScalarOpacityUnitDistance(0));
-  }
+  mapper->SetVectorComponent(std::max(colors->GetVectorComponent(), 0));
 }
 
 void vtkStratusVolumeRepresentation::ApplyBlendMode()

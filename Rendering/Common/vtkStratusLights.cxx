@@ -20,22 +20,24 @@ void SetLight(vtkLight* light, stratus_light& result)
   // An angle of 0 has light on the axis alone; the core's 0 is no cone.
   result.cone_angle = light->GetConeAngle() >= 90.0 ? 0.0 : std::max(light->GetConeAngle(), 1e-6);
   result.cone_exponent = light->GetExponent();
+  result.separate_specular = 1;
   for (int a = 0; a < 3; ++a) {
     result.attenuation[a] = attenuation[a];
     result.axis[a] = focal[a] - position[a];
     result.vector[a] = result.positional ? position[a] : position[a] - focal[a];
     result.color[a] = light->GetIntensity() * light->GetDiffuseColor()[a];
+    result.specular_color[a] = light->GetIntensity() * light->GetSpecularColor()[a];
   }
 }
 } // namespace
 
-bool vtkStratusSetShading(vtkRenderer* renderer, vtkVolumeProperty* property, int component, stratus_shading& shading, std::string& error)
+bool vtkStratusSetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_shading& shading, std::string& error)
 {
   shading.one_sided = renderer->GetTwoSidedLighting() ? 0 : 1;
-  shading.ambient = property->GetAmbient(component);
-  shading.diffuse = property->GetDiffuse(component);
-  shading.specular = property->GetSpecular(component);
-  shading.specular_power = property->GetSpecularPower(component);
+  shading.ambient = property->GetAmbient();
+  shading.diffuse = property->GetDiffuse();
+  shading.specular = property->GetSpecular();
+  shading.specular_power = property->GetSpecularPower();
   shading.light_count = 0;
   vtkLightCollection* lights = renderer->GetLights();
   vtkCollectionSimpleIterator iterator;
@@ -53,15 +55,14 @@ bool vtkStratusSetShading(vtkRenderer* renderer, vtkVolumeProperty* property, in
   return true;
 }
 
-bool vtkStratusSetMaterials(vtkVolumeProperty* property, int first, int count, stratus_material* materials, bool& alike)
+bool vtkStratusSetMaterials(vtkVolumeProperty* property, int count, stratus_material* materials, bool& alike)
 {
   bool lit = false;
   alike = true;
   for (int c = 0; c < count; ++c) {
-    const int p = first + c;
     stratus_material& mine = materials[c];
-    mine = { property->GetShade(p), property->GetAmbient(p), property->GetDiffuse(p), property->GetSpecular(p),
-      property->GetSpecularPower(p) };
+    mine = { property->GetShade(c), property->GetAmbient(c), property->GetDiffuse(c), property->GetSpecular(c),
+      property->GetSpecularPower(c) };
     lit = lit || mine.shade;
     alike = alike && mine.shade == materials[0].shade && mine.ambient == materials[0].ambient && mine.diffuse == materials[0].diffuse &&
       mine.specular == materials[0].specular && mine.specular_power == materials[0].specular_power;

@@ -11,12 +11,11 @@
 class vtkRenderer;
 class vtkVolumeProperty;
 
-// Sets the material of a component, and the lights that are on, unless `shading` is off.
+// Sets the material of the first component, and the lights that are on, unless `shading` is off.
 VTK_STRATUS_PRIVATE bool vtkStratusSetShading(
-  vtkRenderer* renderer, vtkVolumeProperty* property, int component, stratus_shading& shading, std::string& error);
+  vtkRenderer* renderer, vtkVolumeProperty* property, stratus_shading& shading, std::string& error);
 
-// Sets the materials of `count` components from `first` on. Returns whether one of them is lit; alike: they are the same.
-VTK_STRATUS_PRIVATE bool vtkStratusSetMaterials(
-  vtkVolumeProperty* property, int first, int count, stratus_material* materials, bool& alike);
+// Sets the materials of the first `count` components. Returns whether one of them is lit; alike: they are the same.
+VTK_STRATUS_PRIVATE bool vtkStratusSetMaterials(vtkVolumeProperty* property, int count, stratus_material* materials, bool& alike);
 
 #endif

@@ -5,6 +5,7 @@
 #include "vtkStratusPickRay.h"
 #include "vtkStratusTetrahedra.h"
 #include "vtkStratusTetrahedraMapper.h"
+#include "vtkStratusVectors.h"
 #include "vtkStratusVolumeMapper.h"
 
 #include "vtkAssemblyPath.h"
@@ -89,6 +90,9 @@ bool vtkStratusVolumePicker::Internals::Pick(
     ray.CropPlanes = rays->GetCropping() ? rays->GetCroppingRegionPlanes() : nullptr;
     ray.CropRegions = rays->GetCroppingRegionFlags();
   } else if (vtkStratusTetrahedraMapper* march = vtkStratusTetrahedraMapper::SafeDownCast(mapper)) {
+    const int wanted = vtkStratusVectors::Find(property, components);
+    magnitude = wanted == vtkStratusVectors::Magnitude;
+    component = wanted >= 0 ? std::min(wanted, components - 1) : component;
     ray.CropPlanes = march->GetCropping() ? march->GetCroppingRegionPlanes() : nullptr;
   }
   ray.Value = [=](vtkIdType tuple) {

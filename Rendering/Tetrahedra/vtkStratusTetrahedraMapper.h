@@ -23,7 +23,9 @@
  * - point and cell scalars of any numeric type but bits; also of 2 to 4 independent components, each with functions of its own, which mix
  *   in composite (ComponentMixing), while maximum, minimum, average and additive draw each by itself and add the weighted colours; and in
  *   composite of dependent ones: 2 (colour by the first, opacity by the second) and 4 unsigned bytes (red, green, blue, and the opacity's
- *   value). They are marched;
+ *   value). They are marched. Of independent ones the first colour function's VectorMode draws one value, as VTK's mappers of meshes do:
+ * the magnitude, or the component that VectorComponent names, by the functions of component 0. The first component, the default, leaves 2
+ * to 4 to mix, and is what is drawn of more;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
  * - the blend modes composite, maximum and minimum intensity (the largest or smallest value on a ray, at the opacity of one unit distance),
  *   average and additive intensity, and isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
@@ -40,7 +42,7 @@
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
- * All else (more components, isosurfaces of several, dependent ones in other modes than composite, two-dimensional transfer functions,
+ * All else (isosurfaces of several, dependent ones in other modes than composite, two-dimensional transfer functions,
  * label maps, slices) is refused by an error, and nothing is drawn.
  *
  * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.

@@ -83,7 +83,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
     return false;
   }
   bool alike = true;
-  const bool lit = vtkStratusSetMaterials(property, 0, media, this->Materials.data(), alike);
+  const bool lit = vtkStratusSetMaterials(property, media, this->Materials.data(), alike);
   if (lit && options.mode != STRATUS_TETRA_COMPOSITE && options.mode != STRATUS_TETRA_ISOSURFACE) {
     error = "shading is not supported in blend mode " + std::to_string(this->Mapper->BlendMode) +
       ", only composite (0) and isosurface (5) are lit";
@@ -91,7 +91,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
   }
   options.materials = alike ? nullptr : this->Materials.data();
   options.shade = property->GetShade();
-  return !lit || vtkStratusSetShading(renderer, property, 0, options.shading, error);
+  return !lit || vtkStratusSetShading(renderer, property, options.shading, error);
 }
 
 bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
@@ -111,14 +111,29 @@ bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property,
   return true;
 }
 
+// Finds a grid's values, one for each tuple where the colour function says so. Without a property, as in a question for bounds before the
+// first picture, all components stay.
+vtkDataArray* vtkStratusTetrahedraMapper::Internals::FindScalars(vtkDataSet* grid, int& cells, std::string& error)
+{
+  vtkStratusTetrahedraMapper* mapper = this->Mapper;
+  vtkDataArray* array =
+    vtkAbstractMapper::GetScalars(grid, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells);
+  const int components = array ? array->GetNumberOfComponents() : 0;
+  const int wanted = this->Property && array ? vtkStratusVectors::Find(this->Property, components) : vtkStratusVectors::All;
+  if (wanted >= components) {
+    error = "the colour function's VectorComponent is " + std::to_string(wanted) + ", the array has " + std::to_string(components) +
+      " components: 0 to " + std::to_string(components - 1);
+    return nullptr;
+  }
+  return wanted == vtkStratusVectors::All ? array : this->Vectors.Get(array, wanted, grid->GetMTime());
+}
+
 // Finds the grid, or the grids, of an input that is up to date. None: the input is a composite data set without cells.
 bool vtkStratusTetrahedraMapper::Internals::FindDrawn(Drawn& drawn, std::string& error)
 {
-  vtkStratusTetrahedraMapper* mapper = this->Mapper;
-  const auto find = [mapper](vtkDataSet* grid, int& cells) {
-    return vtkAbstractMapper::GetScalars(grid, mapper->ScalarMode, mapper->ArrayAccessMode, mapper->ArrayId, mapper->ArrayName, cells);
-  };
-  vtkDataObject* input = mapper->GetDataObjectInput();
+  std::string lacking;
+  const auto find = [&](vtkDataSet* grid, int& cells) { return this->FindScalars(grid, cells, lacking); };
+  vtkDataObject* input = this->Mapper->GetDataObjectInput();
   drawn = { nullptr, nullptr, false, nullptr };
   if (vtkUnstructuredGrid::SafeDownCast(input) || vtkStructuredGrid::SafeDownCast(input)) {
     drawn.Grid = vtkDataSet::SafeDownCast(input);
@@ -130,12 +145,16 @@ bool vtkStratusTetrahedraMapper::Internals::FindDrawn(Drawn& drawn, std::string&
     drawn.Scalars = find(drawn.Grid, cells);
     drawn.Cells = cells == 1;
     if (!drawn.Scalars || cells > 1) {
-      error = std::string("there is no scalar array for scalar mode ") + mapper->GetScalarModeAsString();
+      error = lacking.empty() ? std::string("there is no scalar array for scalar mode ") + this->Mapper->GetScalarModeAsString() : lacking;
     }
     return error.empty();
   }
   if (auto* whole = vtkDataObjectTree::SafeDownCast(input)) {
     const bool taken = this->Blocks.Set(whole, find, error, true);
+    if (!lacking.empty()) {
+      error = lacking;
+      return false;
+    }
     const bool several = !this->Blocks.GetLattices().empty();
     drawn = { this->Blocks.GetGrid(), this->Blocks.GetScalars(), this->Blocks.OfCells(), several ? &this->Blocks.GetLattices() : nullptr };
     return taken;
@@ -203,6 +222,8 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& 
   if (this->Mapper->GetNumberOfInputConnections(0) > 0) {
     this->Mapper->GetInputAlgorithm()->Update();
   }
+  this->Property = prop->GetProperty();
+  this->Vectors.Sweep();
   if (!this->FindDrawn(drawn, error)) {
     return false;
   }

@@ -10,11 +10,14 @@
 #include "vtkStratusMeshView.h"
 #include "vtkStratusPicture.h"
 #include "vtkStratusTetrahedraMapper.h"
+#include "vtkStratusVectors.h"
 
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 #include "vtkTable.h"
+#include "vtkVolumeProperty.h"
+#include "vtkWeakPointer.h"
 
 #include <array>
 #include <string>
@@ -22,7 +25,6 @@
 
 class vtkDataSet;
 class vtkMatrix4x4;
-class vtkVolumeProperty;
 
 class VTK_STRATUS_PRIVATE vtkStratusTetrahedraMapper::Internals
 {
@@ -59,6 +61,7 @@ private:
     bool Cells;
     const vtkStratusBlocks::Lattices* Several;
   };
+  vtkDataArray* FindScalars(vtkDataSet* grid, int& cells, std::string& error);
   bool FindDrawn(Drawn& drawn, std::string& error);
   bool SetMesh(const Drawn& drawn, vtkMatrix4x4* matrix, std::string& error);
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
@@ -76,6 +79,8 @@ private:
   std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{};
   vtkStratusPicture Picture;
   bool HasPicture = false;
+  vtkStratusVectors Vectors;
+  vtkWeakPointer<vtkVolumeProperty> Property; // whose colour function tells which of several components is drawn
   vtkStratusBlocks Blocks;
   std::string LastLeftOut; // told already
   double Box[6] = { 0, 0, 0, 0, 0, 0 };

@@ -255,9 +255,8 @@ public:
   //@{
   /**
    * Set/Get what of an array of several components is drawn, as in vtkSmartVolumeMapper: all of them (DISABLED), their magnitude, in double
-   * precision, by the functions of component 0, or VectorComponent alone, by that component's functions where the property's components are
-   * independent and it has so many, else by those of component 0. A component that the array lacks is an error. An array of one component
-   * is drawn as it is. Default DISABLED and 0.
+   * precision, or VectorComponent alone, both by what the property has for component 0. A component that the array lacks is an error. An
+   * array of one component is drawn as it is. Default DISABLED and 0.
    */
   vtkSetClampMacro(VectorMode, int, DISABLED, COMPONENT);
   vtkGetMacro(VectorMode, int);

@@ -20,7 +20,7 @@ bool vtkStratusVolumeMapper::Internals::SetMaterials(vtkVolumeProperty* property
 {
   const int components = this->Image.GetVolume().components;
   bool alike = true;
-  const bool lit = vtkStratusSetMaterials(property, this->FirstFunction, components, this->Materials.data(), alike);
+  const bool lit = vtkStratusSetMaterials(property, components, this->Materials.data(), alike);
   const bool mixes = options.mode == STRATUS_MODE_COMPOSITE && components > 1 && property->GetIndependentComponents();
   options.materials = mixes && !alike ? this->Materials.data() : nullptr;
   return mixes && lit;
@@ -29,14 +29,13 @@ bool vtkStratusVolumeMapper::Internals::SetMaterials(vtkVolumeProperty* property
 bool vtkStratusVolumeMapper::Internals::SetShading(
   vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error)
 {
-  const int first = this->FirstFunction; // of the only component that is drawn
-  if (!this->SetMaterials(property, options) && !this->IsFirstHit() && !property->GetShade(first)) {
+  if (!this->SetMaterials(property, options) && !this->IsFirstHit() && !property->GetShade()) {
     return true;
   }
   stratus_shading& shading = options.shading;
-  shading.on = property->GetShade(first) || options.materials ? 1 : 0;
-  options.shade = property->GetShade(first) ? 1 : 0;
-  return vtkStratusSetShading(renderer, property, first, shading, error);
+  shading.on = property->GetShade() || options.materials ? 1 : 0;
+  options.shade = property->GetShade() ? 1 : 0;
+  return vtkStratusSetShading(renderer, property, shading, error);
 }
 
 // Voxels of values reach halfway beyond the first and the last one.

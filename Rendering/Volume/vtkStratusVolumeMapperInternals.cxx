@@ -145,7 +145,7 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
     return false;
   }
   for (int c = 0; c < media; ++c) {
-    if (!this->Transfers[c].Set(property, this->FirstFunction + c, error)) {
+    if (!this->Transfers[c].Set(property, c, error)) {
       return false;
     }
     this->Functions[c] = this->Transfers[c].GetTransfer();
@@ -189,9 +189,8 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
   }
   const int component = this->GetVectorComponent(array);
   const bool magnitude = mapper->VectorMode == MAGNITUDE && array->GetNumberOfComponents() > 1;
-  const bool own = component >= 0 && component < VTK_MAX_VRCOMP && prop->GetProperty()->GetIndependentComponents();
-  this->FirstFunction = own ? component : 0;
-  array = magnitude ? this->Magnitude(image, array, cells) : array;
+  this->Vectors.Sweep();
+  array = magnitude ? this->Vectors.Get(array, vtkStratusVectors::Magnitude, image->GetMTime()) : array;
   if (HasTransfer2D(prop->GetProperty())) {
     return this->PrepareTransfer2D(prop, image, array, cells, component, error);
   }

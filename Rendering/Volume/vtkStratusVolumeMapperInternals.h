@@ -7,6 +7,7 @@
 #include "vtkStratusDisplay.h"
 #include "vtkStratusInput.h"
 #include "vtkStratusPicture.h"
+#include "vtkStratusVectors.h"
 #include "vtkStratusVolumeMapper.h"
 
 #include "vtkNew.h"
@@ -73,7 +74,6 @@ private:
   // Finds the scalar array, and whether it is of cells.
   vtkDataArray* FindArray(vtkDataSet* image, bool& cells, std::string& error) const;
   // Vectors and what they mean, pictures as images, and calls of VTK's mappers (vtkStratusVolumeMapperVTK.cxx).
-  vtkDataArray* Magnitude(vtkDataSet* image, vtkDataArray* array, bool cells);
   int GetVectorComponent(vtkDataArray* array) const;
   double GetGradientOpacityDistance() const;
   void WarnOfGradientOpacity(vtkVolumeProperty* property);
@@ -115,13 +115,11 @@ private:
   stratus_sampling FullSampling = STRATUS_SAMPLING_AUTO;
   vtkSmartPointer<vtkImageData> LastImage;
   std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{}; // of the picture's components
-  vtkSmartPointer<vtkDataArray> MagnitudeOf, Magnitudes;            // an array, and its magnitudes as of MagnitudeTime
-  vtkMTimeType MagnitudeTime = 0;
+  vtkStratusVectors Vectors;
   stratus_transfer_2d Transfer2D = stratus_transfer_2d(); // of this picture, if the property has one
   vtkSmartPointer<vtkDataArray> PairOf[2], Pairs;         // the arrays of two variables, and both in one as of PairTime
   vtkMTimeType PairTime = 0;
   int PairComponent = 0;     // of PairOf[0]
-  int FirstFunction = 0;     // the property's component whose functions component 0 of the volume takes
   vtkMTimeType WarnedOf = 0; // the property's time when it was last looked at for WarnOfGradientOpacity()
   bool Warned = false;
 };

@@ -78,7 +78,7 @@ vtkDataArray* vtkStratusVolumeMapper::Internals::Pair(vtkDataArray* array, int c
 bool vtkStratusVolumeMapper::Internals::SetTransfer2D(
   vtkVolumeProperty* property, vtkDataArray* array, int component, vtkDataArray* second, std::string& error)
 {
-  vtkImageData* image = property->GetTransferFunction2D(this->FirstFunction);
+  vtkImageData* image = property->GetTransferFunction2D();
   vtkDataArray* entries = image ? image->GetPointData()->GetScalars() : nullptr;
   int size[3] = { 0, 0, 0 };
   if (image) {
@@ -109,7 +109,7 @@ bool vtkStratusVolumeMapper::Internals::SetTransfer2D(
   this->Transfer2D.value_range[0] = any ? range[0] : 0.0;
   this->Transfer2D.value_range[1] = this->Transfer2D.value_range[0] + extent;
   std::copy_n(other, 2, this->Transfer2D.second_range);
-  this->Transfer2D.unit_distance = property->GetScalarOpacityUnitDistance(this->FirstFunction);
+  this->Transfer2D.unit_distance = property->GetScalarOpacityUnitDistance();
   this->Transfer2D.revision = std::max(image->GetMTime(), entries->GetMTime());
   return true;
 }

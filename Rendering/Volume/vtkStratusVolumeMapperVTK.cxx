@@ -7,9 +7,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkFloatArray.h"
-#include "vtkImageCast.h"
 #include "vtkImageData.h"
-#include "vtkImageMagnitude.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedShortArray.h"
@@ -23,32 +21,6 @@
 int vtkStratusVolumeMapper::Internals::GetVectorComponent(vtkDataArray* array) const
 {
   return this->Mapper->VectorMode == COMPONENT && array->GetNumberOfComponents() > 1 ? this->Mapper->VectorComponent : -1;
-}
-
-vtkDataArray* vtkStratusVolumeMapper::Internals::Magnitude(vtkDataSet* image, vtkDataArray* array, bool cells)
-{
-  const vtkIdType wanted = cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
-  const vtkMTimeType time = std::max(array->GetMTime(), image->GetMTime());
-  if (array->GetNumberOfTuples() < wanted) {
-    return array; // the view refuses the array itself, which is what it is to name
-  }
-  if (this->MagnitudeOf == array && this->MagnitudeTime == time) {
-    return this->Magnitudes;
-  }
-  // VTK's filter takes an image of point scalars; the order of values is all that counts, so that a line of them serves any grid.
-  vtkNew<vtkImageData> values;
-  vtkNew<vtkImageCast> cast;
-  vtkNew<vtkImageMagnitude> magnitude;
-  values->SetDimensions(static_cast<int>(wanted), 1, 1);
-  values->GetPointData()->SetScalars(array);
-  cast->SetInputData(values);
-  cast->SetOutputScalarTypeToDouble(); // integers would round the magnitude
-  magnitude->SetInputConnection(cast->GetOutputPort());
-  magnitude->Update();
-  this->Magnitudes = magnitude->GetOutput()->GetPointData()->GetScalars();
-  this->MagnitudeOf = array;
-  this->MagnitudeTime = time;
-  return this->Magnitudes;
 }
 
 // ---------------------------------------------------------------- pictures as images

@@ -221,6 +221,9 @@ static void spoilt_options_are_refused(void** state)
   REFUSED(f, "1e+16", (in.options.shade = 1, in.options.shading.ambient = 1e16));
   REFUSED(f, "1e+153", (in.options.shade = 1, in.options.shading.specular_power = 1e153));
   REFUSED(f, "1e+308", (in.options.shade = in.options.shading.light_count = 1, in.options.shading.lights[0].color[2] = 1e308));
+  REFUSED(f, "-0.5",
+    (in.options.shade = in.options.shading.light_count = in.options.shading.lights[0].separate_specular = 1,
+      in.options.shading.lights[0].vector[0] = 1.0, in.options.shading.lights[0].specular_color[1] = -0.5));
   REFUSED(f, "5", in.options.block_size = 5);
   REFUSED(f, "64", in.options.block_size = 64);
   REFUSED(f, "-4", in.options.block_size = -4);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkStratusTetrahedraMapper: arrays of two to four components give the image mapper's picture of the same linear fields, independent by
-// adding and by their shares, and dependent, lit and not, and in all modes; what is not drawn of them is refused.
+// adding and by their shares, and dependent, lit and not, and in all modes; the colour function chooses among them; what is not drawn of
+// them is refused.
 #include "tetrahedra_scene.h"
 
 #include "vtkColorTransferFunction.h"
 #include "vtkContourValues.h"
+#include "vtkDoubleArray.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -102,6 +105,65 @@ void ModesLikeTheImage(int mode, int components, bool bytes)
   CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
 }
 
+// What VectorMode of the colour function chooses is drawn as an array of these values is, to the bit: of one grid and of blocks.
+void VectorsLikeTheirValues(bool blocks, int components)
+{
+  GridScene scene;
+  SetFields(scene, std::min(components, 4), true);
+  vtkDataArray* fields = scene.Grid->GetPointData()->GetScalars();
+  vtkNew<vtkUnsignedCharArray> vectors;
+  vtkNew<vtkDoubleArray> lengths;
+  vtkNew<vtkUnsignedCharArray> second, first;
+  vectors->SetNumberOfComponents(components);
+  for (vtkIdType p = 0; p < fields->GetNumberOfTuples(); ++p) {
+    double square = 0.0;
+    for (int c = 0; c < components; ++c) {
+      const double value = fields->GetComponent(p, c % 4);
+      vectors->InsertComponent(p, c, value);
+      square += value * value;
+    }
+    lengths->InsertNextValue(std::sqrt(square));
+    first->InsertNextValue(static_cast<unsigned char>(fields->GetComponent(p, 0)));
+    second->InsertNextValue(static_cast<unsigned char>(fields->GetComponent(p, 1)));
+  }
+  SetFunctions(scene.Volume->GetProperty(), 240.0);
+  vtkNew<vtkMultiBlockDataSet> several;
+  const auto picture = [&](vtkDataArray* values) {
+    vtkNew<vtkUnstructuredGrid> one, other;
+    for (vtkUnstructuredGrid* grid : { one.Get(), other.Get() }) {
+      grid->ShallowCopy(scene.Grid);
+      grid->GetPointData()->SetScalars(values);
+    }
+    vtkNew<vtkPoints> moved;
+    moved->DeepCopy(one->GetPoints());
+    for (vtkIdType p = 0; p < moved->GetNumberOfPoints(); ++p) {
+      moved->SetPoint(p, moved->GetPoint(p)[0] + Boxes, moved->GetPoint(p)[1], moved->GetPoint(p)[2]);
+    }
+    other->SetPoints(moved);
+    several->SetBlock(0, one);
+    several->SetBlock(1, other);
+    scene.Tetrahedra->SetInputDataObject(blocks ? static_cast<vtkDataObject*>(several) : one);
+    return scene.GridPicture();
+  };
+  vtkColorTransferFunction* color = scene.Volume->GetProperty()->GetRGBTransferFunction();
+  const std::vector<float> of_lengths = picture(lengths), of_first = picture(first), of_second = picture(second);
+  CHECK(of_lengths != of_second && of_first != of_second && !of_second.empty(), "the fields show the same");
+  color->SetVectorModeToMagnitude();
+  CHECK(picture(vectors) == of_lengths, "%d components, blocks %d: magnitudes", components, blocks);
+  color->SetVectorModeToComponent();
+  color->SetVectorComponent(1);
+  CHECK(picture(vectors) == of_second, "%d components, blocks %d: the second", components, blocks);
+  color->SetVectorComponent(0);
+  CHECK((picture(vectors) == of_first) == (components > 4), "%d components, blocks %d: the first is drawn", components, blocks);
+  CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
+  color->SetVectorComponent(7);
+  CHECK(picture(vectors).empty() && scene.GridErrors->Count == 1 && scene.GridErrors->Has("VectorComponent is 7") &&
+      scene.GridErrors->Has(("0 to " + std::to_string(components - 1)).c_str()),
+    "%s", scene.GridErrors->Text.c_str());
+  color->SetVectorComponent(1);
+  CHECK(picture(vectors) == of_second, "nothing is drawn after an error");
+}
+
 void WhatIsRefused()
 {
   GridScene scene;
@@ -151,6 +213,9 @@ int main()
   for (int mode = vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND; mode <= vtkVolumeMapper::ADDITIVE_BLEND; ++mode) {
     ModesLikeTheImage(mode, 1 + mode % 4 + (mode % 4 == 0), mode == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
   }
+  VectorsLikeTheirValues(false, 3);
+  VectorsLikeTheirValues(true, 3);
+  VectorsLikeTheirValues(false, 6);
   WhatIsRefused();
   return Failures ? 1 : 0;
 }

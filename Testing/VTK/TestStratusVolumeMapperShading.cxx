@@ -34,9 +34,11 @@ stratus_shading ReferenceShading(Scene& scene)
     light->GetTransformedFocalPoint(focal);
     stratus_light& to = shading.lights[shading.light_count++];
     to.positional = light->GetPositional();
+    to.separate_specular = 1;
     for (int a = 0; a < 3; ++a) {
       to.vector[a] = position[a] - (to.positional ? 0.0 : focal[a]);
       to.color[a] = light->GetIntensity() * light->GetDiffuseColor()[a];
+      to.specular_color[a] = light->GetIntensity() * light->GetSpecularColor()[a];
       to.attenuation[a] = light->GetAttenuationValues()[a];
       to.axis[a] = focal[a] - position[a];
     }
@@ -84,6 +86,13 @@ void Shading()
   db = LitPsnr(scene);
   std::printf("sun and lamp: %.1f dB\n", db);
   CHECK(db >= WantedDb, "%.1f dB", db);
+
+  const double white = scene.Light();
+  sun->SetSpecularColor(0.1, 0, 0.9);
+  lamp->SetSpecularColor(0, 0.5, 0);
+  CHECK(scene.Light() < 0.99 * white, "SetSpecularColor changes nothing: %g of %g", scene.Light(), white);
+  db = LitPsnr(scene);
+  CHECK(db >= WantedDb, "colours of highlights: %.1f dB", db);
 
   const double two = scene.Light();
   scene.Renderer->TwoSidedLightingOff();

@@ -269,9 +269,10 @@ static void add_light(const stratus_material* shading, const stratus_light* ligh
   unit(half_way);
   const double cosine = dot(normal, to), gloss = dot(normal, half_way);
   if (cosine > 0.0) {
+    const double shine = gloss > 0.0 ? part * shading->specular * pow(gloss, shading->specular_power) : 0.0;
     for (int a = 0; a < 3; ++a) {
       diffuse[a] += part * shading->diffuse * cosine * light->color[a];
-      specular[a] += gloss > 0.0 ? part * shading->specular * pow(gloss, shading->specular_power) * light->color[a] : 0.0;
+      specular[a] += shine * (light->separate_specular ? light->specular_color[a] : light->color[a]);
     }
   }
 }

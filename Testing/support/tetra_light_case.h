@@ -169,9 +169,10 @@ static inline void tetra_illuminate(const tetra_case* c, const double p[3], cons
     }
     tetra_unit(half_way);
     const double cosine = tetra_dot(normal, to), gloss = tetra_dot(normal, half_way);
+    const double* shine = light->separate_specular ? light->specular_color : light->color;
     for (int a = 0; a < 3 && cosine > 0.0; ++a) {
       diffuse[a] += part * s->diffuse * cosine * light->color[a];
-      specular[a] += gloss > 0.0 ? part * s->specular * pow(gloss, s->specular_power) * light->color[a] : 0.0;
+      specular[a] += gloss > 0.0 ? part * s->specular * pow(gloss, s->specular_power) * shine[a] : 0.0;
     }
   }
   for (int a = 0; a < 3; ++a) {

@@ -170,7 +170,7 @@ INLINE void light_at(CONSTANT stratus_light_arguments* a, int m, const vfloat x[
     }
     for (int c = 0; c < 3; ++c) {
       diffuse[c] = v_fma(matt, v_set(a->color[i][c]), diffuse[c]);
-      specular[c] = v_fma(shine, v_set(a->color[i][c]), specular[c]);
+      specular[c] = v_fma(shine, v_set(a->specular_color[i][c]), specular[c]);
     }
   }
 }

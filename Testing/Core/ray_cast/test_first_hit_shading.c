@@ -200,6 +200,12 @@ static void light_adds_up_as_phong_says(void** state)
     assert_true(fabs(center[0] - (0.5 * (0.1 + 0.9 * 0.8) + gloss)) < 1e-4);
     assert_true(fabs(center[1] - (0.25 * (0.1 + 0.9 * 0.8 * 0.5) + 0.5 * gloss)) < 1e-4);
     assert_true(fabs(center[2] - 0.125 * 0.1) < 1e-6);
+    shading->lights[0].separate_specular = 1;
+    shading->lights[0].specular_color[2] = 0.5;
+    case_render(context, &c, &first);
+    assert_true(fabs(center[0] - 0.5 * (0.1 + 0.9 * 0.8)) < 1e-4);
+    assert_true(fabs(center[2] - (0.125 * 0.1 + 0.5 * gloss)) < 1e-4);
+    shading->lights[0].separate_specular = 0;
   }
   const double dim = 1.0 / (0.5 + 0.1 * 5.0 + 0.04 * 25.0); /* 5 from the hit */
   shading->lights[0].attenuation[0] = 0.5;

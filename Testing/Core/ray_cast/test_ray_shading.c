@@ -53,6 +53,9 @@ static void pictures_are_lit_as_the_reference_lights_them(void** state)
   lit_psnr("two lights, one-sided", context, &c, MIDPOINT_DB);
   c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
   lit_psnr("pre-integrated", context, &c, MIDPOINT_DB);
+  c.options.shading.lights[0].separate_specular = 1; /* the other light's highlights keep its colour */
+  c.options.shading.lights[0].specular_color[1] = 3.0;
+  lit_psnr("highlights of a colour of their own", context, &c, MIDPOINT_DB);
   case_destroy(&c);
 
   case_create(context, &c, STRATUS_UINT8, 31, 27, 22, 6);

@@ -13,8 +13,10 @@ static const double thin[6] = { 0.1, 0.0, 0.5, 0.6, 1.2, 1.0 };
 static void set_light(tetra_case* c, int kind)
 {
   stratus_shading* s = &c->options.shading;
-  static const stratus_light lights[2] = { { .vector = { -1.0, 2.0, 1.5 }, .color = { 1.0, 0.8, 0.6 } },
-    { .vector = { 0.5, -1.0, 0.3 }, .color = { 0.2, 0.3, 0.5 } } };
+  static const stratus_light lights[2] = {
+    { .vector = { -1.0, 2.0, 1.5 }, .color = { 1.0, 0.8, 0.6 }, .separate_specular = 1, .specular_color = { 0.1, 0.5, 1.5 } },
+    { .vector = { 0.5, -1.0, 0.3 }, .color = { 0.2, 0.3, 0.5 } }
+  };
   static const stratus_light lamp = {
     .vector = { 5.0, 6.0, 7.0 }, .color = { 3.0, 3.0, 3.0 }, .positional = 1, .attenuation = { 1.0, 0.2, 0.05 }
   };
