@@ -155,6 +155,26 @@ static stratus_status draw_block(blocks* b, int number, stratus_ray_cast_report*
 
 /* ---- order */
 
+/* Gives the ends, in mean index coordinates, of the cells that a block draws: its own, without layers of its neighbours'. */
+static void find_ends(const stratus_ray_cast_input* in, double ends[2][3])
+{
+  const stratus_volume* volume = in->volume;
+  const double half = volume->cell_centered ? 0.5 : 0.0;
+  int64_t owned[2][3];
+  if (in->caster->ranges && stratus_volume_same_data(&in->caster->volume, volume)) { /* else all flags are read */
+    memcpy(owned, in->caster->owned, sizeof owned);
+  } else {
+    stratus_volume_owned(volume, owned[0], owned[1]);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double* x = volume->coordinates[axis];
+    for (int end = 0; end < 2; ++end) {
+      const int64_t border = owned[end][axis];
+      ends[end][axis] = (x ? (x[border] - x[0]) / stratus_volume_spacing(volume, axis) : (double)border) - half;
+    }
+  }
+}
+
 /* Sets boxes and eye in the coordinates of the first block's axes, each of which has the world's unit. */
 static stratus_status measure(const blocks* b, stratus_block_box* boxes, stratus_block_eye* eye, double* slack)
 {
@@ -174,9 +194,9 @@ static stratus_status measure(const blocks* b, stratus_block_box* boxes, stratus
   *slack = INFINITY;
   for (int n = 0; n < b->count; ++n) {
     const stratus_volume* volume = b->inputs[n].volume;
-    const double half = volume->cell_centered ? 0.5 : 0.0;
-    double to_world[16];
+    double to_world[16], ends[2][3];
     stratus_volume_index_to_world(volume, to_world);
+    find_ends(&b->inputs[n], ends);
     boxes[n] = (stratus_block_box){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
     for (int axis = 0; axis < 3; ++axis) {
       const double edge[3] = { to_world[axis], to_world[4 + axis], to_world[8 + axis] };
@@ -185,7 +205,7 @@ static stratus_status measure(const blocks* b, stratus_block_box* boxes, stratus
     for (int corner = 0; corner < 8; ++corner) {
       double index[3], world[3], point[3];
       for (int axis = 0; axis < 3; ++axis) {
-        index[axis] = corner >> axis & 1 ? (double)(volume->dimensions[axis] - 1) + half : -half;
+        index[axis] = ends[corner >> axis & 1][axis];
       }
       stratus_matrix_point(to_world, index, world);
       stratus_matrix_point(to_axes, world, point);
