@@ -169,7 +169,8 @@ static void find_ends(const stratus_ray_cast_input* in, double ends[2][3])
   for (int axis = 0; axis < 3; ++axis) {
     const double* x = volume->coordinates[axis];
     for (int end = 0; end < 2; ++end) {
-      const int64_t border = owned[end][axis];
+      const int64_t last = volume->dimensions[axis] - (volume->cell_centered ? 0 : 1); /* flat grids have a cell without an extent */
+      const int64_t border = owned[end][axis] < last ? owned[end][axis] : last;
       ends[end][axis] = (x ? (x[border] - x[0]) / stratus_volume_spacing(volume, axis) : (double)border) - half;
     }
   }

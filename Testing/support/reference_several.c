@@ -14,7 +14,7 @@
 /* The optical depth of a unit of what has opacity 1. */
 #define WALL 1e9
 /* By how much of 1 a part of a ray may show otherwise than its halves, and how often one is halved: edges of functions are sharp. */
-#define PARTS_AGREE 1e-8
+#define PARTS_AGREE 1e-6
 #define HALVINGS_MOST 24
 
 typedef struct medium {

@@ -4,6 +4,7 @@
 #include "several_case.h"
 
 #include "ray_caster.h"
+#include "testing.h"
 
 /* dB against the reference in midpoint steps, which the steps of the function keep at first order. */
 #define CELLS_DB 62.0
@@ -145,7 +146,7 @@ static void a_wall_by_cells_hides_what_is_behind(void** state)
       scenes[i].camera = &m.of[0].camera;
     }
     several_draw(*state, &m, &drawn);
-    assert_int_equal(reference_render_several(scenes, 2, CASE_WIDTH, CASE_HEIGHT, 1.0 / 128, reference, NULL), 0);
+    assert_int_equal(reference_render_several(scenes, 2, CASE_WIDTH, CASE_HEIGHT, 1.0 / 64, reference, NULL), 0);
     for (int i = 0; i < CASE_PIXELS; ++i) {
       bool far = false;
       for (int channel = 4 * i; channel < 4 * i + 4; ++channel) {
