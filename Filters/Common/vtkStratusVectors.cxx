@@ -2,14 +2,14 @@
 #include "vtkStratusVectors.h"
 
 #include "vtkColorTransferFunction.h"
-#include "vtkDoubleArray.h"
-#include "vtkNew.h"
+#include "vtkSMPTools.h"
 #include "vtkVolumeProperty.h"
 
 #include "stratus.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 int vtkStratusVectors::Find(vtkVolumeProperty* property, int components)
 {
@@ -25,6 +25,27 @@ int vtkStratusVectors::Find(vtkVolumeProperty* property, int components)
   return component == 0 && components <= STRATUS_COMPONENTS_MAX ? All : component;
 }
 
+vtkSmartPointer<vtkDataArray> vtkStratusVectors::Make(vtkDataArray* array, int component)
+{
+  const vtkIdType count = array->GetNumberOfTuples();
+  vtkSmartPointer<vtkDataArray> values;
+  values.TakeReference(component == Magnitude ? vtkDataArray::CreateDataArray(VTK_DOUBLE) : array->NewInstance()); // integers would round
+  values->SetName(array->GetName());
+  values->SetNumberOfTuples(count);
+  if (component != Magnitude) {
+    values->CopyComponent(0, array, component);
+    return values;
+  }
+  vtkSMPTools::For(0, count, [&](vtkIdType begin, vtkIdType end) {
+    std::vector<double> tuple(static_cast<size_t>(array->GetNumberOfComponents()));
+    for (vtkIdType i = begin; i < end; ++i) {
+      array->GetTuple(i, tuple.data());
+      values->SetComponent(i, 0, std::sqrt(std::inner_product(tuple.begin(), tuple.end(), tuple.begin(), 0.0)));
+    }
+  });
+  return values;
+}
+
 vtkDataArray* vtkStratusVectors::Get(vtkDataArray* array, int component, vtkMTimeType time)
 {
   time = std::max(time, array->GetMTime());
@@ -35,24 +56,7 @@ vtkDataArray* vtkStratusVectors::Get(vtkDataArray* array, int component, vtkMTim
       return entry.Values;
     }
   }
-  vtkSmartPointer<vtkDataArray> values;
-  if (component == Magnitude) {
-    vtkNew<vtkDoubleArray> lengths; // integers would round them
-    lengths->SetNumberOfValues(count);
-    for (vtkIdType i = 0; i < count; ++i) {
-      double square = 0.0;
-      for (int c = 0; c < array->GetNumberOfComponents(); ++c) {
-        square += array->GetComponent(i, c) * array->GetComponent(i, c);
-      }
-      lengths->SetValue(i, std::sqrt(square));
-    }
-    values = lengths;
-  } else {
-    values.TakeReference(array->NewInstance());
-    values->SetNumberOfTuples(count);
-    values->CopyComponent(0, array, component);
-  }
-  values->SetName(array->GetName());
+  const vtkSmartPointer<vtkDataArray> values = Make(array, component);
   this->Entries.push_back({ array, values, component, time, true });
   return values;
 }

@@ -22,7 +22,9 @@ public:
   // which is its default, and where they depend on each other.
   static int Find(vtkVolumeProperty* property, int components);
 
-  // Returns a component, or the magnitudes in double. They are kept until the array's own time or `time` changes.
+  // Returns a component, or the magnitudes in double, under the array's name.
+  static vtkSmartPointer<vtkDataArray> Make(vtkDataArray* array, int component);
+  // The same, kept until the array's own time or `time` changes.
   vtkDataArray* Get(vtkDataArray* array, int component, vtkMTimeType time);
   // Drops what was not asked for since the last call.
   void Sweep();

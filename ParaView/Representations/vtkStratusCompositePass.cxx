@@ -2,6 +2,7 @@
 #include "vtkStratusCompositePass.h"
 
 #include "vtkStratusRankBlend.h"
+#include "vtkStratusRanks.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCallbackCommand.h"
@@ -213,25 +214,11 @@ void vtkStratusCompositePass::Begin()
 
 void vtkStratusCompositePass::ShareBounds()
 {
-  double mine[6], whole[6];
+  double mine[6];
   this->Renderer->ComputeVisiblePropBounds(mine);
-  const vtkBoundingBox box(mine);
-  double least[3] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX }, most[3] = { -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
-  if (box.IsValid()) {
-    box.GetMinPoint(least);
-    box.GetMaxPoint(most);
-  }
-  double all_least[3], all_most[3];
-  this->IceT->GetController()->AllReduce(least, all_least, 3, vtkCommunicator::MIN_OP);
-  this->IceT->GetController()->AllReduce(most, all_most, 3, vtkCommunicator::MAX_OP);
-  if (all_least[0] > all_most[0]) {
+  if (!stratus::join_bounds(this->IceT->GetController(), mine, this->Whole->Bounds)) {
     return; // there is nothing to draw
   }
-  for (int a = 0; a < 3; ++a) {
-    whole[2 * a] = all_least[a];
-    whole[2 * a + 1] = all_most[a];
-  }
-  std::copy_n(whole, 6, this->Whole->Bounds);
   if (!this->Renderer->GetViewProps()->IsItemPresent(this->Whole)) {
     this->Renderer->AddViewProp(this->Whole);
   }

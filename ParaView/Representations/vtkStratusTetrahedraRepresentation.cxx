@@ -3,6 +3,7 @@
 
 #include "vtkStratusCompositePass.h"
 #include "vtkStratusLODVolume.h"
+#include "vtkStratusRanks.h"
 #include "vtkStratusScalarChoice.h"
 #include "vtkStratusTetrahedraMapper.h"
 
@@ -46,9 +47,8 @@ void bounds_of(vtkDataObject* data, double bounds[6])
 vtkSmartPointer<vtkDataObject> Copy(vtkDataObject* data)
 {
   auto* blocks = vtkCompositeDataSet::SafeDownCast(data);
-  vtkMultiProcessController* ranks = vtkMultiProcessController::GetGlobalController();
   vtkSmartPointer<vtkDataObject> copy;
-  if (!blocks || !ranks || ranks->GetNumberOfProcesses() == 1) {
+  if (!blocks || stratus::count_ranks() == 1) {
     copy.TakeReference(data->NewInstance());
     copy->ShallowCopy(data);
     return copy;

@@ -4,6 +4,7 @@
 #include "vtkStratusCompositePass.h"
 #include "vtkStratusLODVolume.h"
 #include "vtkStratusMultiBlockVolumeMapper.h"
+#include "vtkStratusRanks.h"
 #include "vtkStratusVolumeMapper.h"
 
 #include "vtkColorTransferFunction.h"
@@ -23,15 +24,6 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
-
-namespace {
-
-int CountRanks()
-{
-  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-  return controller ? controller->GetNumberOfProcesses() : 1;
-}
-} // namespace
 
 vtkStandardNewMacro(vtkStratusVolumeRepresentation);
 
@@ -59,7 +51,7 @@ vtkStratusVolumeMapper* vtkStratusVolumeRepresentation::GetSettings()
 int vtkStratusVolumeRepresentation::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
   const int done = this->Superclass::RequestUpdateExtent(request, input, output);
-  if (CountRanks() > 1 && input[0]->GetNumberOfInformationObjects() == 1) {
+  if (stratus::count_ranks() > 1 && input[0]->GetNumberOfInformationObjects() == 1) {
     input[0]->GetInformationObject(0)->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 1);
   }
   return done;
@@ -109,15 +101,8 @@ int vtkStratusVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey*
 void vtkStratusVolumeRepresentation::ShareBounds()
 {
   std::copy_n(this->DataBounds, 6, this->WholeBounds);
-  if (CountRanks() > 1) {
-    double negated[6], least[6]; // lower bounds, and upper ones with their sign changed
-    for (int i = 0; i < 6; ++i) {
-      negated[i] = vtkMath::AreBoundsInitialized(this->DataBounds) ? (i % 2 ? -1.0 : 1.0) * this->DataBounds[i] : VTK_DOUBLE_MAX;
-    }
-    vtkMultiProcessController::GetGlobalController()->AllReduce(negated, least, 6, vtkCommunicator::MIN_OP);
-    for (int i = 0; i < 6 && least[0] < VTK_DOUBLE_MAX; ++i) {
-      this->WholeBounds[i] = i % 2 ? -least[i] : least[i];
-    }
+  if (stratus::count_ranks() > 1) {
+    stratus::join_bounds(vtkMultiProcessController::GetGlobalController(), this->DataBounds, this->WholeBounds);
   }
 }
 

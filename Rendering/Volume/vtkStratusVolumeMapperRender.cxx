@@ -135,7 +135,7 @@ bool vtkStratusVolumeMapper::Internals::Probe(stratus_ray_caster* caster, stratu
   stratus_camera camera = stratus_camera();
   camera.forward[2] = camera.right[0] = camera.up[1] = 1.0;
   camera.far_k = 1.0;
-  stratus_ray_cast_report report;
+  stratus_ray_cast_report report = stratus_ray_cast_report();
   options.audit = 0;
   const stratus_status status =
     stratus_ray_caster_render(caster, &this->Image.GetVolume(), this->Functions.data(), &camera, &options, &image, &report);

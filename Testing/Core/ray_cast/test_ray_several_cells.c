@@ -6,8 +6,8 @@
 #include "ray_caster.h"
 #include "testing.h"
 
-/* dB against the reference in midpoint steps, which the steps of the function keep at first order. */
-#define CELLS_DB 62.0
+/* dB against the reference, which agrees with itself to 80. */
+#define CELLS_DB 75.0
 
 static picture drawn, other;
 
@@ -51,7 +51,7 @@ static void sharp_functions_mix_as_the_reference_does(void** state)
   }
 }
 
-/* Nearest values have walls between them, at which the reference's even steps err. */
+/* Nearest values have walls between them. */
 static void boxes_about_values_mix_as_the_reference_does(void** state)
 {
   for (test_seeds s = test_seeds_of(2, 4); test_next(&s);) {
@@ -63,7 +63,7 @@ static void boxes_about_values_mix_as_the_reference_does(void** state)
       m.of[n].options.sampling = STRATUS_SAMPLING_CELLS;
       m.of[n].options.cell_error = 1e-5;
     }
-    assert_true(several_psnr("nearest", *state, &m, &drawn) >= 60.0);
+    assert_true(several_psnr("nearest", *state, &m, &drawn) >= CELLS_DB);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
     several_destroy(&m);
   }
@@ -225,7 +225,7 @@ static void automatic_sampling_of_sharp_functions_keeps_the_tolerance(void** sta
     cells += drawn.report.sampling == STRATUS_SAMPLING_CELLS || drawn.report.sampling == STRATUS_SAMPLING_LOCAL;
     several_destroy(&m);
   }
-  assert_true(!test_many(&s, 3) || cells >= 2);
+  assert_true(!test_many(&s, 3) || 2 * cells >= (int)s.end);
 }
 
 int test_ray_several_cells(void)
