@@ -32,7 +32,7 @@ static void choose_view(fuzz* f, tetra_case* c)
   o.termination = fuzz_chance(f, 0.6) ? o.termination : fuzz_real(f, 0.0, 1.0);
   o.tolerance = fuzz_chance(f, 0.6) ? o.tolerance : fuzz_real(f, 0.0, 0.1);
   o.leaves = c->partition ? &c->leaves : NULL;
-  o.clip_plane_count = fuzz_chance(f, 0.8) ? 0 : 1 + (int)fuzz_choice(f, STRATUS_TETRA_CLIP_PLANES_MAX);
+  o.clip_plane_count = fuzz_chance(f, 0.8) ? 0 : fuzz_choice(f, STRATUS_TETRA_CLIP_PLANES_MAX + 1);
   for (int i = 0; i < 4 * STRATUS_TETRA_CLIP_PLANES_MAX; ++i) {
     o.clip_planes[i / 4][i % 4] = fuzz_chance(f, 0.1) ? 0.0 : fuzz_real(f, -1.0, 1.0);
   }
