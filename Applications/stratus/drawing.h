@@ -36,4 +36,6 @@ public:
 // Throws usage for options that are for other data.
 std::unique_ptr<drawing> make_volume_drawing(const options& o, context& core);
 std::unique_ptr<drawing> make_grid_drawing(const options& o, context& core);
+// Of the INPUT and its companions.
+std::unique_ptr<drawing> make_several_drawing(const options& o, context& core);
 } // namespace cli

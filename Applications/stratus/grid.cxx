@@ -156,9 +156,5 @@ void grid_drawing::tell() const
 
 std::unique_ptr<cli::drawing> cli::make_grid_drawing(const options& o, context& core)
 {
-  if (!o.companions.empty()) {
-    throw usage("'" + o.source + "' is drawn as tetrahedra, which mix with an image or a rectilinear grid that comes first: name '" +
-      o.companions[0].source + "' before it");
-  }
   return std::make_unique<grid_drawing>(o, core);
 }

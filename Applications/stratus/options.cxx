@@ -25,8 +25,8 @@ std::string help()
 
   stratus render INPUT -o OUT.png [options]   draw a picture; OUT.exr has floats: R, G, B, A, depth Z, Samples
   stratus render INPUT --frames OUT-%04d.png  draw every step in time
-  stratus render INPUT INPUT ... -o OUT.png   draw up to eight as one medium, an image first; --array, --opacity, --color and
-                                              --unit-distance are for the INPUT before them
+  stratus render INPUT INPUT ... -o OUT.png   draw up to eight as one medium; --array, --opacity, --color and --unit-distance
+                                              are for the INPUT before them
   stratus info INPUT [--array NAME]           tell what is in a file or scene: sizes, arrays, kinds of cells
   stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes
   stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells from 16 views, and count what comes out wrong

@@ -40,6 +40,9 @@ void annotate(cli::frame& frame, const cli::options& o, const cli::drawing& draw
 
 std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& core, const cli::routed& data)
 {
+  if (!o.companions.empty()) {
+    return cli::make_several_drawing(o, core);
+  }
   return data.grid ? cli::make_grid_drawing(o, core) : cli::make_volume_drawing(o, core);
 }
 

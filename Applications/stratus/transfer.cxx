@@ -11,60 +11,6 @@
 
 namespace {
 
-template <class T, class Each> void each_value(const cli::volumes& all, const Each& each)
-{
-  for (const stratus_volume* volume : all) {
-    each(
-      static_cast<const T*>(volume->values), volume->dimensions[0] * volume->dimensions[1] * volume->dimensions[2], volume->value_stride);
-  }
-}
-
-template <class T> void count_values(const cli::volumes& all, cli::histogram& h)
-{
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low, number = 0.0;
-  each_value<T>(all, [&](const T* values, int64_t n, int64_t stride) {
-    number += static_cast<double>(n);
-#pragma omp parallel for reduction(min : low) reduction(max : high)
-    for (int64_t i = 0; i < n; ++i) {
-      const double value = static_cast<double>(values[i * stride]);
-      if (std::isfinite(value)) {
-        low = std::min(low, value);
-        high = std::max(high, value);
-      }
-    }
-  });
-  h.low = low;
-  h.high = high;
-  if (low > high) {
-    h.not_finite = number;
-    return;
-  }
-  // A range of few integers gets a bin for each, so that no bin mixes the background with what is drawn.
-  const bool integers = std::numeric_limits<T>::is_integer && high - low < 1024.0;
-  const size_t bins = low == high ? 1 : integers ? static_cast<size_t>(high - low) + 1 : 1024;
-  h.first = integers ? low - 0.5 : low;
-  h.last = integers ? high + 0.5 : high;
-  const double scale = low == high ? 0.0 : static_cast<double>(bins) / (h.last - h.first);
-  std::vector<int64_t> total(bins + 1, 0);
-  each_value<T>(all, [&](const T* values, int64_t n, int64_t stride) {
-#pragma omp parallel
-    {
-      std::vector<int64_t> mine(bins + 1, 0);
-#pragma omp for nowait
-      for (int64_t i = 0; i < n; ++i) {
-        const double value = static_cast<double>(values[i * stride]);
-        ++mine[std::isfinite(value) ? std::min(static_cast<size_t>((value - h.first) * scale), bins - 1) : bins];
-      }
-#pragma omp critical
-      std::transform(total.begin(), total.end(), mine.begin(), total.begin(), [](int64_t a, int64_t b) { return a + b; });
-    }
-  });
-  h.count.assign(total.begin(), total.end() - 1);
-  h.not_finite = static_cast<double>(total[bins]);
-  h.finite = number - h.not_finite;
-}
-
 // Finds the end of the background: from its peak on, the first bin below 3/10 of the peak, or the floor of the valley before the next rise,
 // whichever comes first.
 size_t end_of_background(const std::vector<double>& count, size_t peak)
@@ -133,44 +79,6 @@ template <class Place> double top_opacity(const cli::histogram& h, const Place& 
 } // namespace
 
 namespace cli {
-
-histogram histogram_of(const volumes& all)
-{
-  histogram h;
-  switch (all[0]->type) {
-    case STRATUS_INT8:
-      count_values<int8_t>(all, h);
-      break;
-    case STRATUS_UINT8:
-      count_values<uint8_t>(all, h);
-      break;
-    case STRATUS_INT16:
-      count_values<int16_t>(all, h);
-      break;
-    case STRATUS_UINT16:
-      count_values<uint16_t>(all, h);
-      break;
-    case STRATUS_INT32:
-      count_values<int32_t>(all, h);
-      break;
-    case STRATUS_UINT32:
-      count_values<uint32_t>(all, h);
-      break;
-    case STRATUS_INT64:
-      count_values<int64_t>(all, h);
-      break;
-    case STRATUS_UINT64:
-      count_values<uint64_t>(all, h);
-      break;
-    case STRATUS_FLOAT32:
-      count_values<float>(all, h);
-      break;
-    case STRATUS_FLOAT64:
-      count_values<double>(all, h);
-      break;
-  }
-  return h;
-}
 
 stratus_transfer transfer::view() const
 {

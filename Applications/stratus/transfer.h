@@ -2,6 +2,7 @@
 // Transfer functions given by the user, taken from the scene, or guessed from the histogram.
 #pragma once
 
+#include "histogram.h"
 #include "options.h"
 #include "support.h"
 
@@ -9,21 +10,6 @@
 #include <vector>
 
 namespace cli {
-
-// A volume, or its blocks, which have values of one type.
-using volumes = std::vector<const stratus_volume*>;
-
-// The frequencies of a volume's values.
-struct histogram {
-  double low = 0.0, high = 0.0;   // of the finite values; low > high: there are none
-  double first = 0.0, last = 0.0; // edges of the first and last bin; if each of few integers has its own bin, it lies in the middle
-  std::vector<double> count;      // values in each bin; bins are equally wide
-  double finite = 0.0;
-  double not_finite = 0.0;
-
-  double width() const { return (this->last - this->first) / static_cast<double>(this->count.size()); }
-};
-histogram histogram_of(const volumes& all);
 
 // A transfer function that owns its points.
 class transfer

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws images and scenes by the ray caster.
+// Draws an image, a rectilinear grid, their blocks or a scene by the ray caster.
 #include "camera.h"
+#include "casting.h"
 #include "drawing.h"
 #include "input.h"
-#include "mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,10 +27,6 @@ public:
   ~volume_drawing() override
   {
     stratus_ray_caster_destroy(this->Caster);
-    for (const member& more : this->More) {
-      stratus_ray_caster_destroy(more.caster);
-      stratus_tetra_caster_destroy(more.tetra);
-    }
     for (stratus_ray_caster* caster : this->BlockCasters) {
       stratus_ray_caster_destroy(caster);
     }
@@ -48,33 +44,15 @@ public:
   void judge() const override;
 
 private:
-  // A volume that is drawn with the first one, or a mesh.
-  struct member {
-    cli::options o;
-    std::unique_ptr<cli::input> input;
-    std::unique_ptr<cli::mesh> mesh; // null for a volume
-    cli::transfer functions;
-    stratus_volume outline = {}; // of a mesh
-    stratus_tetra_options how = {};
-    stratus_ray_caster* caster = nullptr;
-    stratus_tetra_caster* tetra = nullptr;
-    stratus_ray_cast_report report = {};
-  };
-
-  void read_more();
-  void read_member(member& more);
   cli::volumes all() const;
   void draw_blocks(const stratus_ray_cast_options& cast, const stratus_image& image);
-  void draw_several(const stratus_ray_cast_options& cast, const stratus_image& image);
-  void choose_parts(stratus_ray_cast_options& cast);
-  void tell_report() const;
 
   const cli::options& Options;
   cli::context& Core;
-  std::unique_ptr<cli::input> Input, Mask;
+  std::unique_ptr<cli::input> Input;
+  cli::volume_parts Parts;
   std::vector<std::unique_ptr<cli::input>> Blocks; // of the same volume as Input, beside it
   std::vector<stratus_ray_caster*> BlockCasters;
-  std::vector<member> More;
   cli::transfer Transfer;
   stratus_camera Camera = {};
   stratus_ray_caster* Caster = nullptr;
@@ -97,12 +75,9 @@ void volume_drawing::take(const cli::routed& data)
     this->Blocks.back()->volume.revision = this->Steps;
     this->Blocks.back()->volume.matrix[5 * this->Up] *= o.exaggeration;
   }
-  if (!this->Blocks.empty() && (!o.companions.empty() || !o.mask.empty() || o.audit)) {
-    throw cli::usage("'" + o.source + "' is a volume of " + std::to_string(1 + this->Blocks.size()) +
-      " blocks, which is drawn alone: leave out " +
-      (o.audit             ? "--audit"
-          : o.mask.empty() ? "the other INPUTs"
-                           : "--mask"));
+  if (!this->Blocks.empty() && (!o.mask.empty() || o.audit)) {
+    throw cli::usage("'" + o.source + "' is a volume of " + std::to_string(1 + this->Blocks.size()) + " blocks, which is drawn without " +
+      (o.audit ? "--audit" : "--mask"));
   }
 }
 
@@ -116,53 +91,6 @@ cli::volumes volume_drawing::all() const
   return result;
 }
 
-// Reads a scene, an image or a rectilinear grid, or else cells.
-void volume_drawing::read_member(member& more)
-{
-  const std::string& source = more.o.source;
-  const bool scene = cli::is_scene(source);
-  const cli::routed data = scene ? cli::routed() : cli::route(cli::read_data(source, more.o.array, more.o.raw), source, more.o.array);
-  if (!data.blocks.empty()) {
-    throw cli::usage("'" + source + "' is a volume of " + std::to_string(1 + data.blocks.size()) + " blocks, which is drawn alone");
-  }
-  if (scene || data.image) {
-    more.input = scene ? std::make_unique<cli::input>(this->Core, source, more.o.array, more.o.raw)
-                       : std::make_unique<cli::input>(this->Core, source, data.image, more.o.array);
-    more.input->volume.matrix[5 * this->Up] *= this->Options.exaggeration;
-    more.functions = cli::make_transfer({ &more.input->volume }, more.input->scene, more.o);
-    this->Core.check(stratus_ray_caster_create(this->Core, &more.caster), "ray caster");
-    return;
-  }
-  if (more.o.shade) {
-    throw cli::usage("'" + source + "' is a grid of cells, which is not lit among several INPUTs: leave out --shade");
-  }
-  more.o.up = std::string(1, static_cast<char>('x' + this->Up));
-  more.mesh = std::make_unique<cli::mesh>();
-  more.mesh->set(data.grid, more.o);
-  this->Core.check(stratus_mesh_check(this->Core, &more.mesh->view()), "'" + source + "'");
-  more.outline = more.mesh->outline();
-  const stratus_volume box = more.mesh->box();
-  more.functions = cli::make_transfer({ &box }, nullptr, more.o);
-  this->Core.check(stratus_tetra_caster_create(this->Core, &more.tetra), "caster of tetrahedra");
-}
-
-// Reads the other volumes, each with the options of the first but for what was said of it.
-void volume_drawing::read_more()
-{
-  for (const cli::companion& companion : this->Options.companions) {
-    member more;
-    more.o = this->Options;
-    more.o.source = companion.source;
-    more.o.array = companion.array;
-    more.o.raw = companion.raw;
-    more.o.opacity = companion.opacity;
-    more.o.color = companion.color;
-    more.o.unit_distance = companion.unit_distance;
-    this->read_member(more);
-    this->More.push_back(std::move(more));
-  }
-}
-
 void volume_drawing::look()
 {
   const cli::options& o = this->Options;
@@ -170,13 +98,9 @@ void volume_drawing::look()
   this->Transfer = cli::make_transfer(this->all(), in.scene, o);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
-  this->read_more();
   std::vector<cli::shown_volume> shown;
   for (const stratus_volume* volume : this->all()) {
     shown.push_back({ volume, view });
-  }
-  for (const member& more : this->More) {
-    shown.push_back({ more.mesh ? &more.outline : &more.input->volume, more.functions.view() });
   }
   this->Camera = cli::place_camera(this->Core, o, shown, this->Up);
 }
@@ -192,11 +116,7 @@ cli::scene_frame volume_drawing::place() const
   cli::scene_frame frame;
   frame.camera = this->Camera;
   this->Core.check(stratus_volume_bounds(this->Core, &this->Input->volume, frame.bounds), "bounds");
-  cli::volumes shown = this->all();
-  for (const member& more : this->More) {
-    shown.push_back(more.mesh ? &more.outline : &more.input->volume);
-  }
-  for (const stratus_volume* volume : shown) {
+  for (const stratus_volume* volume : this->all()) {
     double own[6];
     this->Core.check(stratus_volume_bounds(this->Core, volume, own), "bounds");
     for (int side = 0; side < 6; ++side) {
@@ -208,59 +128,12 @@ cli::scene_frame volume_drawing::place() const
   return frame;
 }
 
-// Sets the crop and the mask, which is read once.
-void volume_drawing::choose_parts(stratus_ray_cast_options& cast)
-{
-  const cli::options& o = this->Options;
-  const stratus_volume& volume = this->Input->volume;
-  cast.crop = o.crop.empty() ? 0 : 1;
-  std::copy(o.crop.begin(), o.crop.end(), cast.crop_bounds);
-  cast.crop_regions = static_cast<uint32_t>(o.crop_regions);
-  if (o.mask.empty()) {
-    return;
-  }
-  if (!this->Mask) {
-    this->Mask = std::make_unique<cli::input>(this->Core, o.mask, "", o.mask_raw);
-  }
-  const stratus_volume& bytes = this->Mask->volume;
-  if (bytes.type != STRATUS_UINT8 || !std::equal(bytes.dimensions, bytes.dimensions + 3, volume.dimensions)) {
-    throw cli::failure(
-      "mask '" + o.mask + "' has " + cli::describe(bytes) + ", one uint8 for each value of " + cli::describe(volume) + " is needed");
-  }
-  cast.mask = static_cast<const uint8_t*>(bytes.values);
-}
-
 void volume_drawing::draw(const stratus_image& image)
 {
-  const cli::options& o = this->Options;
-  stratus_ray_cast_options cast = stratus_ray_cast_options_default();
-  cast.mode = o.mode;
-  cast.normals = o.normals;
-  std::copy(o.average.begin(), o.average.end(), cast.average_range);
-  cast.contour_count = static_cast<int>(o.contours.size());
-  std::copy(o.contours.begin(), o.contours.end(), cast.contours);
-  for (size_t a = 0; a < 3 && !o.slice.empty(); ++a) {
-    const double scale = static_cast<int>(a) == this->Up ? o.exaggeration : 1.0;
-    cast.slice.center[a] = o.slice[a] * scale;
-    cast.slice.linear[a] = o.slice[3 + a] / scale;
-  }
-  this->choose_parts(cast);
-  cast.jitter = o.jitter < 0 ? 0 : 1;
-  cast.jitter_seed = static_cast<uint32_t>(std::max(0, o.jitter));
-  cast.structure = o.structure;
-  cast.sampling = o.sampling;
-  cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-  cast.sample_distance = o.sample_distance;
-  cast.cell_error = o.cell_error;
-  cast.tolerance = o.tolerance;
-  cast.shade = o.shade;
-  cast.audit = o.audit;
+  stratus_ray_cast_options cast = cli::casting_of(this->Options, this->Up);
+  this->Parts.set(this->Options, this->Core, this->Input->volume, cast);
   if (!this->Caster) {
     this->Core.check(stratus_ray_caster_create(this->Core, &this->Caster), "ray caster");
-  }
-  if (!this->More.empty()) {
-    this->draw_several(cast, image);
-    return;
   }
   if (!this->Blocks.empty()) {
     this->draw_blocks(cast, image);
@@ -301,105 +174,18 @@ void volume_drawing::draw_blocks(const stratus_ray_cast_options& cast, const str
   }
 }
 
-// Crop and mask are the first volume's alone.
-void volume_drawing::draw_several(const stratus_ray_cast_options& cast, const stratus_image& image)
-{
-  const size_t count = 1 + this->More.size();
-  stratus_ray_cast_options plain = cast;
-  plain.crop = 0;
-  plain.mask = nullptr;
-  std::vector<stratus_transfer> views = { this->Transfer.view() };
-  for (const member& more : this->More) {
-    views.push_back(more.functions.view());
-  }
-  std::vector<stratus_ray_cast_input> inputs(count);
-  for (size_t n = 0; n < count; ++n) {
-    member* more = n > 0 ? &this->More[n - 1] : nullptr;
-    inputs[n].transfer = &views[n];
-    if (more && more->mesh) {
-      more->how = stratus_tetra_options_default();
-      more->how.tolerance = this->Options.tolerance;
-      inputs[n].tetra = more->tetra;
-      inputs[n].mesh = &more->mesh->view();
-      inputs[n].tetra_options = &more->how;
-    } else {
-      inputs[n].caster = more ? more->caster : this->Caster;
-      inputs[n].volume = more ? &more->input->volume : &this->Input->volume;
-      inputs[n].options = more ? &plain : &cast;
-    }
-  }
-  std::vector<stratus_ray_cast_report> reports(count);
-  this->Core.check(
-    stratus_ray_caster_render_several(inputs.data(), static_cast<int>(count), &this->Camera, &image, reports.data()), "render");
-  this->Report = reports[0];
-  for (size_t n = 1; n < count; ++n) {
-    this->More[n - 1].report = reports[n];
-  }
-}
-
 void volume_drawing::tell() const
 {
-  for (const member& more : this->More) {
-    row("with",
-      more.o.source + ": " +
-        (more.mesh ? cli::grouped(static_cast<unsigned long long>(more.mesh->points)) + " points, array '" + more.mesh->array_name + "'"
-                   : cli::describe(more.input->volume) + ", array '" + more.input->array_name + "'"));
-    row("opacity", more.functions.origin);
-    row("why", more.report.why);
-  }
   row("volume",
     (this->Blocks.empty() ? "" : std::to_string(1 + this->Blocks.size()) + " blocks, the first of ") + cli::describe(this->Input->volume) +
       ", array '" + this->Input->array_name + "'");
   row("camera", cli::describe(this->Camera));
-  this->tell_report();
-}
-
-void volume_drawing::tell_report() const
-{
-  const cli::options& o = this->Options;
-  const stratus_ray_cast_report& r = this->Report;
-  const double build = r.range_ms + r.table_ms + r.occupancy_ms + r.structure_ms + r.probe_ms + r.upload_ms;
-  const double segments = static_cast<double>(r.samples) + static_cast<double>(r.skipped);
-  row("opacity", this->Transfer.origin);
-  row("device", stratus_context_device(this->Core));
-  row(
-    "structure", cli::format("%s (%s KiB)", stratus_structure_name(r.structure), cli::grouped((r.structure_bytes + 1023) / 1024).c_str()));
-  row("mode", stratus_mode_name(o.mode));
-  if (o.mode != STRATUS_MODE_FIRST_HIT && o.mode != STRATUS_MODE_ISOSURFACE && o.mode != STRATUS_MODE_SLICE) {
-    row("sampling",
-      stratus_sampling_name(r.sampling) +
-        (r.sampling == STRATUS_SAMPLING_CELLS ? std::string() : cli::format(", every %.4g", r.sample_distance)));
-  }
-  row("why", r.why);
-  if (!std::isnan(r.expected_error)) {
-    row("error",
-      cli::format("%.2g expected, tolerance %g%s", r.expected_error, o.tolerance,
-        r.tolerance_met ? "" : ", which the finest setting is expected to miss"));
-    row("probe", cli::format("%.2f ms, ", r.probe_ms) + cli::grouped(r.probe_samples) + " samples");
-  }
-  row("build",
-    cli::format("%.2f ms: ranges %.2f, tables %.2f, occupancy %.2f, structure %.2f, probe %.2f, upload %.2f", build, r.range_ms, r.table_ms,
-      r.occupancy_ms, r.structure_ms, r.probe_ms, r.upload_ms));
-  row(
-    "frame", cli::format("%.2f ms for %d x %d pixels, %s rays in the volume", r.cast_ms, o.width, o.height, cli::grouped(r.rays).c_str()));
-  row("blocks", cli::grouped(r.occupied_blocks) + " of " + cli::grouped(r.blocks) + " occupied");
-  if (o.mode == STRATUS_MODE_FIRST_HIT) {
-    row("hits", cli::grouped(r.samples) + ", " + cli::grouped(r.lookups) + " nodes and steps visited");
-  } else {
-    row("samples",
-      cli::grouped(r.samples) + " taken, " + cli::grouped(r.skipped) + " skipped" +
-        (segments > 0.0 ? cli::format(" (%.1f %%)", 100.0 * static_cast<double>(r.skipped) / segments) : ""));
-  }
-  if (o.audit) {
-    row("audit", cli::grouped(r.differing_pixels) + " pixels differ from the march without skipping");
-  }
+  cli::tell_cast(this->Options, this->Core, this->Transfer, this->Report);
 }
 
 void volume_drawing::judge() const
 {
-  if (this->Options.audit && this->Report.differing_pixels > 0) {
-    throw cli::failure("audit: skipping changed " + cli::grouped(this->Report.differing_pixels) + " pixels");
-  }
+  cli::judge_cast(this->Options, this->Report);
 }
 } // namespace
 

@@ -162,7 +162,10 @@ def test_kinds():
     fixed = ("--sampling", "midpoint", "--sample-distance", ".05")
     if abs(drawn("box.vtm", *LOOK, *fixed) - drawn("box.vti", *LOOK, *fixed)).max() > 1:
         fail("blocks of an image are another picture than the whole")
-    expect(2, "'box.vtm' is a volume of 3 blocks, which is drawn alone: leave out --audit", "render", "box.vtm", "-o", "no.png", "--audit")
+    # the opacity is guessed from how often a value is there, and points that blocks share are there once
+    if abs(drawn("box.vtm", *fixed) - drawn("box.vti", *fixed)).max() > 1:
+        fail("the guessed opacity depends on how an image is divided")
+    expect(2, "'box.vtm' is a volume of 3 blocks, which is drawn without --audit", "render", "box.vtm", "-o", "no.png", "--audit")
 
 
 def test_modes_of_grids():

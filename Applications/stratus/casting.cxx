@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "casting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace cli {
+
+stratus_ray_cast_options casting_of(const options& o, int up)
+{
+  stratus_ray_cast_options cast = stratus_ray_cast_options_default();
+  cast.mode = o.mode;
+  cast.normals = o.normals;
+  std::copy(o.average.begin(), o.average.end(), cast.average_range);
+  cast.contour_count = static_cast<int>(o.contours.size());
+  std::copy(o.contours.begin(), o.contours.end(), cast.contours);
+  for (size_t a = 0; a < 3 && !o.slice.empty(); ++a) {
+    const double scale = static_cast<int>(a) == up ? o.exaggeration : 1.0;
+    cast.slice.center[a] = o.slice[a] * scale;
+    cast.slice.linear[a] = o.slice[3 + a] / scale;
+  }
+  cast.jitter = o.jitter < 0 ? 0 : 1;
+  cast.jitter_seed = static_cast<uint32_t>(std::max(0, o.jitter));
+  cast.structure = o.structure;
+  cast.sampling = o.sampling;
+  cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+  cast.sample_distance = o.sample_distance;
+  cast.cell_error = o.cell_error;
+  cast.tolerance = o.tolerance;
+  cast.shade = o.shade;
+  cast.audit = o.audit;
+  return cast;
+}
+
+void volume_parts::set(const options& o, context& core, const stratus_volume& volume, stratus_ray_cast_options& cast)
+{
+  cast.crop = o.crop.empty() ? 0 : 1;
+  std::copy(o.crop.begin(), o.crop.end(), cast.crop_bounds);
+  cast.crop_regions = static_cast<uint32_t>(o.crop_regions);
+  if (o.mask.empty()) {
+    return;
+  }
+  if (!this->Mask) {
+    this->Mask = std::make_unique<input>(core, o.mask, "", o.mask_raw);
+  }
+  const stratus_volume& bytes = this->Mask->volume;
+  if (bytes.type != STRATUS_UINT8 || !std::equal(bytes.dimensions, bytes.dimensions + 3, volume.dimensions)) {
+    throw failure("mask '" + o.mask + "' has " + describe(bytes) + ", one uint8 for each value of " + describe(volume) + " is needed");
+  }
+  cast.mask = static_cast<const uint8_t*>(bytes.values);
+}
+
+void tell_cast(const options& o, const context& core, const transfer& functions, const stratus_ray_cast_report& r)
+{
+  const double build = r.range_ms + r.table_ms + r.occupancy_ms + r.structure_ms + r.probe_ms + r.upload_ms;
+  const double segments = static_cast<double>(r.samples) + static_cast<double>(r.skipped);
+  row("opacity", functions.origin);
+  row("device", stratus_context_device(core));
+  row("structure", format("%s (%s KiB)", stratus_structure_name(r.structure), grouped((r.structure_bytes + 1023) / 1024).c_str()));
+  row("mode", stratus_mode_name(o.mode));
+  if (o.mode != STRATUS_MODE_FIRST_HIT && o.mode != STRATUS_MODE_ISOSURFACE && o.mode != STRATUS_MODE_SLICE) {
+    row("sampling",
+      stratus_sampling_name(r.sampling) +
+        (r.sampling == STRATUS_SAMPLING_CELLS ? std::string() : format(", every %.4g", r.sample_distance)));
+  }
+  row("why", r.why);
+  if (!std::isnan(r.expected_error)) {
+    row("error",
+      format("%.2g expected, tolerance %g%s", r.expected_error, o.tolerance,
+        r.tolerance_met ? "" : ", which the finest setting is expected to miss"));
+    row("probe", format("%.2f ms, ", r.probe_ms) + grouped(r.probe_samples) + " samples");
+  }
+  row("build",
+    format("%.2f ms: ranges %.2f, tables %.2f, occupancy %.2f, structure %.2f, probe %.2f, upload %.2f", build, r.range_ms, r.table_ms,
+      r.occupancy_ms, r.structure_ms, r.probe_ms, r.upload_ms));
+  row("frame", format("%.2f ms for %d x %d pixels, %s rays in the volume", r.cast_ms, o.width, o.height, grouped(r.rays).c_str()));
+  row("blocks", grouped(r.occupied_blocks) + " of " + grouped(r.blocks) + " occupied");
+  if (o.mode == STRATUS_MODE_FIRST_HIT) {
+    row("hits", grouped(r.samples) + ", " + grouped(r.lookups) + " nodes and steps visited");
+  } else {
+    row("samples",
+      grouped(r.samples) + " taken, " + grouped(r.skipped) + " skipped" +
+        (segments > 0.0 ? format(" (%.1f %%)", 100.0 * static_cast<double>(r.skipped) / segments) : ""));
+  }
+  if (o.audit) {
+    row("audit", grouped(r.differing_pixels) + " pixels differ from the march without skipping");
+  }
+}
+
+void judge_cast(const options& o, const stratus_ray_cast_report& r)
+{
+  if (o.audit && r.differing_pixels > 0) {
+    throw failure("audit: skipping changed " + grouped(r.differing_pixels) + " pixels");
+  }
+}
+} // namespace cli

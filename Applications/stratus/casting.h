@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the command line asks of the caster of rays, and what the caster reports of a picture.
+#pragma once
+
+#include "input.h"
+#include "options.h"
+#include "support.h"
+#include "transfer.h"
+
+#include <memory>
+
+namespace cli {
+
+// All that the options say but for the parts of the volume. `up` is the axis of heights, 0 to 2.
+stratus_ray_cast_options casting_of(const options& o, int up);
+
+// The parts of one volume that are drawn: its crop and its mask, which is read once.
+class volume_parts
+{
+public:
+  // Throws failure for a mask that does not fit the volume.
+  void set(const options& o, context& core, const stratus_volume& volume, stratus_ray_cast_options& cast);
+
+private:
+  std::unique_ptr<input> Mask;
+};
+
+// Prints the rows from "opacity" on.
+void tell_cast(const options& o, const context& core, const transfer& functions, const stratus_ray_cast_report& r);
+// Throws failure for an audit that found pixels that differ.
+void judge_cast(const options& o, const stratus_ray_cast_report& r);
+} // namespace cli

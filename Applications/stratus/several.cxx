@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Draws several INPUTs in one picture, mixed along the rays: volumes and meshes in any order.
+#include "camera.h"
+#include "casting.h"
+#include "drawing.h"
+#include "input.h"
+#include "mesh.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using cli::row;
+
+// One of the INPUTs, with the caster of its kind.
+struct member {
+  cli::options o;
+  std::unique_ptr<cli::input> input; // null for a mesh
+  std::unique_ptr<cli::mesh> mesh;   // null for a volume
+  cli::transfer functions;
+  stratus_volume outline = {}; // of a mesh
+  stratus_tetra_options tetra_options = {};
+  stratus_ray_cast_options options = {};
+  stratus_ray_caster* caster = nullptr;
+  stratus_tetra_caster* tetra = nullptr;
+  stratus_ray_cast_report report = {};
+
+  const stratus_volume& shape() const { return this->mesh ? this->outline : this->input->volume; }
+  const std::string& array_name() const { return this->mesh ? this->mesh->array_name : this->input->array_name; }
+};
+
+class several_drawing : public cli::drawing
+{
+public:
+  several_drawing(const cli::options& o, cli::context& core) : Options(o), Core(core)
+  {
+    if (o.tetra_method != STRATUS_TETRA_METHOD_AUTO) {
+      throw cli::usage("--method is for one grid alone: among several INPUTs a grid of cells is marched");
+    }
+  }
+  ~several_drawing() override
+  {
+    for (const member& one : this->Members) {
+      stratus_ray_caster_destroy(one.caster);
+      stratus_tetra_caster_destroy(one.tetra);
+    }
+  }
+  several_drawing(const several_drawing&) = delete;
+  several_drawing& operator=(const several_drawing&) = delete;
+
+  void take(const cli::routed& data) override;
+  void look() override;
+  std::pair<double, double> range() const override;
+  cli::scene_frame place() const override;
+  const cli::transfer& functions() const override { return this->Members[0].functions; }
+  void draw(const stratus_image& image) override;
+  void tell() const override;
+  void judge() const override;
+
+private:
+  void take_member(const cli::options& o, const cli::routed& data);
+  void set_mesh(member& one, const cli::routed& data);
+
+  const cli::options& Options;
+  cli::context& Core;
+  std::vector<member> Members; // the first INPUT first
+  cli::volume_parts Parts;     // of the first one
+  stratus_camera Camera = {};
+  int Up = 2;
+};
+
+// Reads the other INPUTs, too, each with the options of the first but for what was said of it.
+void several_drawing::take(const cli::routed& data)
+{
+  this->take_member(this->Options, data);
+  for (const cli::companion& companion : this->Options.companions) {
+    cli::options o = this->Options;
+    o.source = companion.source;
+    o.array = companion.array;
+    o.raw = companion.raw;
+    o.opacity = companion.opacity;
+    o.color = companion.color;
+    o.unit_distance = companion.unit_distance;
+    this->take_member(o, cli::is_scene(o.source) ? cli::routed() : cli::route(cli::read_data(o.source, o.array, o.raw), o.source, o.array));
+  }
+}
+
+// Takes a scene, an image or a rectilinear grid, or else cells. The first one says which axis is up.
+void several_drawing::take_member(const cli::options& o, const cli::routed& data)
+{
+  if (!data.blocks.empty()) {
+    throw cli::usage("'" + o.source + "' is a volume of " + std::to_string(1 + data.blocks.size()) +
+      " blocks, which is drawn alone: leave out the other INPUTs");
+  }
+  this->Members.emplace_back();
+  member& one = this->Members.back();
+  one.o = o;
+  const bool first = this->Members.size() == 1;
+  if (first && !o.up.empty()) {
+    this->Up = o.up[0] - 'x';
+  }
+  if (data.grid) {
+    this->set_mesh(one, data);
+    return;
+  }
+  one.input.reset(
+    data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array, o.raw));
+  if (first && o.up.empty()) {
+    this->Up = one.input->up_axis;
+  }
+  one.input->volume.matrix[5 * this->Up] *= this->Options.exaggeration;
+  this->Core.check(stratus_ray_caster_create(this->Core, &one.caster), "ray caster");
+}
+
+void several_drawing::set_mesh(member& one, const cli::routed& data)
+{
+  const cli::options& o = this->Options;
+  if (o.shade || (!o.mask.empty() && this->Members.size() == 1)) {
+    throw cli::usage("'" + one.o.source + "' is a grid of cells, which " +
+      (o.shade ? "is not lit among several INPUTs: leave out --shade" : "takes no mask: name the volume that it masks first"));
+  }
+  one.o.up = std::string(1, static_cast<char>('x' + this->Up));
+  one.mesh = std::make_unique<cli::mesh>();
+  one.mesh->set(data.grid, one.o);
+  this->Core.check(stratus_mesh_check(this->Core, &one.mesh->view()), "'" + one.o.source + "'");
+  one.outline = one.mesh->outline();
+  this->Core.check(stratus_tetra_caster_create(this->Core, &one.tetra), "caster of tetrahedra");
+}
+
+void several_drawing::look()
+{
+  std::vector<cli::shown_volume> shown;
+  for (member& one : this->Members) {
+    const stratus_volume values = one.mesh ? one.mesh->box() : one.input->volume;
+    one.functions = cli::make_transfer({ &values }, one.mesh ? nullptr : one.input->scene, one.o);
+    const stratus_transfer view = one.functions.view();
+    this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function of '" + one.o.source + "'");
+    shown.push_back({ &one.shape(), view });
+  }
+  this->Camera = cli::place_camera(this->Core, this->Options, shown, this->Up);
+}
+
+std::pair<double, double> several_drawing::range() const
+{
+  const member& first = this->Members[0];
+  const stratus_volume values = first.mesh ? first.mesh->box() : first.input->volume;
+  const cli::histogram h = cli::histogram_of({ &values });
+  return { h.low, h.high };
+}
+
+cli::scene_frame several_drawing::place() const
+{
+  cli::scene_frame frame;
+  frame.camera = this->Camera;
+  for (const member& one : this->Members) {
+    double own[6];
+    this->Core.check(stratus_volume_bounds(this->Core, &one.shape(), own), "bounds");
+    for (int side = 0; side < 6; ++side) {
+      const bool nearer = side % 2 ? own[side] > frame.bounds[side] : own[side] < frame.bounds[side];
+      frame.bounds[side] = &one == &this->Members[0] || nearer ? own[side] : frame.bounds[side];
+    }
+  }
+  frame.scale[this->Up] = this->Options.exaggeration;
+  frame.title = this->Members[0].array_name();
+  return frame;
+}
+
+// Crop and mask are the first INPUT's alone.
+void several_drawing::draw(const stratus_image& image)
+{
+  const size_t count = this->Members.size();
+  std::vector<stratus_transfer> views(count);
+  std::vector<stratus_ray_cast_input> inputs(count);
+  for (size_t n = 0; n < count; ++n) {
+    member& one = this->Members[n];
+    views[n] = one.functions.view();
+    inputs[n].transfer = &views[n];
+    one.options = cli::casting_of(this->Options, this->Up);
+    if (one.mesh) {
+      one.tetra_options = stratus_tetra_options_default();
+      one.tetra_options.tolerance = this->Options.tolerance;
+      one.tetra_options.crop = n == 0 && !this->Options.crop.empty();
+      std::copy(this->Options.crop.begin(), this->Options.crop.end(), one.tetra_options.crop_bounds);
+      inputs[n].tetra = one.tetra;
+      inputs[n].mesh = &one.mesh->view();
+      inputs[n].tetra_options = &one.tetra_options;
+      continue;
+    }
+    if (n == 0) {
+      this->Parts.set(this->Options, this->Core, one.input->volume, one.options);
+    }
+    inputs[n].caster = one.caster;
+    inputs[n].volume = &one.input->volume;
+    inputs[n].options = &one.options;
+  }
+  std::vector<stratus_ray_cast_report> reports(count);
+  this->Core.check(
+    stratus_ray_caster_render_several(inputs.data(), static_cast<int>(count), &this->Camera, &image, reports.data()), "render");
+  for (size_t n = 0; n < count; ++n) {
+    this->Members[n].report = reports[n];
+  }
+}
+
+void several_drawing::tell() const
+{
+  for (const member& one : this->Members) {
+    const bool first = &one == &this->Members[0];
+    const std::string what =
+      one.mesh ? cli::grouped(static_cast<unsigned long long>(one.mesh->points)) + " points" : cli::describe(one.input->volume);
+    row(!first ? "with" : one.mesh ? "mesh" : "volume", (first ? "" : one.o.source + ": ") + what + ", array '" + one.array_name() + "'");
+    if (!first) {
+      row("opacity", one.functions.origin);
+      row("why", one.report.why);
+    }
+  }
+  row("camera", cli::describe(this->Camera));
+  cli::tell_cast(this->Options, this->Core, this->Members[0].functions, this->Members[0].report);
+}
+
+void several_drawing::judge() const
+{
+  cli::judge_cast(this->Options, this->Members[0].report);
+}
+} // namespace
+
+std::unique_ptr<cli::drawing> cli::make_several_drawing(const options& o, context& core)
+{
+  return std::make_unique<several_drawing>(o, core);
+}
