@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The core's library, loaded by ctypes, and the contexts that its calls take."""
+import ctypes
+import glob
+import os
+import threading
+import weakref
+
+from . import _declarations as c
+
+_FOLDER = os.path.dirname(os.path.abspath(__file__))
+_MISSING = {
+    "libgomp": "the OpenMP runtime of gcc (Debian: apt-get install libgomp1; conda: conda install libgomp)",
+    "libOpenCL": "the OpenCL loader (Debian: apt-get install ocl-icd-libopencl1; conda: conda install ocl-icd)",
+}
+
+
+class Cancelled(RuntimeError):
+    """The progress function asked to stop."""
+
+
+class DeviceError(RuntimeError):
+    """An OpenCL device failed."""
+
+
+class Unsupported(NotImplementedError):
+    """The request is valid, but the core does not implement it."""
+
+
+_ERRORS = {
+    "STRATUS_INVALID_ARGUMENT": ValueError, "STRATUS_OVERFLOW": OverflowError, "STRATUS_OUT_OF_MEMORY": MemoryError,
+    "STRATUS_CANCELLED": Cancelled, "STRATUS_NO_DEVICE": ValueError, "STRATUS_DEVICE_ERROR": DeviceError, "STRATUS_UNSUPPORTED": Unsupported,
+}
+_ERRORS = {c.ENUMS["stratus_status"][name]: error for name, error in _ERRORS.items()}
+
+
+def _load():
+    found = sorted(glob.glob(os.path.join(_FOLDER, "libstratus-core.*")))
+    if not found:
+        raise ImportError(f"stratus_volume has no libstratus-core beside it in {_FOLDER}: it was not built or not installed as a whole")
+    try:
+        library = ctypes.CDLL(found[0])
+    except OSError as error:
+        for name, what in _MISSING.items():
+            if name in str(error) and "cannot open shared object file" in str(error):
+                raise ImportError(f"stratus_volume can't load {found[0]}, because {what} is missing ({error})") from None
+        raise ImportError(f"stratus_volume can't load {found[0]}: {error}") from None
+    for name, (result, parameters) in c.FUNCTIONS.items():
+        try:
+            function = getattr(library, name)
+        except AttributeError:
+            raise ImportError(f"{found[0]} has no {name}: it is not the library that this package was made for") from None
+        function.restype, function.argtypes = result, parameters
+    return library
+
+
+library = _load()
+version = library.stratus_version().decode()
+
+
+class Context:
+    """A device, its threads and its programs. One call at a time uses it: others wait for its lock.
+
+    device   "auto" (the default): the host, or an OpenCL GPU where that draws faster; "host"; or a device's index or part of its name
+    threads  on the host, 1..1024; 0 (the default): as many as OpenMP offers, which OMP_NUM_THREADS sets
+    """
+
+    def __init__(self, device="auto", threads=0):
+        self._pointer, self._users, self._left = None, 0, False
+        self.lock = threading.RLock()
+        self._progress = self._raised = None
+        options = library.stratus_context_options_default()
+        options.device = _text(device, "device")
+        options.threads = whole(threads, "threads", 0, 1024)
+        tell = weakref.WeakMethod(self._tell)
+        self._callback = c.stratus_progress_function(lambda user, stage, fraction: tell()(stage, fraction))  # lives as long as the context
+        options.progress = self._callback
+        pointer, message = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
+        status = library.stratus_context_create(ctypes.byref(options), ctypes.byref(pointer), message, len(message))
+        if status:
+            raise _ERRORS[status](message.value.decode(errors="replace"))
+        self._pointer = pointer
+
+    def _tell(self, stage, fraction):
+        try:
+            # Python handles signals here, so that Ctrl+C ends a long call.
+            return int(bool(self._progress and self._progress(stage.decode(), fraction)))
+        except BaseException as error:  # ctypes would print it and go on
+            self._raised = error
+            return 1
+
+    def _destroy_unused(self):
+        if self._left and self._users == 0 and self._pointer:
+            library.stratus_context_destroy(self._pointer)
+            self._pointer = None
+
+    def __del__(self):
+        # Of objects that the garbage collector takes at once, the context may come first. The last object that uses it destroys it then.
+        self._left = True
+        self._destroy_unused()
+
+    def call(self, function, *arguments, progress=None):
+        """Calls a function of the library that returns a status, and raises what the status stands for. Call it with the lock held."""
+        self._progress, self._raised = progress, None
+        try:
+            status = function(*arguments)
+        finally:
+            self._progress = None
+        if self._raised:
+            raised, self._raised = self._raised, None
+            raise raised
+        if status:
+            message = library.stratus_context_message(self._pointer) or library.stratus_status_name(status)
+            raise _ERRORS.get(status, RuntimeError)(message.decode(errors="replace"))
+
+    @property
+    def pointer(self):
+        return self._pointer
+
+    @property
+    def device(self):
+        """The name of what draws, such as "host (AVX2, 8 threads)"."""
+        return library.stratus_context_device(self._pointer).decode(errors="replace")
+
+    def __repr__(self):
+        return f"stratus_volume.Context: {self.device}"
+
+
+_contexts, _lock = {}, threading.Lock()
+
+
+def context(device=None, threads=None):
+    """Returns the context of a device, which all calls share that name the same. device may be a Context of one's own."""
+    if isinstance(device, Context):
+        if threads is not None:
+            raise ValueError(f"threads is {threads!r}, but a Context has its own")
+        return device
+    key = (str("auto" if device is None else device), 0 if threads is None else threads)
+    with _lock:
+        if key not in _contexts:
+            _contexts[key] = Context(*key)
+        return _contexts[key]
+
+
+def devices():
+    """Returns the names of this machine's OpenCL devices, [] where there is none. The host needs none."""
+    names = []
+    for index in range(library.stratus_device_count()):
+        name = ctypes.create_string_buffer(256)
+        library.stratus_device_name(index, name, len(name))
+        names.append(name.value.decode(errors="replace"))
+    return names
+
+
+class Owned:
+    """An object of the core with the function that frees it; it keeps its context alive."""
+
+    def __init__(self, owner, destroy):
+        self.owner, self.pointer, self._destroy = owner, ctypes.c_void_p(), destroy
+        with owner.lock:
+            owner._users += 1
+
+    def __del__(self):
+        with self.owner.lock:
+            if self.pointer:
+                self._destroy(self.pointer)
+            self.owner._users -= 1
+            self.owner._destroy_unused()
+
+
+def _text(value, name):
+    if not isinstance(value, (str, int)) or isinstance(value, bool):
+        raise TypeError(f"{name} is {value!r}, it must be a text or an index")
+    return str(value).encode()
+
+
+def whole(value, name, low, high):
+    try:
+        same = int(value) == value
+    except (TypeError, ValueError, OverflowError):
+        raise TypeError(f"{name} is {value!r}, it must be a whole number in {low}..{high}") from None
+    if not same or not low <= value <= high:
+        raise ValueError(f"{name} is {value!r}, it must be a whole number in {low}..{high}")
+    return int(value)
+
+
+def choice(value, enum, prefix, name, leave_out=()):
+    """Returns the number of an enum's entry by its name in lower case, with hyphens."""
+    names = {entry[len(prefix):].lower().replace("_", "-"): number for entry, number in c.ENUMS[enum].items()}
+    names = {entry: number for entry, number in names.items() if entry not in leave_out}
+    if not isinstance(value, str) or value.replace("_", "-") not in names:
+        raise ValueError(f"{name} is {value!r}, it must be one of {', '.join(names)}")
+    return names[value.replace("_", "-")]
+
+
+def name_of(value, enum, prefix):
+    for entry, number in c.ENUMS[enum].items():
+        if number == value:
+            return entry[len(prefix):].lower().replace("_", "-")
+    return str(value)
+
+
+_NAMED = {"stratus_ray_cast_report": {"structure": ("stratus_structure", "STRATUS_STRUCTURE_"), "sampling": ("stratus_sampling", "STRATUS_SAMPLING_")},
+          "stratus_tetra_report": {"method": ("stratus_tetra_method", "STRATUS_TETRA_METHOD_")},
+          "stratus_tree_statistics": {"method": ("stratus_tree_method", "STRATUS_TREE_")}}
+
+
+def as_dict(struct):
+    """A report as a dict: texts as str, arrays as tuples, enums by their names."""
+    named, result = _NAMED.get(type(struct).__name__, {}), {}
+    for field, *_ in struct._fields_:
+        value = getattr(struct, field)
+        if field in named:
+            value = name_of(value, *named[field])
+        elif isinstance(value, bytes):
+            value = value.decode(errors="replace")
+        elif isinstance(value, ctypes.Array):
+            value = tuple(value)
+        result[field] = value
+    return result
+
+
+def address(array):
+    return None if array is None else array.ctypes.data
+
+
+_LETTERS = {"int": "i", "uint": "u", "float": "f"}
+_TYPES = {letter + str(bits // 8): c.ENUMS["stratus_type"][f"STRATUS_{name.upper()}{bits}"] for name, letter in _LETTERS.items()
+          for bits in (8, 16, 32, 64) if letter != "f" or bits > 16}
+
+
+def type_of(array):
+    """The core's number of an array's type."""
+    return _TYPES[array.dtype.kind + str(array.dtype.itemsize)]

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Volumes from NumPy, xarray, VTK and pyvista, as views of their own memory where type and order allow."""
+import ctypes
+
+import numpy
+
+from . import _declarations as c
+from ._core import address, library, type_of
+from ._values import Spread, mask_of, native, none_visible, numbers, power_of, scaled, visible
+
+_IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+_POINT_HIDDEN = c.CONSTANTS["STRATUS_GHOST_HIDDEN_POINT"]
+_CELL_HIDDEN = c.CONSTANTS["STRATUS_GHOST_HIDDEN_CELL"]
+
+
+class Grid:
+    """Values on a grid. `values` has the axes slow, middle, fast, `world` tells which world axis each index runs along, fast first."""
+
+    def __init__(self, values, mask, spacing, origin, world=(0, 1, 2), direction=None, coordinates=(None, None, None), cell_centered=False,
+                 flags=None):
+        self.mask, self.flags, self.world, self.cell_centered = mask, flags, world, cell_centered
+        self.spacing, self.origin, self.coordinates = spacing, origin, coordinates
+        self.direction = direction or [1.0 if world[own] == axis else 0.0 for axis in range(3) for own in range(3)]
+        self.ghosts = None
+        hidden = mask
+        if flags is not None:
+            self.ghosts = flags
+            by_flags = flags & (_CELL_HIDDEN if cell_centered else _POINT_HIDDEN) != 0
+            hidden = by_flags if hidden is None else hidden | by_flags
+        shown = visible(values.reshape(-1), None if hidden is None else hidden.reshape(-1))
+        self.nothing, self.spread = None, None
+        if shown.size == 0:
+            masked = 0 if hidden is None else int(hidden.sum())
+            self.nothing = none_visible(values.size, masked, values.size - masked)
+        else:
+            self.spread = Spread(shown)
+        self.values = values if mask is None or self.nothing else self._without_hidden(values)
+        self._scaled = (0, self.values)
+        self.revision = 0
+
+    def _without_hidden(self, values):
+        """What is masked has no say in ranges and tables: floats become NaN; integers a value of the others, hidden by a flag."""
+        if values.dtype.kind == "f":
+            return numpy.where(self.mask, values.dtype.type(numpy.nan), values)
+        flag = _CELL_HIDDEN if self.cell_centered else _POINT_HIDDEN
+        own = self.mask.astype(numpy.uint8) * numpy.uint8(flag)
+        self.ghosts = numpy.ascontiguousarray(own if self.ghosts is None else own | self.ghosts)
+        if values.min() < self.spread.low or values.max() > self.spread.high:
+            return numpy.where(self.mask, values.dtype.type(self.spread.low), values)
+        return values
+
+    def power(self, points=None):
+        """The power of 2 by which values are scaled, for a function with own points by these where they are much smaller than the values."""
+        if self.values.dtype.kind != "f":
+            return 0
+        largest = max(abs(self.spread.low), abs(self.spread.high))
+        if power_of(largest) and points is not None:
+            own = max(abs(point) for point in points)
+            if 0 < own < 1e-6 * largest:
+                return power_of(own)
+        return power_of(largest)
+
+    def view(self, power):
+        """The core's view of the values times 2**-power. It is valid as long as this object, and until the next call."""
+        if self._scaled[0] != power:
+            self._scaled = (power, scaled(self.values, power))
+            self.revision += 1
+        values, stride = _strided(self._scaled[1])
+        if values is not self._scaled[1]:
+            self._scaled = (power, values)
+        volume = library.stratus_volume_default()
+        volume.values, volume.type, volume.value_stride = address(values), type_of(values), stride
+        volume.dimensions[:] = values.shape[::-1]
+        volume.origin[:], volume.direction[:] = self.origin, self.direction
+        volume.cell_centered = int(self.cell_centered)
+        volume.revision = self.revision
+        if self.ghosts is not None:
+            setattr(volume, "cell_ghosts" if self.cell_centered else "point_ghosts", address(self.ghosts))
+        for own in range(3):
+            volume.spacing[own] = self.spacing[own]
+            volume.coordinates[own] = address(self.coordinates[own])
+        return volume
+
+    def bounds(self, context):
+        result, volume = (ctypes.c_double * 6)(), self.view(self._scaled[0])
+        context.call(library.stratus_volume_bounds, context.pointer, ctypes.byref(volume), result)
+        return tuple(result)
+
+    def crop(self, box):
+        """Bounds along the grid's axes of bounds along the world's."""
+        result = [0.0] * 6
+        for own, world in enumerate(self.world):
+            for end in range(2):
+                place = box[2 * world + end]
+                # The core counts from origin[own], the world's axis from origin[world].
+                result[2 * own + end] = place if self.coordinates[own] is not None else self.origin[own] + place - self.origin[world]
+        return result
+
+
+def _strided(values):
+    """Returns values and the distance of two along the fastest axis, in values, of a copy where rows do not follow each other evenly."""
+    step, count, size = values.strides[-1], values.shape, values.itemsize
+    if step > 0 and step % size == 0 and values.strides[1] == step * count[2] and values.strides[0] == step * count[2] * count[1]:
+        return values, step // size
+    return numpy.ascontiguousarray(values), 1
+
+
+def _axes(axes):
+    if not isinstance(axes, (str, list, tuple)) or sorted(map(str, axes)) != ["x", "y", "z"]:
+        raise ValueError(f"axes is {axes!r}, it must name x, y and z once each, as 'zyx'")
+    return ["xyz".index(axis) for axis in axes]
+
+
+def _of_array(array, spacing, origin, axes, coordinates=None):
+    mask = mask_of(array)
+    values = native(array)
+    if values.ndim != 3 or min(values.shape) < 2:
+        raise ValueError(f"the array's shape is {values.shape}, it must have three axes of at least 2 values")
+    worlds = _axes(axes)
+    spacing = numbers((1, 1, 1) if spacing is None else spacing, 3, "spacing")
+    origin = numbers((0, 0, 0) if origin is None else origin, 3, "origin")
+    if min(spacing) <= 0:
+        raise ValueError(f"spacing is {spacing}, each must be above 0")
+    # The axis along which memory runs fastest is the core's first, whatever the array calls it.
+    order = sorted(range(3), key=lambda axis: -values.strides[axis]) if min(values.strides) > 0 else [0, 1, 2]
+    values = values.transpose(order)
+    mask = None if mask is None else mask.transpose(order)
+    world = tuple(worlds[axis] for axis in reversed(order))
+    own = (None, None, None) if coordinates is None else tuple(coordinates[axis] for axis in reversed(order))
+    return Grid(values, mask, [spacing[axis] for axis in world], origin, world, coordinates=own)
+
+
+_HEIGHTS = ("z", "lev", "level", "plev", "height", "altitude", "alt", "depth", "elevation", "bottom_top", "k")
+_NORTHS = ("y", "lat", "latitude", "north", "northing", "south_north", "j")
+_EASTS = ("x", "lon", "longitude", "east", "easting", "west_east", "i")
+
+
+def _of_xarray(data, spacing, origin, axes):
+    """A DataArray: its dimensions' names tell the axes, its coordinates the places, its fill values are masked."""
+    names = [str(name).lower() for name in data.dims]
+    values = numpy.ma.asarray(data.values) if len(names) == 3 else None
+    if values is None:
+        raise ValueError(f"the DataArray has the dimensions {tuple(data.dims)}, it must have three; choose of the others by .isel()")
+    if axes is None:
+        letters = ["".join(letter for letter, known in (("z", _HEIGHTS), ("y", _NORTHS), ("x", _EASTS)) if name in known) for name in names]
+        axes = letters if sorted(letters) == ["x", "y", "z"] else "zyx"
+    for where in data.attrs, getattr(data, "encoding", {}):
+        for name in "_FillValue", "missing_value":
+            if name in where and where is data.attrs:  # those of the encoding were replaced as the file was read
+                values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | numpy.isin(values.data, where[name]), values.data)
+    coordinates = None
+    if spacing is None and origin is None and all(name in data.coords for name in data.dims):
+        places = [numpy.asarray(data.coords[name].values) for name in data.dims]
+        units = {str(data.coords[name].attrs.get("units", "")) for name in data.dims}
+        if all(place.ndim == 1 and place.size > 1 and place.dtype.kind in "iuf" for place in places):
+            places = [numpy.ascontiguousarray(place, numpy.float64) for place in places]
+            if len(units) > 1:
+                # Degrees beside metres: each axis gets the length that its count of values has with a spacing of 1.
+                places = [(place - place[0]) * ((place.size - 1) / abs(place[-1] - place[0])) for place in places]
+            coordinates = places
+    return _of_array(values, spacing, origin, axes, coordinates)
+
+
+def _of_vtk(data, scalars, component):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    points, cells = data.GetPointData(), data.GetCellData()
+    if scalars is not None:
+        cell_centered = not points.HasArray(scalars)
+        array = (cells if cell_centered else points).GetArray(scalars)
+        if array is None:
+            names = [each.GetArrayName(n) for each in (points, cells) for n in range(each.GetNumberOfArrays())]
+            raise ValueError(f"scalars is {scalars!r}, it must be one of {names}")
+    else:
+        cell_centered = points.GetScalars() is None
+        array = cells.GetScalars() if cell_centered else points.GetScalars()
+        if array is None:
+            raise ValueError("the grid has no active scalars, neither of points nor of cells; name them by scalars=")
+    values = vtk_to_numpy(array)
+    if values.ndim == 2:
+        if component is None:
+            raise ValueError(f"{array.GetName()!r} has {values.shape[1]} components; choose one by component=, 0..{values.shape[1] - 1}")
+        if not 0 <= component < values.shape[1]:
+            raise ValueError(f"component is {component}, it must be in 0..{values.shape[1] - 1}")
+        values = values[:, component]
+    shape = [max(1, n - 1) if cell_centered else n for n in data.GetDimensions()][::-1]
+    attributes = cells if cell_centered else points
+    flags = attributes.GetArray("vtkGhostType")
+    flags = None if flags is None else numpy.ascontiguousarray(vtk_to_numpy(flags)).view(numpy.uint8).reshape(shape)
+    if data.IsA("vtkRectilinearGrid"):
+        places = [numpy.ascontiguousarray(vtk_to_numpy(each), numpy.float64) for each in
+                  (data.GetXCoordinates(), data.GetYCoordinates(), data.GetZCoordinates())]
+        return Grid(native(values).reshape(shape), None, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), coordinates=places, cell_centered=cell_centered, flags=flags)
+    extent, origin = data.GetExtent(), [0.0, 0.0, 0.0]
+    data.TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], origin)
+    matrix = data.GetDirectionMatrix()
+    direction = [matrix.GetElement(row, column) for row in range(3) for column in range(3)]
+    return Grid(native(values).reshape(shape), None, list(data.GetSpacing()), tuple(origin), direction=direction, cell_centered=cell_centered,
+                flags=flags)
+
+
+def grid_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None):
+    if isinstance(data, Grid):
+        return data
+    if hasattr(data, "IsA") and hasattr(data, "GetPointData"):
+        if not data.IsA("vtkImageData") and not data.IsA("vtkRectilinearGrid"):
+            raise TypeError(f"the data set is a {data.GetClassName()}, it must be a vtkImageData or vtkRectilinearGrid")
+        if spacing is not None or origin is not None or axes is not None:
+            raise ValueError("a data set of VTK has its own spacing, origin and axes: leave these out")
+        return _of_vtk(data, scalars, component)
+    if scalars is not None or component is not None:
+        raise ValueError("scalars and component choose among the arrays of a VTK data set; an array has none")
+    if hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs"):
+        return _of_xarray(data, spacing, origin, axes)
+    return _of_array(data, spacing, origin, "zyx" if axes is None else axes)

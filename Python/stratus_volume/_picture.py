@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures as arrays, which notebooks show and which save themselves as PNG."""
+import struct
+import typing
+import zlib
+
+import numpy
+
+
+def _chunk(kind, content):
+    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+
+class Picture(numpy.ndarray):
+    """An array of shape (height, width, 4), RGBA of one byte each, the top row first, which notebooks show as a picture."""
+
+    def _repr_png_(self):
+        if self.ndim != 3 or self.shape[2] not in (3, 4) or self.dtype != numpy.uint8 or self.size == 0:
+            return None  # a slice may not be a picture
+        height, width, channels = self.shape
+        rows = numpy.zeros((height, 1 + width * channels), numpy.uint8)  # each row begins with its filter: none
+        rows[:, 1:] = self.reshape(height, width * channels)
+        header = struct.pack(">IIBBBBB", width, height, 8, 2 if channels == 3 else 6, 0, 0, 0)
+        return (b"\x89PNG\r\n\x1a\n" + _chunk(b"IHDR", header) + _chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + _chunk(b"IEND", b""))
+
+    def save(self, path):
+        """Writes the picture as PNG."""
+        encoded = self._repr_png_()
+        if encoded is None:
+            raise ValueError(f"an array of shape {self.shape} and type {self.dtype} is no picture: it must be (height, width, 3 or 4), uint8")
+        with open(path, "wb") as file:
+            file.write(encoded)
+
+
+def paint(rgba, background):
+    """Converts premultiplied floats to a Picture, over a background of (r, g, b) or, for None, transparent."""
+    rgb, alpha = rgba[..., :3], rgba[..., 3:]
+    if background is None:
+        rgb = numpy.divide(rgb, alpha, out=numpy.zeros_like(rgb), where=alpha > 0)
+    else:
+        rgb, alpha = rgb + (1 - alpha) * numpy.array(background, numpy.float32), numpy.ones_like(alpha)
+    both = numpy.concatenate([rgb, alpha], axis=2)
+    return numpy.rint(255 * numpy.clip(both, 0, 1)).astype(numpy.uint8).view(Picture)
+
+
+class Rendering(typing.NamedTuple):
+    """What `render` returns.
+
+    rgba      float32 (height, width, 4), premultiplied by alpha, the top row first; 0 where nothing shows
+    depth     float32 (height, width): world distance along the ray from the eye (parallel cameras: from its plane) to what shows first;
+              infinite where nothing does
+    counters  dict of what was done: rays, samples, skipped segments, times in ms, the structure and sampling that were used and why
+    """
+    rgba: numpy.ndarray
+    depth: numpy.ndarray
+    counters: dict
+
+    def picture(self, background=None):
+        """Returns a Picture of bytes, over a background of (r, g, b) in 0..1 or, for None, transparent."""
+        from ._values import background_color
+        return paint(self.rgba, background_color(background))

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arrays and functions of values as people give them, made into what the core takes. The packages stratus and stratus_volume share it."""
+import os
+import sys
+import warnings
+from numbers import Real
+
+import numpy
+
+TYPES = "bool, int8..int64, uint8..uint64, float16, float32, float64"
+# Beyond these magnitudes values are scaled by a power of 2: the core's floats end at 3.4e38.
+SMALLEST, LARGEST = 1e-30, 1e37
+
+
+class NothingShown(UserWarning):
+    """A picture shows nothing, or next to nothing, of its data. The message names the reason."""
+
+
+def warn(reason):
+    """Warns at the line that called the package."""
+    level, frame, folder = 2, sys._getframe(1), os.path.dirname(__file__)
+    while frame.f_back and os.path.dirname(frame.f_code.co_filename) == folder:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(reason, NothingShown, stacklevel=level)
+
+
+# ---- numbers
+
+def is_number(value):
+    return isinstance(value, Real) or isinstance(value, numpy.ndarray) and value.ndim == 0 and value.dtype.kind in "buif"
+
+
+def number(value, name):
+    if not is_number(value):
+        raise TypeError(f"{name} is {value!r}, it must be a number")
+    if not numpy.isfinite(float(value)):
+        raise ValueError(f"{name} is {value!r}, it must be finite")
+    return float(value)
+
+
+def numbers(values, count, name):
+    try:
+        result = tuple(float(value) for value in values)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} is {values!r}, it must be {count} numbers") from None
+    if len(result) != count or not all(numpy.isfinite(result)):
+        raise ValueError(f"{name} is {values!r}, it must be {count} finite numbers")
+    return result
+
+
+def pixels(size):
+    """Returns width and height as ints."""
+    width, height = numbers(size, 2, "size")
+    if not all(1 <= side <= 16384 and side == int(side) for side in (width, height)):
+        raise ValueError(f"size is {size!r}, each must be a whole number in 1..16384")
+    return int(width), int(height)
+
+
+def background_color(background):
+    if background is None:
+        return None
+    result = numbers(background, 3, "background")
+    if not all(0 <= part <= 1 for part in result):
+        raise ValueError(f"background is {background!r}, each must be in 0..1")
+    return result
+
+
+def positive(value, name):
+    if number(value, name) <= 0:
+        raise ValueError(f"{name} is {value!r}, it must be above 0")
+    return float(value)
+
+
+# ---- arrays
+
+def native(array, name="array"):
+    """Returns the array in one of the core's types and the machine's byte order. float16 becomes float32; bool is seen as bytes."""
+    array = numpy.asarray(array)
+    if array.dtype.kind not in "buif" or array.dtype.itemsize > 8:
+        raise TypeError(f"the {name} is of type {array.dtype.str} ({array.dtype}), it must be one of {TYPES}")
+    if array.dtype == bool:
+        return array.view(numpy.uint8)
+    if array.dtype.kind == "f" and array.dtype.itemsize == 2:
+        return array.astype(numpy.float32)
+    return array if array.dtype.isnative else array.astype(array.dtype.newbyteorder("="))
+
+
+def mask_of(array):
+    """Returns the mask of a masked array in the array's shape, None where it hides nothing."""
+    mask = numpy.ma.getmask(array)
+    return None if mask is numpy.ma.nomask or not mask.any() else mask
+
+
+def power_of(largest):
+    """Returns the power of 2 that brings a magnitude near 1 where the core's floats do not hold it, else 0."""
+    return 0 if largest == 0 or SMALLEST < largest < LARGEST else int(numpy.frexp(largest)[1])
+
+
+def scaled(values, power):
+    """Returns values times 2**-power as doubles."""
+    with numpy.errstate(all="ignore"):  # of values that are not finite
+        return numpy.ldexp(numpy.asarray(values, numpy.float64), -power)
+
+
+def visible(values, hidden=None):
+    """Returns a flat array of the values that can show: neither hidden nor, in any component (the last axis of two), not finite.
+
+    hidden: flags in the shape of the values' points, or None.
+    """
+    rows = values if values.ndim < 2 else values.reshape(-1, values.shape[-1])
+    if values.dtype.kind == "f" and not (numpy.isfinite(values.min()) and numpy.isfinite(values.max())):
+        shown = numpy.isfinite(rows) if rows.ndim == 1 else numpy.isfinite(rows).all(axis=1)
+        if hidden is not None:
+            shown &= ~numpy.asarray(hidden, bool).reshape(-1)
+        return rows[shown]
+    return rows if hidden is None else rows[~numpy.asarray(hidden, bool).reshape(-1)]
+
+
+class Spread:
+    """Where values lie: `low`, `high`, the most frequent (`common`), and whether a few lie so far from all others that nothing else shows.
+
+    `center` is a value in the midst of the most frequent. `far` is below a millionth where all but a twentieth of the values that differ from
+    it do so by less than that fraction of the range.
+    """
+
+    def __init__(self, values):
+        self.low, self.high = float(values.min()), float(values.max())
+        self.common, self.center, self.far = self.low, self.low, 1.0
+        if self.low < self.high:
+            # Differences of the largest doubles overflow, and those of the smallest have no digits.
+            power = power_of(max(abs(self.low), abs(self.high)))
+            low, high = float(scaled(self.low, power)), float(scaled(self.high, power))
+            flat = values.reshape(-1)
+            some = scaled(flat[:: max(1, flat.size // 2000000)], power)
+            counts, edges = numpy.histogram(some, bins=256, range=(low, high))
+            most = int(counts.argmax())
+            center = float(numpy.median(some[(some >= edges[most]) & (some <= edges[most + 1])]))
+            others = numpy.abs(some[some != center] - center)
+            if others.size:
+                self.far = float(numpy.quantile(others, 0.95)) / (high - low)
+            self.common, self.center = float(scaled(0.5 * (edges[most] + edges[most + 1]), -power)), float(scaled(center, -power))
+
+
+def write(value, power):
+    """A value as its owner knows it, for messages."""
+    with numpy.errstate(all="ignore"):
+        return f"{float(numpy.ldexp(value, power)):.6g}"
+
+
+# ---- functions of values
+
+def pairs(points, count, name, wanted, power):
+    """Returns checked tuples of numbers, the first of each scaled as the values are."""
+    try:
+        result = [numbers(point, count, f"a point of {name}") for point in points]
+    except TypeError:
+        raise TypeError(f"{name} is {points!r}, it must be {wanted}") from None
+    if not result or not all(0 <= part <= 1 for point in result for part in point[1:]):
+        raise ValueError(f"{name} is {points!r}, it must be {wanted}")
+    return [(scaled_point(point[0], power), *point[1:]) for point in result]
+
+
+def scaled_point(value, power):
+    """A value of a function's point or contour, scaled as the values are; at most 1e300, so that differences of two are finite."""
+    return float(numpy.clip(scaled(value, power), -1e300, 1e300))
+
+
+def opacity_points(opacity, low, high, common, power):
+    """Returns pairs of value and opacity. A number is the top of a ramp away from the most frequent value, or the opacity of a single value."""
+    if opacity is None or is_number(opacity):
+        top = 0.3 if opacity is None else float(opacity)
+        if not 0 <= top <= 1:
+            raise ValueError(f"opacity is {opacity!r}, it must be in 0..1")
+        if low == high:
+            return [(low, top)]
+        far = high if high - common >= common - low else low
+        near = common + 0.05 * (far - common)
+        return sorted([(common, 0.0), (near, 0.0), (far, top)])
+    return pairs(opacity, 2, "opacity", "a number in 0..1, or pairs of a value and an opacity in 0..1", power)
+
+
+def color_points(color, low, high, power):
+    """Returns tuples of value, red, green and blue. A single colour is that of all values."""
+    if color is None:
+        middle = low + 0.5 * (high - low)
+        points = [(low, 0.23, 0.3, 0.75), (middle, 0.87, 0.87, 0.87), (high, 0.9, 0.45, 0.15)]
+        return points if low < high else points[1:2]
+    wanted = "one (r, g, b) or some (value, r, g, b), with r, g and b in 0..1"
+    try:
+        if len(color) == 3 and all(is_number(part) for part in color):
+            if not all(0 <= part <= 1 for part in color):
+                raise ValueError(f"color is {color!r}, it must be {wanted}")
+            return [(low, *(float(part) for part in color))]
+    except TypeError:
+        raise TypeError(f"color is {color!r}, it must be {wanted}") from None
+    return pairs(color, 4, "color", wanted, power)
+
+
+def steps(points):
+    """Returns the points in order. Of several points at one value the first and the last remain, the ends of a step."""
+    points = sorted(points, key=lambda point: point[0])
+    return [point for n, point in enumerate(points)
+            if not (0 < n < len(points) - 1 and points[n - 1][0] == point[0] == points[n + 1][0])]
+
+
+def opacity_at(points, values):
+    """The opacity of values by ordered points. At a step it is the larger of both ends."""
+    at = numpy.array([point[0] for point in points])
+    opacity = numpy.array([point[1] for point in points])
+    result = numpy.interp(values, at, opacity)
+    for value, own in points:
+        result = numpy.where(numpy.asarray(values) == value, numpy.maximum(result, own), result)
+    return result
+
+
+# ---- the reasons why nothing shows
+
+def none_visible(count, masked, wrong):
+    """The reason where no value can show: of `count` values so many are masked, and so many are NaN or infinite."""
+    what = [text for number_of, text in ((masked, f"{masked} masked"), (wrong, f"{wrong} NaN or infinite")) if number_of]
+    return f"nothing shows: none of the {count} values can, {' and '.join(what) or 'none is finite'}"
+
+
+def no_opacity(points, low, high, power):
+    """The reason why values in low..high are transparent by these points, None where some are not."""
+    if max(opacity for _, opacity in points) == 0:
+        return "nothing shows: the opacity is 0 for every value"
+    within = [opacity for value, opacity in points if low <= value <= high]
+    if max([*within, *opacity_at(points, [low, high])]) > 0:
+        return None
+    shown = [value for n, (value, opacity) in enumerate(points) if opacity > 0 or any(other[1] > 0 for other in points[max(0, n - 1):n + 2])]
+    values = f"all values are {write(low, power)}" if low == high else f"the values lie in {write(low, power)}..{write(high, power)}"
+    return f"nothing shows: {values}, and the opacity is above 0 only in {write(min(shown), power)}..{write(max(shown), power)}"
+
+
+def one_sided(spread, power):
+    """The reason where a function of the whole range tells nothing apart, because a few values are very far from all others."""
+    if spread.far > 1e-6:
+        return None
+    return (f"next to nothing shows: the values reach from {write(spread.low, power)} to {write(spread.high, power)}, but 95 % of them are "
+            f"nearer to {write(spread.center, power)} than a millionth of that. Mask what is no data, or give opacity as pairs of a value and "
+            "an opacity")
+
+
+def too_thin(largest, unit_distance):
+    return (f"nothing shows: the largest alpha of the picture is {largest:.3g}, below half a step of 255. Raise the opacity, or lower "
+            f"unit_distance, which is {unit_distance:.6g}")

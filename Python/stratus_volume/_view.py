@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Cameras, as dicts, as pyvista's lists or as VTK's objects."""
+import ctypes
+import math
+
+from . import _declarations as c
+from ._core import library
+from ._values import number, numbers
+
+_AROUND = dict(azimuth=30.0, elevation=25.0, zoom=1.15)
+_PLACED = dict(position=None, focal_point=None, view_up=(0.0, 0.0, 1.0), view_angle=30.0, parallel_scale=None)
+_WANTED = ("a dict of azimuth, elevation (degrees) and zoom, or of position, focal_point, view_up, view_angle (degrees) and parallel_scale, "
+           "or three points (position, focal point, view up), or a vtkCamera")
+
+
+def _turned(vector, axis, degrees):
+    """The vector turned about an axis of length 1 (Rodrigues)."""
+    angle = math.radians(degrees)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    dot = sum(a * b for a, b in zip(vector, axis))
+    cross = _cross(axis, vector)
+    return tuple(v * cosine + x * sine + a * dot * (1 - cosine) for v, x, a in zip(vector, cross, axis))
+
+
+def _cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def _around(camera, bounds, aspect):
+    """A camera that looks at the middle of bounds from so far that all of them are in the window, as vtkRenderer.ResetCamera() does."""
+    wishes = dict(_AROUND)
+    wishes.update({name: number(value, f"camera's {name}") for name, value in camera.items()})
+    if wishes["zoom"] <= 0:
+        raise ValueError(f"camera's zoom is {wishes['zoom']}, it must be above 0")
+    middle = [0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]) for axis in range(3)]
+    radius = 0.5 * math.hypot(*(bounds[2 * axis + 1] - bounds[2 * axis] for axis in range(3))) or 0.5
+    outward = _turned((0.0, -1.0, 0.0), (0.0, 0.0, 1.0), wishes["azimuth"])
+    side = _cross((0.0, 0.0, 1.0), outward)
+    outward = _turned(outward, side, -max(-89.9, min(89.9, wishes["elevation"])))
+    angle = math.radians(30)
+    if aspect < 1:
+        angle = 2 * math.atan(math.tan(angle / 2) * aspect)
+    distance = radius / math.sin(angle / 2)
+    position = [m + distance * o for m, o in zip(middle, outward)]
+    return dict(position=position, focal_point=middle, view_up=(0.0, 0.0, 1.0), view_angle=30 / wishes["zoom"], parallel_scale=None)
+
+
+def _placed(camera):
+    wishes = dict(_PLACED)
+    wishes.update(camera)
+    for name in "position", "focal_point", "view_up":
+        if wishes[name] is None:
+            raise ValueError(f"camera has no {name}; it must be {_WANTED}")
+        wishes[name] = numbers(wishes[name], 3, f"camera's {name}")
+    wishes["view_angle"] = number(wishes["view_angle"], "camera's view_angle")
+    if wishes["parallel_scale"] is not None:
+        wishes["parallel_scale"] = number(wishes["parallel_scale"], "camera's parallel_scale")
+    return wishes
+
+
+def _as_placed(camera, bounds, aspect):
+    if camera is None:
+        return _around({}, bounds, aspect)
+    if hasattr(camera, "GetFocalPoint"):
+        return dict(position=camera.GetPosition(), focal_point=camera.GetFocalPoint(), view_up=camera.GetViewUp(), view_angle=camera.GetViewAngle(),
+                    parallel_scale=camera.GetParallelScale() if camera.GetParallelProjection() else None)
+    if isinstance(camera, dict):
+        if set(camera) <= set(_AROUND):
+            return _around(camera, bounds, aspect)
+        unknown = set(camera) - set(_PLACED)
+        if unknown:
+            raise ValueError(f"camera has {sorted(unknown)}, it must be {_WANTED}")
+        return _placed(camera)
+    try:
+        points = list(camera)
+        if len(points) == 3 and all(len(point) == 3 for point in points):
+            return _placed(dict(zip(("position", "focal_point", "view_up"), points)))
+    except TypeError:
+        pass
+    raise TypeError(f"camera is {camera!r}, it must be {_WANTED}")
+
+
+def make(context, camera, bounds, size):
+    """Returns the core's camera. Call it with the context's lock held."""
+    aspect = size[0] / size[1]
+    wishes, result = _as_placed(camera, bounds, aspect), c.stratus_camera()
+    three = ctypes.c_double * 3
+    places = [three(*wishes[name]) for name in ("position", "focal_point", "view_up")]
+    if wishes["parallel_scale"] is None:
+        context.call(library.stratus_camera_perspective, context.pointer, *places, wishes["view_angle"], aspect, ctypes.byref(result))
+    else:
+        context.call(library.stratus_camera_parallel, context.pointer, *places, wishes["parallel_scale"], aspect, ctypes.byref(result))
+    return result

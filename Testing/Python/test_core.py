@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""stratus_volume's calls of the core: contexts, pictures, cameras, errors, cancelling, threads, what is freed."""
+import gc
+import sys
+import threading
+import warnings
+
+try:
+    import numpy
+except ImportError:
+    print("SKIPPED: no NumPy")
+    sys.exit(77)
+
+import stratus_volume
+from stratus_volume import Context, Volume, render, show
+
+failures = 0
+warnings.simplefilter("error")
+
+
+def check(condition, what):
+    global failures
+    if not condition:
+        failures += 1
+        print("does not hold:", what)
+
+
+def refuse(kind, words, call, *arguments, **options):
+    try:
+        call(*arguments, **options)
+    except kind as error:
+        check(words in str(error), f"'{words}' in the error: {error}")
+    else:
+        check(False, f"{words}: {options} is refused")
+
+
+def ball(shape, center, radius):
+    """1 in the middle, 0 at the radius and beyond; shape and center along z, y, x."""
+    z, y, x = numpy.ogrid[tuple(slice(0, n) for n in shape)]
+    square = (z - center[0]) ** 2 + (y - center[1]) ** 2 + (x - center[2]) ** 2
+    return numpy.maximum(0, 1 - square / radius**2).astype(numpy.float32)
+
+
+field = ball((20, 22, 24), (10, 11, 12), 8)
+host = dict(device="host", size=(90, 60))
+
+
+def contexts():
+    own = Context("host", 1)
+    check("host" in own.device and "1 thread" in own.device, own.device)
+    check(stratus_volume._core.context("host", 1) is stratus_volume._core.context("host", 1), "one context for one name")
+    check(stratus_volume._core.context(own) is own, "a context of one's own")
+    check(isinstance(stratus_volume.devices(), list), "devices can be asked")
+    refuse(ValueError, "warp", Context, "warp drive")
+    refuse(ValueError, "1024", Context, "host", 5000)
+    refuse(TypeError, "threads", Context, "host", "many")
+    refuse(TypeError, "device", Context, 3.5)
+    refuse(ValueError, "threads", render, field, device=own, threads=2)
+    check(tuple(int(part) for part in stratus_volume.__version__.split(".")) >= (0, 1, 0), stratus_volume.__version__)
+
+
+def pictures():
+    rendering = render(field, opacity=[(0, 0), (0.5, 0.9)], color=(1, 0.5, 0), **host)
+    rgba, depth, counters = rendering
+    check(rgba.shape == (60, 90, 4) and rgba.dtype == numpy.float32 and depth.shape == (60, 90) and depth.dtype == numpy.float32, "shapes")
+    check(rgba[30, 45, 3] > 0.8 and rgba[2, 2].max() == 0, f"opaque in the middle, nothing in the corner: {rgba[30, 45]}")
+    check(abs(rgba[30, 45, 1] - 0.5 * rgba[30, 45, 0]) < 1e-3, "colours are premultiplied")
+    check(numpy.isinf(depth[2, 2]) and numpy.isfinite(depth[30, 45]), "depth where something shows")
+    check(numpy.array_equal(numpy.isfinite(depth), rgba[..., 3] > 0), "depth and alpha tell of the same pixels")
+    check(counters["samples"] > 1000 and counters["rays"] > 100 and counters["structure"] in ("none", "block", "distance", "octant", "hybrid"),
+          f"counters: {counters}")
+    picture = rendering.picture(background=(0, 0, 1))
+    check(tuple(picture[0, 0]) == (0, 0, 255, 255) and picture.dtype == numpy.uint8, "over a background")
+    check(picture._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n" and picture[0]._repr_png_() is None, "notebooks get PNG of pictures alone")
+    high = ball((20, 20, 20), (16, 10, 10), 3)
+    up = show(high, opacity=[(0, 0), (0.5, 0.9)], background=None, camera=dict(elevation=0, zoom=1), size=(60, 60), device="host")[..., 3]
+    check((up.astype(float).sum(1) * numpy.arange(60)).sum() / up.sum() < 25, "z points up, the first row is the top one")
+    for option in dict(mode="maximum"), dict(mode="minimum", opacity=[(0, 0.5), (1, 0)]), dict(mode="first-hit"), dict(mode="isosurface", contours=[0.3, 0.6]), dict(shade=True), \
+            dict(mode="additive"), dict(mode="average"), dict(interpolation="nearest"), dict(crop=(0, 12, 0, 22, 0, 20)), \
+            dict(clip_planes=[(1, 0, 0, -12)]), dict(gradient_opacity=[(0, 0), (0.2, 1)]), dict(unit_distance=20), dict(shade=dict(specular=1)), \
+            dict(camera=dict(azimuth=70)), dict(camera=dict(zoom=2)), dict(spacing=(1, 1, 2)), dict(color=[(0, 1, 0, 0), (1, 0, 1, 0)]), \
+            dict(jitter=True, sample_distance=2), dict(average_range=(0.5, 1), mode="average"), dict(opacity=0.9):
+        changed = render(field, **{**host, **option})
+        check(not numpy.array_equal(changed.rgba, render(field, **host).rgba), f"{option} changes the picture")
+    for structure in "none", "block", "distance", "octant", "hybrid":
+        same = render(field, structure=structure, audit=True, sampling="midpoint", sample_distance=0.5, **host)
+        check(same.counters["structure"] == structure and same.counters["differing_pixels"] == 0, f"{structure} skips what shows nothing")
+
+
+def planes_and_crops():
+    half = render(field, clip_planes=[(1, 0, 0, -12)], **host).rgba
+    crop = render(field, crop=(12, 23, 0, 21, 0, 19), **host).rgba
+    check(numpy.abs(half - crop).max() < 0.02, f"a plane at x = 12 and a crop from it: {numpy.abs(half - crop).max()}")
+    moved = render(field, crop=(112, 123, 0, 21, 0, 19), origin=(100, 0, 0), **host).rgba
+    check(numpy.abs(moved - crop).max() < 0.02, f"crop is in the world's lengths: {numpy.abs(moved - crop).max()}")
+    turned = numpy.ascontiguousarray(field.transpose(2, 1, 0))
+    same = render(turned, axes="xyz", crop=(112, 123, 0, 21, 0, 19), origin=(100, 0, 0), **host).rgba
+    check(numpy.abs(same - crop).max() < 0.02, f"whatever the order of axes: {numpy.abs(same - crop).max()}")
+
+
+def cameras():
+    far = dict(position=(11.5, -60, 9.5), focal_point=(11.5, 10.5, 9.5), view_up=(0, 0, 1))
+    seen = render(field, camera=far, **host)
+    check(abs(seen.depth[30, 45] - 63) < 3, f"the ball begins 63 before the eye: {seen.depth[30, 45]}")
+    listed = render(field, camera=[far["position"], far["focal_point"], far["view_up"]], **host)
+    check(numpy.array_equal(seen.rgba, listed.rgba), "three points")
+    wide = render(field, camera=dict(far, parallel_scale=10), **host).rgba[..., 3] > 0.01
+    close = render(field, camera=dict(far, parallel_scale=20), **host).rgba[..., 3] > 0.01
+    check(abs(wide.sum() / close.sum() - 4) < 0.4, f"twice the scale, a quarter of the pixels: {wide.sum()} {close.sum()}")
+    for size in (90, 60), (60, 90):
+        corners = render(numpy.ones((9, 9, 9), numpy.uint8), opacity=1, size=size, camera=dict(zoom=1), device="host").rgba[..., 3]
+        check(corners[0].max() == corners[-1].max() == corners[:, 0].max() == corners[:, -1].max() == 0 < corners.max(), f"all is in the window {size}")
+    refuse(TypeError, "camera", render, field, camera=3)
+    refuse(ValueError, "roll", render, field, camera=dict(roll=3))
+    refuse(ValueError, "zoom", render, field, camera=dict(zoom=0))
+    refuse(ValueError, "focal_point", render, field, camera=dict(position=(0, 0, 9)))
+    refuse(ValueError, "180", render, field, camera=dict(far, view_angle=200), device="host")
+
+
+def kept():
+    volume = Volume(field, device="host")
+    check(volume.bounds == (0, 23, 0, 21, 0, 19), f"bounds: {volume.bounds}")
+    first = volume.render(size=(60, 60))
+    second = volume.render(size=(60, 60), camera=dict(azimuth=100))
+    check(first.counters["range_builds"] == second.counters["range_builds"] == 1, "a camera's move builds no ranges anew")
+    check(numpy.array_equal(render(volume, size=(60, 60)).rgba, first.rgba), "and draws again what it drew")
+    own = numpy.array(field)
+    volume = Volume(own, device="host")
+    before = volume.render(size=(60, 60))
+    own[:, :, :12] = 0
+    volume.modified()
+    check(not numpy.array_equal(volume.render(size=(60, 60)).rgba, before.rgba), "values that changed in place, when it is told")
+    refuse(ValueError, "spacing", render, volume, spacing=(1, 1, 1))
+
+
+def refusals():
+    for words, options in [("mode", dict(mode="glow")), ("structure", dict(structure="tree")), ("sampling", dict(sampling="local")),
+                           ("interpolation", dict(interpolation="cubic")), ("crop", dict(crop=(5, 4, 0, 1, 0, 1))), ("crop", dict(crop=(0, 1))),
+                           ("clip_planes", dict(clip_planes=[(1, 0, 0, 0)] * 7)), ("contours", dict(contours=range(17), mode="isosurface")),
+                           ("unit_distance", dict(unit_distance=0)), ("tolerance", dict(tolerance=-1)), ("size", dict(size=(0, 10))),
+                           ("shade", dict(shade=dict(glow=1))), ("opaque_depth", dict(opaque_depth=numpy.zeros((3, 3)))),
+                           ("gradient_opacity", dict(gradient_opacity=[(0, 2)])), ("average_range", dict(average_range=(2, 1), mode="average")),
+                           ("ambient", dict(shade=dict(ambient=-1))), ("contour", dict(mode="isosurface")),
+                           ("sample_distance", dict(sample_distance=-1)), ("background", dict(background=(2, 0, 0)))]:
+        refuse(ValueError, words.split("_")[0], show, field, device="host", **options)
+    for options in dict(unit_distance="x"), dict(tolerance="x"), dict(size=5), dict(opacity="x"), dict(color="red"), dict(crop=3):
+        refuse(TypeError, next(iter(options)), show, field, device="host", **options)
+    refuse(stratus_volume.Unsupported, "nearest", render, field, mode="isosurface", contours=[0.5], interpolation="nearest", device="host")
+
+
+def cancelled():
+    told = []
+    render(field, progress=lambda stage, fraction: told.append((stage, fraction)), **host)
+    check(told and all(isinstance(stage, str) and 0 <= fraction <= 1 for stage, fraction in told), f"progress: {told[:3]}")
+    refuse(stratus_volume.Cancelled, "", render, field, progress=lambda stage, fraction: True, **host)
+
+    def interrupt(stage, fraction):
+        raise KeyboardInterrupt("as by Ctrl+C")
+    refuse(KeyboardInterrupt, "Ctrl", render, field, progress=interrupt, **host)
+    check(render(field, **host).rgba.max() > 0, "the next call draws")
+
+
+def threads():
+    wanted = render(field, **host).rgba
+    results = []
+
+    def draw():
+        for _ in range(5):
+            results.append(numpy.array_equal(render(field, **host).rgba, wanted))
+    several = [threading.Thread(target=draw) for _ in range(4)]
+    for each in several:
+        each.start()
+    for each in several:
+        each.join()
+    check(results == [True] * 20, f"four threads draw the same: {results}")
+
+
+def freed():
+    def resident():
+        with open("/proc/self/statm", encoding="ascii") as file:
+            return int(file.read().split()[1])
+    if not sys.platform.startswith("linux"):
+        return
+    large = ball((64, 64, 64), (32, 32, 32), 30)
+    for n in range(20):
+        render(large, size=(30, 20), device="host")
+        if n == 4:
+            gc.collect()
+            before = resident()
+    gc.collect()
+    pages = resident() - before
+    check(pages * 4 < 8 * 1024, f"15 volumes of 1 MiB with their structures leave {pages * 4} KiB")
+    for _ in range(3):
+        cycle = [Volume(field, device=Context("host", 1))]
+        cycle.append(cycle)
+        del cycle
+    gc.collect()
+
+
+contexts()
+pictures()
+planes_and_crops()
+cameras()
+kept()
+refusals()
+cancelled()
+threads()
+freed()
+sys.exit(1 if failures else 0)

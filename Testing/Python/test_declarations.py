@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What declare.py made of the public headers is what a C compiler makes of them: sizes, offsets, enums, macros, and the library's functions."""
+import ctypes
+import glob
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import stratus_volume
+from stratus_volume import _declarations as c
+
+failures = 0
+
+
+def check(condition, what):
+    global failures
+    if not condition:
+        failures += 1
+        print("does not hold:", what)
+
+
+root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+compiler = os.environ.get("CC") or shutil.which("cc")
+if not compiler:
+    print("SKIPPED: no C compiler")
+    sys.exit(77)
+
+wanted, lines = [], []
+for name, struct in c.STRUCTS.items():
+    wanted.append((f"sizeof {name}", ctypes.sizeof(struct)))
+    lines.append(f'printf("%zu\\n", sizeof({name}));')
+    for field, *_ in struct._fields_:
+        own = getattr(struct, field)
+        wanted += [(f"offset of {name}.{field}", own.offset), (f"size of {name}.{field}", own.size)]
+        lines += [f'printf("%zu\\n", offsetof({name}, {field}));', f'printf("%zu\\n", sizeof((({name}*)0)->{field}));']
+for entries in c.ENUMS.values():
+    for name, value in entries.items():
+        wanted.append((name, value))
+        lines.append(f'printf("%lld\\n", (long long){name});')
+for name, value in c.CONSTANTS.items():
+    wanted.append((name, value))
+    lines.append(f'printf("%.17g\\n", (double){name});')
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "layout.c")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("#include <stddef.h>\n#include <stdio.h>\n#include <stratus.h>\nint main(void)\n{\n" + "\n".join(lines) + "\nreturn 0;\n}\n")
+    program = os.path.join(folder, "layout")
+    subprocess.run([compiler, "-std=c11", "-I" + os.path.join(root, "Core"), "-o", program, path], check=True)
+    told = subprocess.run([program], check=True, capture_output=True, text=True).stdout.split()
+check(len(told) == len(wanted) > 600, f"{len(told)} numbers for {len(wanted)}")
+for (name, value), line in zip(wanted, told):
+    check(float(line) == value, f"{name} is {value}, the compiler says {line}")
+
+# Every function that the headers mark, by another way of looking at them, and every one of the library.
+marked = set()
+for path in glob.glob(os.path.join(root, "Core", "stratus", "*.h")):
+    if os.path.basename(path) != "scenes.h":
+        with open(path, encoding="utf-8") as file:
+            for part in file.read().replace("STRATUS_EXPERIMENTAL", "STRATUS_API").split("STRATUS_API ")[1:]:
+                before = part.split("(")[0].split()
+                if before and before[-1].lstrip("*").startswith("stratus_"):
+                    marked.add(before[-1].lstrip("*"))
+check(marked == set(c.FUNCTIONS), f"functions: {sorted(marked ^ set(c.FUNCTIONS))}")
+nm = shutil.which("nm")
+if nm:
+    library = stratus_volume._core.library._name
+    exported = {line.split()[-1] for line in subprocess.run([nm, "-D", "--defined-only", library], check=True, capture_output=True,
+                                                            text=True).stdout.splitlines()}
+    exported = {name for name in exported if name.startswith("stratus_")}
+    check(exported == set(c.FUNCTIONS), f"of the library: {sorted(exported ^ set(c.FUNCTIONS))}")
+
+# Results by value, which a wrong layout would shift.
+options = stratus_volume._core.library.stratus_ray_cast_options_default()
+check(options.tolerance == 0.001 and options.crop_regions == 0x2000 and options.shading.diffuse == 0.9 and options.shading.light_count == -1,
+      "defaults of rays")
+check(list(stratus_volume._core.library.stratus_volume_default().matrix) == [float(n % 5 == 0) for n in range(16)], "the identity")
+
+# A statement that declare.py does not know is an error, not a gap.
+with tempfile.TemporaryDirectory() as folder:
+    header = os.path.join(folder, "odd.h")
+    for text, of_it in ("typedef struct odd { int bits : 3; } odd;", "bits"), ("STRATUS_API void odd(unknown_type* x);", "unknown_type"), \
+            ("union odd { int x; };", "union"):
+        with open(header, "w", encoding="utf-8") as file:
+            file.write(text + "\n")
+        ended = subprocess.run([sys.executable, os.path.join(root, "Python", "declare.py"), os.path.join(folder, "out.py"), header],
+                               capture_output=True, text=True)
+        check(ended.returncode != 0 and "declare.py does not" in ended.stderr and of_it in ended.stderr, f"{text}: {ended.stderr}")
+sys.exit(1 if failures else 0)
