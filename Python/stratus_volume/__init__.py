@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Stratus: uneven volumes drawn fast and exactly, from NumPy arrays, without VTK.
 
-show(array)    a picture that notebooks show
-render(array)  RGBA and depth as floats, and counters
-Volume(array)  the same again and again, from other sides, without building anew
+show(data)                a picture that notebooks show
+render(data)              RGBA and depth as floats, and counters
+render_tetrahedra(points, tetrahedra, values)
+Volume, Tetrahedra        the same again and again, from other sides, without building anew
+distance_field(data)      distances to the voxels whose values show
+Tree, first_hits          the first of these voxels along rays
 """
 from ._core import Cancelled, Context, DeviceError, Unsupported, devices
 from ._core import version as __version__
+from ._draw import render, render_tetrahedra, show
 from ._picture import Picture, Rendering
+from ._tetrahedra import Tetrahedra
 from ._values import NothingShown
-from ._volume import Volume, render, show
+from ._volume import Volume
+from ._voxels import Hits, Tree, distance_field, first_hits
 
-__all__ = ["Cancelled", "Context", "DeviceError", "NothingShown", "Picture", "Rendering", "Unsupported", "Volume", "devices", "render", "show"]
+__all__ = ["Cancelled", "Context", "DeviceError", "Hits", "NothingShown", "Picture", "Rendering", "Tetrahedra", "Tree", "Unsupported", "Volume",
+           "devices", "distance_field", "first_hits", "render", "render_tetrahedra", "show"]

@@ -6,7 +6,7 @@ import numpy
 
 from . import _declarations as c
 from ._core import address, library, type_of
-from ._values import Spread, mask_of, native, none_visible, numbers, power_of, scaled, visible
+from ._values import Spread, mask_of, native, none_visible, numbers, scaled, visible
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 _POINT_HIDDEN = c.CONSTANTS["STRATUS_GHOST_HIDDEN_POINT"]
@@ -14,10 +14,12 @@ _CELL_HIDDEN = c.CONSTANTS["STRATUS_GHOST_HIDDEN_CELL"]
 
 
 class Grid:
-    """Values on a grid. `values` has the axes slow, middle, fast, `world` tells which world axis each index runs along, fast first."""
+    """Values on a grid. `values` has the axes slow, middle, fast. `world` tells which world axis each index runs along, fast first, and `own`
+    which axis of the caller's array it is."""
 
     def __init__(self, values, mask, spacing, origin, world=(0, 1, 2), direction=None, coordinates=(None, None, None), cell_centered=False,
-                 flags=None):
+                 flags=None, own=(2, 1, 0)):
+        self.own = own
         self.mask, self.flags, self.world, self.cell_centered = mask, flags, world, cell_centered
         self.spacing, self.origin, self.coordinates = spacing, origin, coordinates
         self.direction = direction or [1.0 if world[own] == axis else 0.0 for axis in range(3) for own in range(3)]
@@ -50,15 +52,8 @@ class Grid:
         return values
 
     def power(self, points=None):
-        """The power of 2 by which values are scaled, for a function with own points by these where they are much smaller than the values."""
-        if self.values.dtype.kind != "f":
-            return 0
-        largest = max(abs(self.spread.low), abs(self.spread.high))
-        if power_of(largest) and points is not None:
-            own = max(abs(point) for point in points)
-            if 0 < own < 1e-6 * largest:
-                return power_of(own)
-        return power_of(largest)
+        """The power of 2 by which values are scaled, for a function with points of its own by these where they are much smaller."""
+        return self.spread.power(points) if self.values.dtype.kind == "f" else 0
 
     def view(self, power):
         """The core's view of the values times 2**-power. It is valid as long as this object, and until the next call."""
@@ -85,6 +80,10 @@ class Grid:
         result, volume = (ctypes.c_double * 6)(), self.view(self._scaled[0])
         context.call(library.stratus_volume_bounds, context.pointer, ctypes.byref(volume), result)
         return tuple(result)
+
+    def as_given(self, values):
+        """An array of the grid's shape with its axes in the order of the caller's array."""
+        return values.transpose([2 - self.own.index(axis) for axis in range(3)])
 
     def crop(self, box):
         """Bounds along the grid's axes of bounds along the world's."""
@@ -126,8 +125,9 @@ def _of_array(array, spacing, origin, axes, coordinates=None):
     values = values.transpose(order)
     mask = None if mask is None else mask.transpose(order)
     world = tuple(worlds[axis] for axis in reversed(order))
-    own = (None, None, None) if coordinates is None else tuple(coordinates[axis] for axis in reversed(order))
-    return Grid(values, mask, [spacing[axis] for axis in world], origin, world, coordinates=own)
+    own = tuple(reversed(order))
+    places = (None, None, None) if coordinates is None else tuple(coordinates[axis] for axis in own)
+    return Grid(values, mask, [spacing[axis] for axis in world], origin, world, coordinates=places, own=own)
 
 
 _HEIGHTS = ("z", "lev", "level", "plev", "height", "altitude", "alt", "depth", "elevation", "bottom_top", "k")

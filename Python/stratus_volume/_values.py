@@ -140,6 +140,15 @@ class Spread:
                 self.far = float(numpy.quantile(others, 0.95)) / (high - low)
             self.common, self.center = float(scaled(0.5 * (edges[most] + edges[most + 1]), -power)), float(scaled(center, -power))
 
+    def power(self, points=None):
+        """The power of 2 by which floats are scaled, for a function with points of its own by these where they are much smaller."""
+        largest = max(abs(self.low), abs(self.high))
+        if power_of(largest) and points is not None:
+            own = max(abs(point) for point in points)
+            if 0 < own < 1e-6 * largest:
+                return power_of(own)
+        return power_of(largest)
+
 
 def write(value, power):
     """A value as its owner knows it, for messages."""
@@ -203,6 +212,23 @@ def steps(points):
             if not (0 < n < len(points) - 1 and points[n - 1][0] == point[0] == points[n + 1][0])]
 
 
+def own_points(opacity):
+    """The values of a function that names them, None for a number."""
+    if opacity is None or is_number(opacity):
+        return None
+    return [point[0] for point in pairs(opacity, 2, "opacity", "a number in 0..1, or pairs of a value and an opacity in 0..1", 0)]
+
+
+def functions(opacity, color, spread, power):
+    """Returns the points of opacity and of colour, for values times 2**-power."""
+    low, high, common = (float(scaled(value, power)) for value in (spread.low, spread.high, spread.common))
+    points = steps(opacity_points(opacity, low, high, common, power))
+    if spread.far <= 1e-6 and points[0][0] < points[-1][0] and own_points(opacity):
+        # The colours are for the values that the function is for, and not for a few that are far from them.
+        low, high = max(low, points[0][0]), min(high, points[-1][0])
+    return points, steps(color_points(color, low, high, power))
+
+
 def opacity_at(points, values):
     """The opacity of values by ordered points. At a step it is the larger of both ends."""
     at = numpy.array([point[0] for point in points])
@@ -233,15 +259,34 @@ def no_opacity(points, low, high, power):
     return f"nothing shows: {values}, and the opacity is above 0 only in {write(min(shown), power)}..{write(max(shown), power)}"
 
 
-def one_sided(spread, power):
+def one_sided(spread):
     """The reason where a function of the whole range tells nothing apart, because a few values are very far from all others."""
     if spread.far > 1e-6:
         return None
-    return (f"next to nothing shows: the values reach from {write(spread.low, power)} to {write(spread.high, power)}, but 95 % of them are "
-            f"nearer to {write(spread.center, power)} than a millionth of that. Mask what is no data, or give opacity as pairs of a value and "
-            "an opacity")
+    return (f"next to nothing shows: the values reach from {spread.low:.6g} to {spread.high:.6g}, but 95 % of them are nearer to "
+            f"{spread.center:.6g} than a millionth of that. Mask what is no data, or give opacity as pairs of a value and an opacity")
 
 
-def too_thin(largest, unit_distance):
-    return (f"nothing shows: the largest alpha of the picture is {largest:.3g}, below half a step of 255. Raise the opacity, or lower "
-            f"unit_distance, which is {unit_distance:.6g}")
+def explain(rgba, points, spread, power, automatic, mode, unit_distance, rays=None, contours=None):
+    """Warns once where a picture shows nothing, or nothing but a few values far from all others.
+
+    points: of opacity, in order; automatic: they follow from the range of the values; rays: how many met what shows, None: unknown
+    """
+    largest, grey = float(rgba[..., 3].max()), mode in ("average", "additive")
+    reason = one_sided(spread) if automatic and not grey else None
+    if reason is None and largest < 0.5 / 255:
+        reason = None if grey else no_opacity(points, float(scaled(spread.low, power)), float(scaled(spread.high, power)), power)
+        if reason is None and contours is not None and mode == "isosurface":
+            if not any(spread.low <= float(scaled(value, -power)) <= spread.high for value in contours):
+                reason = f"nothing shows: no contour lies within the values, {spread.low:.6g}..{spread.high:.6g}"
+        if reason is None:
+            reason = one_sided(spread)
+        if reason is None and mode in ("maximum", "minimum") and rays != 0:
+            reason = f"nothing shows: in mode {mode} each ray shows one value alone, and those have an opacity of 0"
+        if reason is None and largest == 0:
+            reason = "nothing shows: no ray of the camera meets a value of an opacity above 0, within crop and clip_planes where they are given"
+        if reason is None:
+            reason = (f"nothing shows: the largest alpha of the picture is {largest:.3g}, below half a step of 255. Raise the opacity, or lower "
+                      f"unit_distance, which is {unit_distance:.6g}")
+    if reason:
+        warn(reason)

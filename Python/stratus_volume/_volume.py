@@ -7,13 +7,11 @@ import numpy
 
 from . import _declarations as c
 from . import _view
-from ._core import Owned, address, as_dict, choice, context as context_of, library, whole
-from ._grid import Grid, grid_of
-from ._picture import Rendering, paint
-from ._values import (background_color, color_points, is_number, no_opacity, number, numbers, one_sided, opacity_points, pairs, pixels, positive,
-                      scaled_point, steps, too_thin, warn)
+from ._core import Owned, address, as_dict, choice, context as context_of, library
+from ._grid import grid_of
+from ._picture import Rendering
+from ._values import (explain, functions, is_number, number, numbers, own_points, pairs, pixels, positive, scaled_point, warn)
 
-_GREY = ("average", "additive")
 _SHADING = ("ambient", "diffuse", "specular", "specular_power")
 
 
@@ -21,13 +19,8 @@ class Transfer:
     """The core's transfer function with the arrays that it points to."""
 
     def __init__(self, opacity, color, spread, power, unit_distance, gradient=None):
-        low, high, common = (_down(value, power) for value in (spread.low, spread.high, spread.common))
-        self.points = steps(opacity_points(opacity, low, high, common, power))
-        if spread.far <= 1e-6 and self.points[0][0] < self.points[-1][0] and own_points(opacity):
-            # The colours are for the values that the function is for, and not for a few that are far from them.
-            low, high = max(low, self.points[0][0]), min(high, self.points[-1][0])
-        self._opacity = numpy.array(self.points, numpy.float64)
-        self._color = numpy.array(steps(color_points(color, low, high, power)), numpy.float64)
+        self.points, colors = functions(opacity, color, spread, power)
+        self._opacity, self._color = numpy.array(self.points, numpy.float64), numpy.array(colors, numpy.float64)
         self.struct = library.stratus_transfer_default()
         self.struct.opacity, self.struct.opacity_count = address(self._opacity), len(self._opacity)
         self.struct.color, self.struct.color_count = address(self._color), len(self._color)
@@ -36,17 +29,6 @@ class Transfer:
             wanted = "pairs of a gradient's magnitude and a factor in 0..1"
             self._gradient = numpy.array(sorted(pairs(gradient, 2, "gradient_opacity", wanted, power)), numpy.float64)
             self.struct.gradient, self.struct.gradient_count = address(self._gradient), len(self._gradient)
-
-
-def _down(value, power):
-    return math.ldexp(value, -power) if power else value
-
-
-def own_points(opacity):
-    """The values of a function that names them, None for a number."""
-    if opacity is None or is_number(opacity):
-        return None
-    return [point[0] for point in pairs(opacity, 2, "opacity", "a number in 0..1, or pairs of a value and an opacity in 0..1", 0)]
 
 
 def set_shading(options, shade):
@@ -184,79 +166,5 @@ class Volume:
             volume = self.grid.view(power)
             self.context.call(library.stratus_ray_caster_render, self._caster.pointer, ctypes.byref(volume), ctypes.byref(transfer.struct),
                               ctypes.byref(view), ctypes.byref(options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
-        _explain(image, transfer.points, self.grid.spread, power, own is None, mode, values, unit, report.rays)
+        explain(image.rgba, transfer.points, self.grid.spread, power, own is None, mode, unit, report.rays, values)
         return image.rendering(as_dict(report))
-
-
-def _explain(image, points, spread, power, automatic, mode, contours, unit, rays):
-    """Warns once where a picture shows nothing, or nothing but a few values far from all others."""
-    low, high = _down(spread.low, power), _down(spread.high, power)
-    largest = float(image.rgba[..., 3].max())
-    reason = one_sided(spread, 0) if automatic and mode not in _GREY else None
-    if reason is None and largest < 0.5 / 255:
-        reason = None if mode in _GREY else no_opacity(points, low, high, power)
-        if reason is None and mode == "isosurface" and not any(low <= value <= high for value in contours):
-            reason = f"nothing shows: no contour lies within the values, {spread.low:.6g}..{spread.high:.6g}"
-        if reason is None:
-            reason = one_sided(spread, 0)
-        if reason is None and mode in ("maximum", "minimum") and rays > 0:
-            reason = f"nothing shows: in mode {mode} each ray shows one value alone, and those have an opacity of 0"
-        if reason is None and (rays == 0 or largest == 0):
-            reason = "nothing shows: no ray of the camera meets a value of an opacity above 0, within crop and clip_planes where they are given"
-        if reason is None:
-            reason = too_thin(largest, unit)
-    if reason:
-        warn(reason)
-
-
-def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing=None, origin=None, axes=None, scalars=None, component=None,
-           device=None, threads=None, **options):
-    """Draws a volume and returns a Rendering: rgba, depth, counters.
-
-    data           a NumPy array, an xarray.DataArray, a vtkImageData or vtkRectilinearGrid, pyvista's too, or a Volume, which is drawn again
-                   without building anew. `Volume` tells what is taken, also for spacing, origin, axes, scalars, component, device, threads
-    opacity        pairs of a value and its opacity in 0..1 per unit_distance. Two pairs at one value are a step. A number is the top of a
-                   ramp away from the most frequent value, or the opacity of the whole volume where all values are equal; default 0.3
-    color          (r, g, b) in 0..1 for all values, or several (value, r, g, b). Two at one value are a step
-    size           width and height in pixels, 1..16384
-    camera         dict of azimuth, elevation (degrees) and zoom; or dict of position, focal_point, view_up (x, y, z), view_angle (degrees) and,
-                   for parallel rays, parallel_scale (half the window's height); or (position, focal point, view up); or a vtkCamera
-    unit_distance  world length to which opacities refer; default: a fiftieth of the volume's diagonal
-    mode           composite, first-hit, maximum, minimum, average, additive or isosurface
-    interpolation  linear or nearest
-    structure      by which rays skip empty space: auto, none, block, distance, octant or hybrid
-    sampling       auto, midpoint, preintegrated or cells
-    sample_distance  world length; 0: by the tolerance
-    tolerance      root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause; default 0.001, 0: the finest
-    shade          False, True, or a dict of ambient, diffuse, specular, specular_power: light from the eye
-    gradient_opacity  pairs of the gradient's magnitude, in values per mean spacing, and a factor in 0..1 of the optical depth
-    contours       1 to 16 values, of mode isosurface
-    crop           xmin, xmax, ymin, ymax, zmin, zmax in the world: what is outside does not show
-    clip_planes    up to 6 of a, b, c, d: points with a x + b y + c z + d >= 0 show
-    average_range  the values that count in mode average, ends included
-    jitter         whether samples move along their rays by a noise
-    audit          whether counters["differing_pixels"] counts the pixels that skipping changed
-    opaque_depth   array (height, width) of OpenGL depths in 0..1 at which rays end, the top row first
-    progress       function of a stage's name and a fraction in 0..1; a true result, an exception, or Ctrl+C ends the call
-
-    A picture that shows nothing gives one warning, NothingShown, that names the reason.
-    """
-    if isinstance(data, Volume):
-        given = dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, device=device, threads=threads)
-        for name, value in given.items():
-            if value is not None:
-                raise ValueError(f"{name} is {value!r}, but a Volume has its own")
-        volume = data
-    else:
-        volume = Volume(data, spacing, origin, axes, scalars, component, device, threads)
-    return volume.render(opacity, color, size, camera, **options)
-
-
-def show(data, opacity=None, color=None, size=(640, 480), camera=None, background=(0.08, 0.1, 0.14), **options):
-    """Draws a volume and returns a Picture, an array (height, width, 4) of bytes that notebooks show.
-
-    background     (r, g, b) in 0..1, or None for transparent
-    Everything else is as in `render`.
-    """
-    background = background_color(background)
-    return paint(render(data, opacity, color, size, camera, **options).rgba, background)

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures of meshes of tetrahedra and of curvilinear grids."""
+import ctypes
+import math
+
+import numpy
+
+from . import _declarations as c
+from . import _view
+from ._core import Owned, address, as_dict, choice, context as context_of, library, type_of
+from ._values import Spread, explain, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled, visible, warn
+from ._volume import Image, Transfer, crop_box, set_contours, set_planes, set_shading, value_interval
+
+_TETRA = 10  # VTK's number of the cell
+
+
+class Tetrahedra:
+    """A mesh of tetrahedra, or a curvilinear grid of hexahedra, that may be drawn more than once without building anew.
+
+    points      float64 (n, 3), finite; of a curvilinear grid float64 or float32 (nk, nj, ni, 3). Or a vtkUnstructuredGrid or
+                vtkStructuredGrid, pyvista's too, which has the rest; cells that are no tetrahedra are divided into such by VTK
+    tetrahedra  int32 (m, 4), numbers of points, in any orientation; None of a curvilinear grid
+    values      of the points or of the cells, one each, of any type that Volume takes; masked, NaN and infinite ones hide their cells
+    scalars     name of the array of a VTK data set; default: its active scalars
+    device, threads  see Volume
+
+    Memory is not copied where types are the named ones and arrays are contiguous.
+    """
+
+    def __init__(self, points, tetrahedra=None, values=None, scalars=None, device=None, threads=None):
+        if hasattr(points, "IsA") and hasattr(points, "GetPointData"):
+            if tetrahedra is not None or values is not None:
+                raise ValueError("a data set of VTK has its own tetrahedra and values: leave these out")
+            points, tetrahedra, values = _of_vtk(points, scalars)
+        elif scalars is not None:
+            raise ValueError("scalars chooses among the arrays of a VTK data set; arrays have none")
+        if values is None:
+            raise TypeError("values is None, it must be one for each point or for each cell")
+        self._set_points(points, tetrahedra)
+        self._set_values(values)
+        self.context = context_of(device, threads)
+        self._caster = Owned(self.context, library.stratus_tetra_caster_destroy)
+        with self.context.lock:
+            self.context.call(library.stratus_tetra_caster_create, self.context.pointer, ctypes.byref(self._caster.pointer))
+
+    def _set_points(self, points, tetrahedra):
+        points = native(points, "points")
+        self.lattice = points.shape[:3] if tetrahedra is None else None
+        if tetrahedra is None:
+            if points.ndim != 4 or points.shape[3] != 3 or min(points.shape[:3]) < 2:
+                raise ValueError(f"points has the shape {points.shape}, without tetrahedra it must be (nk, nj, ni, 3) with each n at least 2")
+            self.points = numpy.ascontiguousarray(points, numpy.float32 if points.dtype == numpy.float32 else numpy.float64)
+            self.cells, self.shapes = None, (points.shape[:3], tuple(n - 1 for n in points.shape[:3]))
+        else:
+            if points.ndim != 2 or points.shape[1] != 3:
+                raise ValueError(f"points has the shape {points.shape}, it must be (n, 3)")
+            cells = numpy.asarray(tetrahedra)
+            if cells.ndim != 2 or cells.shape[1] != 4 or cells.dtype.kind not in "iu":
+                raise ValueError(f"tetrahedra has the shape {cells.shape} and type {cells.dtype}, it must be (m, 4) whole numbers")
+            if cells.size and not (0 <= cells.min() and cells.max() < len(points)):
+                raise ValueError(f"tetrahedra has the numbers {cells.min()}..{cells.max()}, they must be in 0..{len(points) - 1}")
+            self.points = numpy.ascontiguousarray(points, numpy.float64)
+            self.cells = numpy.ascontiguousarray(cells, numpy.int32)
+            self.shapes = ((len(points),), (len(cells),))
+        finite = self.points.reshape(-1, 3)
+        finite = finite[numpy.isfinite(finite).all(axis=1)]
+        ends = (finite.min(axis=0), finite.max(axis=0)) if len(finite) else (numpy.zeros(3), numpy.zeros(3))
+        self.bounds = tuple(float(end[axis]) for axis in range(3) for end in ends)
+
+    def _set_values(self, values):
+        mask, own = mask_of(values), native(values, "values")
+        if own.shape not in self.shapes:
+            raise ValueError(f"values has the shape {own.shape}, it must be that of the points, {self.shapes[0]}, or of the cells, {self.shapes[1]}")
+        # Where there are as many cells as points, values belong to points.
+        self.of_cells = own.shape != self.shapes[0]
+        shown = visible(own.reshape(-1), None if mask is None else mask.reshape(-1))
+        self.nothing, self.spread, self.hidden = None, None, None
+        if shown.size == 0:
+            masked = 0 if mask is None else int(mask.sum())
+            self.nothing = none_visible(own.size, masked, own.size - masked)
+            return
+        self.spread = Spread(shown)
+        if mask is not None:
+            if own.dtype.kind == "f":
+                own = numpy.where(mask, own.dtype.type(numpy.nan), own)
+            else:
+                own = numpy.where(mask, own.dtype.type(self.spread.low), own)
+                self.hidden = numpy.ascontiguousarray(mask if self.of_cells else self._touched(mask)).reshape(-1).view(numpy.uint8)
+        self.values, self.power = numpy.ascontiguousarray(own), 0
+        if own.dtype.kind == "f":
+            self.power = power_of(max(abs(self.spread.low), abs(self.spread.high)))
+            if self.power:
+                self.values = scaled(own, self.power)
+
+    def _touched(self, mask):
+        """The cells that have a masked point."""
+        if self.cells is not None:
+            return mask[self.cells].any(axis=1)
+        result = numpy.zeros(self.shapes[1], bool)
+        for k in range(2):
+            for j in range(2):
+                for i in range(2):
+                    result |= mask[tuple(slice(end, n - 1 + end) for end, n in zip((k, j, i), mask.shape))]
+        return result
+
+    def _mesh(self):
+        mesh = library.stratus_mesh_default()
+        if self.lattice:
+            mesh.lattice[:] = self.lattice[::-1]
+            mesh.point_count, mesh.cell_count = math.prod(self.shapes[0]), math.prod(self.shapes[1])
+        else:
+            mesh.point_count, mesh.cell_count, mesh.vertices = len(self.points), len(self.cells), address(self.cells)
+        setattr(mesh, "float_points" if self.points.dtype == numpy.float32 else "points", address(self.points))
+        mesh.values, mesh.type, mesh.cell_values = address(self.values), type_of(self.values), int(self.of_cells)
+        mesh.hidden = address(self.hidden)
+        return mesh
+
+    def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", method="auto", tolerance=None,
+               shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, opaque_depth=None, progress=None):
+        """Draws a picture and returns a Rendering: rgba, depth, counters. `render` tells the parameters.
+
+        method  march from cell to cell, project sorted cells, or auto, the one that should cost less
+        mode    composite, maximum, minimum, average, additive or isosurface
+        """
+        size = pixels(size)
+        options = library.stratus_tetra_options_default()
+        options.mode = choice(mode, "stratus_tetra_mode", "STRATUS_TETRA_", "mode")
+        options.method = choice(method, "stratus_tetra_method", "STRATUS_TETRA_METHOD_", "method")
+        if tolerance is not None:
+            options.tolerance = number(tolerance, "tolerance")
+        set_shading(options, shade)
+        set_planes(options, clip_planes, c.CONSTANTS["STRATUS_TETRA_CLIP_PLANES_MAX"])
+        if crop is not None:
+            options.crop, options.crop_bounds[:] = 1, crop_box(crop)
+        if unit_distance is not None:
+            positive(unit_distance, "unit_distance")
+        image, report = Image(size, opaque_depth), c.stratus_tetra_report()
+        own = own_points(opacity)
+        if self.nothing:
+            warn(self.nothing)
+            return image.rendering(as_dict(report))
+        contours = set_contours(options, contours, self.power, c.CONSTANTS["STRATUS_TETRA_CONTOURS_MAX"])
+        if average_range is not None:
+            options.average_range[:] = value_interval(average_range, "average_range", self.power)
+        length = math.hypot(*(self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3)))
+        unit = (length / 50 or 1.0) if unit_distance is None else float(unit_distance)
+        transfer = Transfer(opacity, color, self.spread, self.power, unit, gradient_opacity)
+        with self.context.lock:
+            view, mesh = _view.make(self.context, camera, self.bounds, size), self._mesh()
+            self.context.call(library.stratus_tetra_caster_render, self._caster.pointer, ctypes.byref(mesh), ctypes.byref(transfer.struct),
+                              ctypes.byref(view), ctypes.byref(options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
+        explain(image.rgba, transfer.points, self.spread, self.power, own is None, mode, unit, report.rays, contours)
+        return image.rendering(as_dict(report))
+
+
+def _of_vtk(data, scalars):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    if data.IsA("vtkUnstructuredGrid"):
+        kinds = vtk_to_numpy(data.GetCellTypesArray()) if data.GetNumberOfCells() else numpy.zeros(0)
+        if not (kinds == _TETRA).all():
+            from vtkmodules.vtkFiltersGeneral import vtkDataSetTriangleFilter
+            divide = vtkDataSetTriangleFilter()
+            divide.SetInputData(data)
+            divide.TetrahedraOnlyOn()
+            divide.Update()
+            data = divide.GetOutput()
+        cells = vtk_to_numpy(data.GetCells().GetConnectivityArray()).reshape(-1, 4)
+    elif not data.IsA("vtkStructuredGrid"):
+        raise TypeError(f"the data set is a {data.GetClassName()}, it must be a vtkUnstructuredGrid or vtkStructuredGrid")
+    points, cells_data, points_data = vtk_to_numpy(data.GetPoints().GetData()), data.GetCellData(), data.GetPointData()
+    of_cells = points_data.GetScalars() is None if scalars is None else not points_data.HasArray(scalars)
+    attributes = cells_data if of_cells else points_data
+    array = attributes.GetScalars() if scalars is None else attributes.GetArray(scalars)
+    if array is None:
+        names = [each.GetArrayName(n) for each in (points_data, cells_data) for n in range(each.GetNumberOfArrays())]
+        raise ValueError(f"scalars is {scalars!r}, it must be one of {names}")
+    values = vtk_to_numpy(array)
+    if values.ndim != 1:
+        raise ValueError(f"{array.GetName()!r} has {values.shape[1]} components, values must have one")
+    flags = cells_data.GetArray("vtkGhostType")
+    if data.IsA("vtkUnstructuredGrid"):
+        if flags is not None:
+            cells = cells[vtk_to_numpy(flags) == 0]
+            values = values[vtk_to_numpy(flags) == 0] if of_cells else values
+        return points, cells, values
+    shape = data.GetDimensions()[::-1]
+    if flags is not None and not of_cells:
+        raise ValueError("the grid has blanked cells, but values of points: blank by NaN values instead")
+    values = values.reshape([n - of_cells for n in shape])
+    if flags is not None:
+        values = numpy.ma.masked_array(values, vtk_to_numpy(flags).reshape(values.shape) != 0)
+    return points.reshape(*shape, 3), None, values
