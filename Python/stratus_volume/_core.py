@@ -34,12 +34,24 @@ _ERRORS = {
 _ERRORS = {c.ENUMS["stratus_status"][name]: error for name, error in _ERRORS.items()}
 
 
+def _open(path):
+    """Returns the library. Without an OpenCL loader it gets one that knows of no device, so that the host draws."""
+    try:
+        return ctypes.CDLL(path), ""
+    except OSError as error:
+        none = os.path.join(_FOLDER, "no_opencl", "libOpenCL.so.1")
+        if "libOpenCL" not in str(error) or not os.path.exists(none):
+            raise
+        ctypes.CDLL(none, mode=ctypes.RTLD_GLOBAL)  # the next load finds it by its name
+        return ctypes.CDLL(path), f"no OpenCL device, because {_MISSING['libOpenCL']} is missing: the host draws"
+
+
 def _load():
     found = sorted(glob.glob(os.path.join(_FOLDER, "libstratus-core.*")))
     if not found:
         raise ImportError(f"stratus_volume has no libstratus-core beside it in {_FOLDER}: it was not built or not installed as a whole")
     try:
-        library = ctypes.CDLL(found[0])
+        opened, note = _open(found[0])
     except OSError as error:
         for name, what in _MISSING.items():
             if name in str(error) and "cannot open shared object file" in str(error):
@@ -47,14 +59,14 @@ def _load():
         raise ImportError(f"stratus_volume can't load {found[0]}: {error}") from None
     for name, (result, parameters) in c.FUNCTIONS.items():
         try:
-            function = getattr(library, name)
+            function = getattr(opened, name)
         except AttributeError:
             raise ImportError(f"{found[0]} has no {name}: it is not the library that this package was made for") from None
         function.restype, function.argtypes = result, parameters
-    return library
+    return opened, note
 
 
-library = _load()
+library, without_opencl = _load()
 version = library.stratus_version().decode()
 
 
@@ -65,21 +77,30 @@ class Context:
     threads  on the host, 1..1024; 0 (the default): as many as OpenMP offers, which OMP_NUM_THREADS sets
     """
 
+    made = False  # any of them, in this process
+
     def __init__(self, device="auto", threads=0):
-        self._pointer, self._users, self._left = None, 0, False
+        self._pointer, self._users, self._left, self._process = None, 0, False, os.getpid()
         self.lock = threading.RLock()
         self._progress = self._raised = None
         options = library.stratus_context_options_default()
         options.device = _text(device, "device")
         options.threads = whole(threads, "threads", 0, 1024)
+        if _forked:
+            # OpenMP's threads, and those of an OpenCL device, did not come along: whoever waits for them waits for ever.
+            if options.threads > 1 or str(device) not in ("auto", "host"):
+                raise ValueError(f"device is {device!r} and threads is {threads!r}, they must be 'host' and 1 in a process that was forked off one that "
+                                 "had drawn; multiprocessing's method spawn starts processes without this limit")
+            options.device, options.threads = b"host", 1
         tell = weakref.WeakMethod(self._tell)
         self._callback = c.stratus_progress_function(lambda user, stage, fraction: tell()(stage, fraction))  # lives as long as the context
         options.progress = self._callback
         pointer, message = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
         status = library.stratus_context_create(ctypes.byref(options), ctypes.byref(pointer), message, len(message))
         if status:
-            raise _ERRORS[status](message.value.decode(errors="replace"))
-        self._pointer = pointer
+            reason = message.value.decode(errors="replace")
+            raise _ERRORS[status](f"{reason} ({without_opencl})" if without_opencl and status == c.STRATUS_NO_DEVICE else reason)
+        self._pointer, Context.made = pointer, True
 
     def _tell(self, stage, fraction):
         try:
@@ -90,7 +111,7 @@ class Context:
             return 1
 
     def _destroy_unused(self):
-        if self._left and self._users == 0 and self._pointer:
+        if self._left and self._users == 0 and self._pointer and self._process == os.getpid():
             library.stratus_context_destroy(self._pointer)
             self._pointer = None
 
@@ -101,6 +122,8 @@ class Context:
 
     def call(self, function, *arguments, progress=None):
         """Calls a function of the library that returns a status, and raises what the status stands for. Call it with the lock held."""
+        if self._process != os.getpid():
+            raise RuntimeError("this object was made before the process was forked; make it anew in the child process")
         self._progress, self._raised = progress, None
         try:
             status = function(*arguments)
@@ -127,6 +150,18 @@ class Context:
 
 
 _contexts, _lock = {}, threading.Lock()
+_forked, _of_parent = False, []
+
+
+def _after_fork():
+    global _contexts, _lock, _forked
+    _of_parent.append(_contexts)  # not to be destroyed here
+    _forked = _forked or bool(_contexts) or Context.made
+    _contexts, _lock = {}, threading.Lock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)
 
 
 def context(device=None, threads=None):
@@ -161,6 +196,8 @@ class Owned:
             owner._users += 1
 
     def __del__(self):
+        if self.owner._process != os.getpid():
+            return  # it belongs to the process that this one was forked off
         with self.owner.lock:
             if self.pointer:
                 self._destroy(self.pointer)

@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """stratus_volume's calls of the core: contexts, pictures, cameras, errors, cancelling, threads, what is freed."""
 import gc
+import multiprocessing
+import os
+import shutil
+import subprocess
 import sys
+import tempfile
 import threading
 import warnings
 
@@ -197,6 +202,72 @@ def freed():
     gc.collect()
 
 
+def drawn_in_child(number):
+    return float(render(field, camera=dict(azimuth=number), size=(30, 20)).rgba.sum())
+
+
+def forked():
+    """A forked process has none of OpenMP's threads: it draws by one of its own, and does not wait for ever."""
+    if "fork" not in multiprocessing.get_all_start_methods():
+        return
+    wanted = [drawn_in_child(number) for number in range(3)]
+    fork = multiprocessing.get_context("fork")
+    with fork.Pool(2) as pool:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.12, that there are threads
+            found = pool.map_async(drawn_in_child, range(3))
+        try:
+            check(numpy.allclose(found.get(120), wanted, rtol=1e-3), "children draw what the parent draws")
+        except multiprocessing.TimeoutError:
+            check(False, "children end")
+        for task, words in (draw_of_parent, "before the process was forked"), (ask_for_threads, "spawn"):
+            try:
+                pool.apply_async(task).get(120)
+            except (RuntimeError, ValueError) as error:
+                check(words in str(error), f"'{words}' in the error: {error}")
+            else:
+                check(False, f"{task} is refused in a child")
+
+
+of_parent = Volume(field, device="host")
+
+
+def draw_of_parent():
+    of_parent.render()
+
+
+def ask_for_threads():
+    Context("host", 2)
+
+
+def missing():
+    """Where libOpenCL or libgomp is missing: names of libraries that are nowhere stand in for them in a copy of the package."""
+    own = os.path.dirname(os.path.abspath(stratus_volume.__file__))
+    code = "import numpy, stratus_volume as s; print(s.devices(), s.render(numpy.eye(4) * numpy.ones((4, 4, 4)), size=(9, 9)).rgba.max() > 0)"
+    with tempfile.TemporaryDirectory() as folder:
+        for name, other in ("libOpenCL", "libOpenCX"), ("libgomp", "libgomX"):
+            copy = os.path.join(folder, other, "stratus_volume")
+            shutil.copytree(own, copy, ignore=shutil.ignore_patterns("__pycache__"))
+            for part in "_core.py", "libstratus-core.so", os.path.join("no_opencl", "libOpenCL.so.1"):
+                path = os.path.join(copy, part)
+                with open(path, "rb") as file:
+                    content = file.read()
+                ends = ('"', '":') if part.endswith(".py") and name == "libgomp" else ("", "")
+                content = content.replace(name.join(ends).encode(), other.join(ends).encode())
+                os.remove(path)
+                with open(path.replace(name, other), "wb") as file:
+                    file.write(content)
+            ended = subprocess.run([sys.executable, "-c", code], env=dict(os.environ, PYTHONPATH=os.path.dirname(copy)), cwd=folder,
+                                   capture_output=True, text=True)
+            if name == "libOpenCL":
+                check(ended.returncode == 0 and ended.stdout.split() == ["[]", "True"], f"without OpenCL the host draws: {ended.stdout} {ended.stderr}")
+                refused = subprocess.run([sys.executable, "-c", "import stratus_volume as s; s.Context('0')"], cwd=folder, capture_output=True,
+                                         env=dict(os.environ, PYTHONPATH=os.path.dirname(copy)), text=True)
+                check("ocl-icd" in refused.stderr and "ValueError" in refused.stderr, f"and a device is refused with the reason: {refused.stderr}")
+            elif "libgomp-" not in content.decode("latin-1"):  # a repaired wheel has its own
+                check("ImportError" in ended.stderr and "libgomp1" in ended.stderr, f"without OpenMP's runtime, its package: {ended.stderr}")
+
+
 contexts()
 pictures()
 planes_and_crops()
@@ -206,4 +277,6 @@ refusals()
 cancelled()
 threads()
 freed()
+forked()
+missing()
 sys.exit(1 if failures else 0)
