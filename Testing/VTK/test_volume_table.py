@@ -20,7 +20,8 @@ def check(condition, what):
 
 
 with open("docs/vtk-parity.md", encoding="utf-8") as file:
-    table = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in file if line.startswith("|")][2:]
+    text = file.read().split("\n## VTK's own tests\n")[0]  # the table of that section is test_vtk_verdicts' own
+table = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in text.split("\n") if line.startswith("|")][2:]
 check(len(table) > 30 and all(len(row) == 3 and all(row) for row in table), "rows of three cells")
 words = {word: row for row in table for word in re.findall(r"`(\w+)`", row[0])}
 
