@@ -248,6 +248,8 @@ def missing():
         for name, other in ("libOpenCL", "libOpenCX"), ("libgomp", "libgomX"):
             copy = os.path.join(folder, other, "stratus_volume")
             shutil.copytree(own, copy, ignore=shutil.ignore_patterns("__pycache__"))
+            if os.path.isdir(own + ".libs"):  # what auditwheel put beside it
+                shutil.copytree(own + ".libs", copy + ".libs")
             for part in "_core.py", "libstratus-core.so", os.path.join("no_opencl", "libOpenCL.so.1"):
                 path = os.path.join(copy, part)
                 with open(path, "rb") as file:

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What declare.py made of the public headers is what a C compiler makes of them: sizes, offsets, enums, macros, and the library's functions."""
+import ast
 import ctypes
 import glob
+import inspect
 import os
 import shutil
 import subprocess
@@ -76,6 +78,28 @@ options = stratus_volume._core.library.stratus_ray_cast_options_default()
 check(options.tolerance == 0.001 and options.crop_regions == 0x2000 and options.shading.diffuse == 0.9 and options.shading.light_count == -1,
       "defaults of rays")
 check(list(stratus_volume._core.library.stratus_volume_default().matrix) == [float(n % 5 == 0) for n in range(16)], "the identity")
+
+# The type stubs name what the package has, parameter by parameter.
+with open(os.path.join(os.path.dirname(stratus_volume.__file__), "__init__.pyi"), encoding="utf-8") as file:
+    stubs = {node.name: node for node in ast.parse(file.read()).body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+check(sorted(stubs) == sorted(stratus_volume.__all__), f"stubs: {sorted(set(stubs) ^ set(stratus_volume.__all__))}")
+
+
+def compare(stub, own, name):
+    parameters = inspect.signature(own).parameters
+    told = [each.arg for each in stub.args.args] + ([stub.args.kwarg.arg] if stub.args.kwarg else [])
+    check(told == list(parameters), f"stub of {name}: {told} and {list(parameters)}")
+    defaults = sum(each.default is not inspect.Parameter.empty for each in parameters.values())
+    check(len(stub.args.defaults) == defaults, f"stub of {name}: {len(stub.args.defaults)} defaults, not {defaults}")
+
+
+for name, stub in stubs.items():
+    own = getattr(stratus_volume, name)
+    check(len(own.__doc__ or "") > 20, f"{name} is told")
+    for method in [stub] if isinstance(stub, ast.FunctionDef) else [node for node in stub.body if isinstance(node, ast.FunctionDef)]:
+        one = own if method is stub else inspect.getattr_static(own, method.name)
+        one = one.fget if isinstance(one, property) else one.__func__ if isinstance(one, classmethod) else one
+        compare(method, one, f"{name}.{method.name}")
 
 # A statement that declare.py does not know is an error, not a gap.
 with tempfile.TemporaryDirectory() as folder:
