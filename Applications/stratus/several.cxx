@@ -204,20 +204,35 @@ void several_drawing::draw(const stratus_image& image)
   }
 }
 
+// The rows of all work are those of the first volume, since meshes have no structure and no sampling.
 void several_drawing::tell() const
 {
-  for (const member& one : this->Members) {
-    const bool first = &one == &this->Members[0];
+  const auto is_volume = [](const member& one) { return !one.mesh; };
+  const auto volume = std::find_if(this->Members.begin(), this->Members.end(), is_volume);
+  for (auto one = this->Members.begin(); one != this->Members.end(); ++one) {
+    const bool first = one == this->Members.begin();
     const std::string what =
-      one.mesh ? cli::grouped(static_cast<unsigned long long>(one.mesh->points)) + " points" : cli::describe(one.input->volume);
-    row(!first ? "with" : one.mesh ? "mesh" : "volume", (first ? "" : one.o.source + ": ") + what + ", array '" + one.array_name() + "'");
-    if (!first) {
-      row("opacity", one.functions.origin);
-      row("why", one.report.why);
+      one->mesh ? cli::grouped(static_cast<unsigned long long>(one->mesh->points)) + " points" : cli::describe(one->input->volume);
+    row(!first      ? "with"
+        : one->mesh ? "mesh"
+                    : "volume",
+      (first ? "" : one->o.source + ": ") + what + ", array '" + one->array_name() + "'");
+    if (one != volume) {
+      row("opacity", one->functions.origin);
+      row("why", one->report.why);
     }
   }
   row("camera", cli::describe(this->Camera));
-  cli::tell_cast(this->Options, this->Core, this->Members[0].functions, this->Members[0].report);
+  if (volume != this->Members.end()) {
+    cli::tell_cast(this->Options, this->Core, volume->functions, volume->report);
+    return;
+  }
+  const stratus_ray_cast_report& r = this->Members[0].report;
+  row("device", stratus_context_device(this->Core));
+  row("frame",
+    cli::format("%.2f ms for %d x %d pixels, %s rays met a mesh", r.cast_ms, this->Options.width, this->Options.height,
+      cli::grouped(r.rays).c_str()));
+  row("cells passed", cli::grouped(r.samples));
 }
 
 void several_drawing::judge() const
