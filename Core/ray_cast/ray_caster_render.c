@@ -273,8 +273,10 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   }
   caster->samples_since_data += counts.samples;
   stratus_ray_fill_report(caster, &counts, used, report);
-  snprintf(report->why, sizeof report->why, "%s; %s, sample distance %.4g%s%s%s%s", why, stratus_sampling_name(caster->choice.sampling),
-    caster->choice.sample_distance, *caster->where ? "; " : "", caster->where, *caster->tried ? ": " : "", caster->tried);
+  const bool cells = caster->choice.sampling == STRATUS_SAMPLING_CELLS; /* which takes no step */
+  snprintf(report->why, sizeof report->why, "%s; %s, %s %.4g%s%s%s%s", why, stratus_sampling_name(caster->choice.sampling),
+    cells ? "cell error" : "sample distance", cells ? caster->choice.cell_error : caster->choice.sample_distance,
+    *caster->where ? "; " : "", caster->where, *caster->tried ? ": " : "", caster->tried);
   return STRATUS_OK;
 }
 

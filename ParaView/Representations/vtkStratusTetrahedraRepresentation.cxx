@@ -5,6 +5,7 @@
 #include "vtkStratusLODVolume.h"
 #include "vtkStratusRanks.h"
 #include "vtkStratusScalarChoice.h"
+#include "vtkStratusSolidColor.h"
 #include "vtkStratusTetrahedraMapper.h"
 
 #include "vtkAlgorithmOutput.h"
@@ -71,7 +72,7 @@ vtkSmartPointer<vtkDataObject> Copy(vtkDataObject* data)
 
 vtkStandardNewMacro(vtkStratusTetrahedraRepresentation);
 
-vtkStratusTetrahedraRepresentation::vtkStratusTetrahedraRepresentation()
+vtkStratusTetrahedraRepresentation::vtkStratusTetrahedraRepresentation() : Solid(new stratus::SolidColor)
 {
   this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
   this->Actor->SetProperty(this->Property);
@@ -97,6 +98,7 @@ int vtkStratusTetrahedraRepresentation::RequestData(vtkInformation* request, vtk
   // A rank without data, a client for one, shows the outline of what the others draw.
   this->Actor->SetEnableLOD(data ? 0 : 1);
   if (data) {
+    this->FindArray(data);
     this->Cache = Copy(data);
     if (this->UseSeparateOpacityArray) {
       this->AppendOpacityComponent(vtkDataSet::SafeDownCast(this->Cache));
@@ -119,6 +121,9 @@ int vtkStratusTetrahedraRepresentation::ProcessViewRequest(vtkInformationRequest
     return 0;
   }
   if (request == vtkPVView::REQUEST_UPDATE()) {
+    if (this->Solid->IsOpen() && stratus::count_ranks() > 1) {
+      this->Solid->JoinRange(vtkMultiProcessController::GetGlobalController());
+    }
     vtkNew<vtkMatrix4x4> matrix;
     this->Actor->GetMatrix(matrix);
     out->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
@@ -143,6 +148,7 @@ int vtkStratusTetrahedraRepresentation::ProcessViewRequest(vtkInformationRequest
 
 void vtkStratusTetrahedraRepresentation::UpdateMapper(vtkDataObject* data)
 {
+  this->Solid->Apply(this->Property);
   vtkInformation* info = this->GetInputArrayInformation(0);
   const char* name = info && info->Has(vtkDataObject::FIELD_NAME()) ? info->Get(vtkDataObject::FIELD_NAME()) : nullptr;
   const bool on_cells = info && info->Has(vtkDataObject::FIELD_ASSOCIATION()) &&
@@ -194,6 +200,40 @@ void vtkStratusTetrahedraRepresentation::ClipTo(const std::vector<vtkBoundingBox
     }
   }
   this->Mapper->SetClippingPlanes(planes->GetNumberOfItems() > 0 ? planes.Get() : nullptr);
+}
+
+void vtkStratusTetrahedraRepresentation::SetInputArrayToProcess(int index, int port, int connection, int association, const char* name)
+{
+  if (index == 0) {
+    this->Solid->Choose(association, name);
+  }
+  this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
+}
+
+void vtkStratusTetrahedraRepresentation::SetColor(vtkColorTransferFunction* function)
+{
+  this->Solid->SetFunction(function);
+}
+
+void vtkStratusTetrahedraRepresentation::SetScalarOpacity(vtkPiecewiseFunction* function)
+{
+  this->Solid->SetOpacity(function);
+}
+
+void vtkStratusTetrahedraRepresentation::SetSolidColor(double red, double green, double blue)
+{
+  this->Solid->SetColor(red, green, blue);
+}
+
+// Chooses an array of the data where ParaView has chosen none.
+void vtkStratusTetrahedraRepresentation::FindArray(vtkDataObject* data)
+{
+  if (this->Solid->IsOpen()) {
+    if (!this->Solid->FindArray(data) && data->GetNumberOfElements(vtkDataObject::CELL) > 0) {
+      vtkWarningMacro("the data have no array of points or cells, and nothing is drawn");
+    }
+    this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::POINT, ""); // the one that was found
+  }
 }
 
 bool vtkStratusTetrahedraRepresentation::AddToView(vtkView* view)
@@ -280,6 +320,42 @@ void vtkStratusTetrahedraRepresentation::SetNumberOfIsosurfaces(int number)
 void vtkStratusTetrahedraRepresentation::SetIsosurfaceValue(int index, double value)
 {
   this->Property->GetIsoSurfaceValues()->SetValue(index, value);
+}
+
+double vtkStratusTetrahedraRepresentation::GetTetrahedra()
+{
+  return static_cast<double>(this->Mapper->GetNumberOfTetrahedra());
+}
+
+double vtkStratusTetrahedraRepresentation::GetLeftOut()
+{
+  return static_cast<double>(this->Mapper->GetNumberOfBlankedTetrahedra());
+}
+
+double vtkStratusTetrahedraRepresentation::GetSegments()
+{
+  return static_cast<double>(this->Mapper->GetNumberOfSegments());
+}
+
+double vtkStratusTetrahedraRepresentation::GetCastTime()
+{
+  return this->Mapper->GetMarchMilliseconds() + this->Mapper->GetSortMilliseconds() + this->Mapper->GetBinMilliseconds() +
+    this->Mapper->GetProjectMilliseconds();
+}
+
+const char* vtkStratusTetrahedraRepresentation::GetMethodUsed()
+{
+  return this->Mapper->GetMethodUsedAsString();
+}
+
+const char* vtkStratusTetrahedraRepresentation::GetReason()
+{
+  return this->Mapper->GetMethodReason();
+}
+
+const char* vtkStratusTetrahedraRepresentation::GetDeviceUsed()
+{
+  return this->Mapper->GetDeviceName();
 }
 
 void vtkStratusTetrahedraRepresentation::PrintSelf(ostream& os, vtkIndent indent)

@@ -18,11 +18,17 @@
 #include "vtkSmartPointer.h"                      // For vtkSmartPointer
 #include "vtkVolumeRepresentation.h"
 
+#include <memory> // For std::unique_ptr
 #include <vector> // For std::vector
 
 class vtkBoundingBox;
+class vtkColorTransferFunction;
+class vtkPiecewiseFunction;
 class vtkPolyDataMapper;
 class vtkStratusTetrahedraMapper;
+namespace stratus {
+class SolidColor;
+}
 
 class STRATUSPARAVIEWREPRESENTATIONS_EXPORT vtkStratusTetrahedraRepresentation : public vtkVolumeRepresentation
 {
@@ -32,6 +38,19 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out) override;
+
+  //@{
+  /**
+   * Set the array that colours, the functions of its values, and the colour where there is none. Without an array (Solid Color) the values
+   * of the one that was chosen last are drawn in that colour, at the opacity that their function gives; if none ever was, the data's active
+   * scalars or first array, by a ramp over its range.
+   */
+  using Superclass::SetInputArrayToProcess;
+  void SetInputArrayToProcess(int index, int port, int connection, int association, const char* name) override;
+  void SetColor(vtkColorTransferFunction* function);
+  void SetScalarOpacity(vtkPiecewiseFunction* function);
+  void SetSolidColor(double red, double green, double blue);
+  //@}
 
   //@{
   /**
@@ -63,6 +82,21 @@ public:
   void SetIsosurfaceValue(int index, double value);
   //@}
 
+  //@{
+  /**
+   * Get what the last picture took on this rank: tetrahedra that cells were divided into; those of them left out because a value is not
+   * finite or a point is repeated; tetrahedra that rays passed, or pieces of them that were composited where cells are projected;
+   * milliseconds of drawing; the method, why it was chosen, and the device.
+   */
+  double GetTetrahedra();
+  double GetLeftOut();
+  double GetSegments();
+  double GetCastTime();
+  const char* GetMethodUsed();
+  const char* GetReason();
+  const char* GetDeviceUsed();
+  //@}
+
 protected:
   vtkStratusTetrahedraRepresentation();
   ~vtkStratusTetrahedraRepresentation() override;
@@ -76,9 +110,11 @@ private:
   vtkStratusTetrahedraRepresentation(const vtkStratusTetrahedraRepresentation&) = delete;
   void operator=(const vtkStratusTetrahedraRepresentation&) = delete;
 
+  void FindArray(vtkDataObject* data);
   void UpdateMapper(vtkDataObject* data);
   void ClipTo(const std::vector<vtkBoundingBox>& boxes, int rank);
 
+  std::unique_ptr<stratus::SolidColor> Solid;
   vtkNew<vtkStratusTetrahedraMapper> Mapper;
   vtkNew<vtkPolyDataMapper> OutlineMapper;
   vtkSmartPointer<vtkDataObject> Cache; // what of the input this rank draws

@@ -5,6 +5,7 @@
 #include "vtkStratusLODVolume.h"
 #include "vtkStratusMultiBlockVolumeMapper.h"
 #include "vtkStratusRanks.h"
+#include "vtkStratusSolidColor.h"
 #include "vtkStratusVolumeMapper.h"
 
 #include "vtkColorTransferFunction.h"
@@ -24,10 +25,11 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+#include <string>
 
 vtkStandardNewMacro(vtkStratusVolumeRepresentation);
 
-vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation()
+vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation() : Solid(new stratus::SolidColor)
 {
   this->VolumeMapper = vtkSmartPointer<vtkStratusMultiBlockVolumeMapper>::New();
   this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
@@ -64,6 +66,7 @@ int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInfo
   if (!data) {
     return this->Superclass::RequestData(request, input, output);
   }
+  this->FindArray(data);
   this->Cache.TakeReference(data->NewInstance());
   this->Cache->ShallowCopy(data); // composite data block by block: arrays may be added to them
   if (this->UseSeparateOpacityArray) {
@@ -97,12 +100,15 @@ int vtkStratusVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey*
   return 1;
 }
 
-// Finds the bounds of all ranks' data, by which a crop is set. Every rank must call it.
+// Finds the bounds of all ranks' data, by which a crop is set, and the range of a solid colour's ramp. Every rank must call it.
 void vtkStratusVolumeRepresentation::ShareBounds()
 {
   std::copy_n(this->DataBounds, 6, this->WholeBounds);
   if (stratus::count_ranks() > 1) {
     stratus::join_bounds(vtkMultiProcessController::GetGlobalController(), this->DataBounds, this->WholeBounds);
+    if (this->Solid->IsOpen()) {
+      this->Solid->JoinRange(vtkMultiProcessController::GetGlobalController());
+    }
   }
 }
 
@@ -148,6 +154,40 @@ void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkM
   this->AgreedFor = this->GetSamplingTime();
 }
 
+void vtkStratusVolumeRepresentation::SetInputArrayToProcess(int index, int port, int connection, int association, const char* name)
+{
+  if (index == 0) {
+    this->Solid->Choose(association, name);
+  }
+  this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
+}
+
+void vtkStratusVolumeRepresentation::SetColor(vtkColorTransferFunction* function)
+{
+  this->Solid->SetFunction(function);
+}
+
+void vtkStratusVolumeRepresentation::SetScalarOpacity(vtkPiecewiseFunction* function)
+{
+  this->Solid->SetOpacity(function);
+}
+
+void vtkStratusVolumeRepresentation::SetSolidColor(double red, double green, double blue)
+{
+  this->Solid->SetColor(red, green, blue);
+}
+
+// Chooses an array of the data where ParaView has chosen none.
+void vtkStratusVolumeRepresentation::FindArray(vtkDataObject* data)
+{
+  if (this->Solid->IsOpen()) {
+    if (!this->Solid->FindArray(data) && data->GetNumberOfElements(vtkDataObject::CELL) > 0) {
+      vtkWarningMacro("the data have no array of points or cells, and nothing is drawn");
+    }
+    this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::POINT, ""); // the one that was found
+  }
+}
+
 bool vtkStratusVolumeRepresentation::AddToView(vtkView* view)
 {
   if (auto* render_view = vtkPVRenderView::SafeDownCast(view)) {
@@ -168,6 +208,7 @@ bool vtkStratusVolumeRepresentation::RemoveFromView(vtkView* view)
 
 void vtkStratusVolumeRepresentation::UpdateMapperParameters()
 {
+  this->Solid->Apply(this->Property);
   this->Superclass::UpdateMapperParameters();
   vtkStratusVolumeMapper* mapper = this->GetSettings();
   if (this->VolumeMapper->GetCropping()) { // the superclass scales the bounds of each rank's own data
@@ -281,10 +322,16 @@ SUM_OF_BLOCKS(GetCastTime)
     vtkStratusVolumeMapper* first = this->GetMapper()->GetBlockMapper(0);                                                                  \
     return first ? first->from() : none;                                                                                                   \
   }
-OF_FIRST_BLOCK(double, GetUsedSampleDistance, GetUsedSampleDistance, 0.0)
 OF_FIRST_BLOCK(const char*, GetSamplingUsed, GetSamplingUsedAsString, "")
 OF_FIRST_BLOCK(const char*, GetStructureUsed, GetStructureUsedAsString, "")
 OF_FIRST_BLOCK(const char*, GetReason, GetReason, "")
+OF_FIRST_BLOCK(const char*, GetDeviceUsed, GetDeviceName, "")
+
+double vtkStratusVolumeRepresentation::GetUsedSampleDistance()
+{
+  vtkStratusVolumeMapper* first = this->GetMapper()->GetBlockMapper(0);
+  return first && std::string(first->GetSamplingUsedAsString()) != "cells" ? first->GetUsedSampleDistance() : 0.0;
+}
 
 void vtkStratusVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)
 {

@@ -17,10 +17,17 @@
 #include "StratusParaViewRepresentationsModule.h" // For export macro
 #include "vtkImageVolumeRepresentation.h"
 
+#include <memory> // For std::unique_ptr
+
+class vtkColorTransferFunction;
 class vtkMultiProcessController;
+class vtkPiecewiseFunction;
 class vtkRenderer;
 class vtkStratusMultiBlockVolumeMapper;
 class vtkStratusVolumeMapper;
+namespace stratus {
+class SolidColor;
+}
 
 class STRATUSPARAVIEWREPRESENTATIONS_EXPORT vtkStratusVolumeRepresentation : public vtkImageVolumeRepresentation
 {
@@ -30,6 +37,19 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out) override;
+
+  //@{
+  /**
+   * Set the array that colours, the functions of its values, and the colour where there is none. Without an array (Solid Color) the values
+   * of the one that was chosen last are drawn in that colour, at the opacity that their function gives; if none ever was, the data's active
+   * scalars or first array, by a ramp over its range.
+   */
+  using Superclass::SetInputArrayToProcess;
+  void SetInputArrayToProcess(int index, int port, int connection, int association, const char* name) override;
+  void SetColor(vtkColorTransferFunction* function);
+  void SetScalarOpacity(vtkPiecewiseFunction* function);
+  void SetSolidColor(double red, double green, double blue);
+  //@}
 
   //@{
   /**
@@ -58,7 +78,7 @@ public:
   //@{
   /**
    * Get what the last picture took on this rank: numbers of all blocks together, and how the first block was drawn. Milliseconds are those
-   * of casting rays.
+   * of casting rays. The sample distance is 0 where rays go from cell to cell, which takes no step.
    */
   double GetSamplesTaken();
   double GetSamplesSkipped();
@@ -67,6 +87,7 @@ public:
   const char* GetSamplingUsed();
   const char* GetStructureUsed();
   const char* GetReason();
+  const char* GetDeviceUsed();
   //@}
 
 protected:
@@ -85,12 +106,14 @@ private:
 
   vtkStratusMultiBlockVolumeMapper* GetMapper();
   vtkStratusVolumeMapper* GetSettings();
+  void FindArray(vtkDataObject* data);
   void ApplyBlendMode();
   void ApplySampling();
   void ShareBounds();
   vtkMTimeType GetSamplingTime();
   void AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks);
 
+  std::unique_ptr<stratus::SolidColor> Solid;
   int BlendMode = 0;
   int Projection = 0;
   int Sampling = 0; // of the user, as are the next two

@@ -70,6 +70,15 @@ def crop(view, shown):
     shown.UseCropping, shown.CroppingScale = 1, [1, 1, 0.6]
 
 
+def never_coloured(view, shown):
+    """Drawn by a ramp over the range of all ranks' values, as no array was ever chosen."""
+    source = shown.Input
+    simple.Delete(shown)
+    fresh = simple.Show(source, view)
+    fresh.SetRepresentationType("Stratus Volume")
+    fresh.ScalarOpacityUnitDistance, fresh.DiffuseColor = 4, [0.9, 0.6, 0.5]
+
+
 def close(view, shown):
     view.CameraPosition, view.CameraFocalPoint = [4, 3, 2], [1, 0.5, 0.5]
     shown.ScalarOpacityUnitDistance = 0.2
@@ -77,7 +86,8 @@ def close(view, shown):
 
 SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POINTS", [shade]), ("image-crop", "even.vti", "POINTS", [crop]),
           ("image-opaque", "even.vti", "POINTS", [opaque]), ("image-background", "even.vti", "POINTS", [opaque, background]),
-          ("image-translucent", "even.vti", "POINTS", [translucent]), ("image-cells", "boxes.vti", "CELLS", []), ("two-cells", "two.vti", "POINTS", [close]),
+          ("image-translucent", "even.vti", "POINTS", [translucent]), ("image-cells", "boxes.vti", "CELLS", []),
+          ("image-solid", "even.vti", "POINTS", [never_coloured]), ("two-cells", "two.vti", "POINTS", [close]),
           ("rectilinear", "levels.vtr", "POINTS", []), ("rectilinear-shade", "levels.vtr", "POINTS", [shade]),
           ("blocks", "parts.vtm", "POINTS", []), ("structured", "hills.vts", "POINTS", []), ("structured-shade", "hills.vts", "POINTS", [shade]),
           ("unstructured", "cells.vtu", "POINTS", []), ("unstructured-opaque", "cells.vtu", "POINTS", [opaque])]
