@@ -9,6 +9,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <new>
@@ -39,6 +40,15 @@ int vtkStratusVariableReader::FillOutputPortInformation(int, vtkInformation* inf
 int vtkStratusVariableReader::GetNumberOfVariables()
 {
   return static_cast<int>(this->Variables.size());
+}
+
+vtkStringArray* vtkStratusVariableReader::GetNamesOfVariables()
+{
+  this->Names->Initialize();
+  for (const VariableEntry& one : this->Variables) {
+    this->Names->InsertNextValue(one.Name);
+  }
+  return this->Names;
 }
 
 const char* vtkStratusVariableReader::GetNameOfVariable(int index)

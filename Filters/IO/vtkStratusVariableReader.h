@@ -13,9 +13,12 @@
 
 #include "StratusFiltersIOModule.h" // For export macro
 #include "vtkDataSetAlgorithm.h"
+#include "vtkNew.h" // For vtkNew
 
 #include <string> // For std::string
 #include <vector> // For std::vector
+
+class vtkStringArray;
 
 class STRATUSFILTERSIO_EXPORT vtkStratusVariableReader : public vtkDataSetAlgorithm
 {
@@ -41,10 +44,11 @@ public:
 
   //@{
   /**
-   * Get the variables that can be read, after UpdateInformation(): their number, and the name, units and long name of each, "" for what the
-   * file does not tell. An index out of range gives "".
+   * Get the variables that can be read, after UpdateInformation(): their number, all names, and the name, units and long name of each, ""
+   * for what the file does not tell. An index out of range gives "".
    */
   int GetNumberOfVariables();
+  vtkStringArray* GetNamesOfVariables();
   const char* GetNameOfVariable(int index);
   const char* GetUnitsOfVariable(int index);
   const char* GetLongNameOfVariable(int index);
@@ -106,6 +110,7 @@ private:
 
   vtkMTimeType LookTime = 0;
   std::string OutputClass;
+  vtkNew<vtkStringArray> Names;
 };
 
 #endif
