@@ -22,12 +22,21 @@ stratus_add_test(paraview_plugin paraview "${CMAKE_CTEST_COMMAND}" --build-and-t
 stratus_test_needs(paraview_plugin stratus-core)
 set_tests_properties(paraview_plugin PROPERTIES FIXTURES_REQUIRED paraview FIXTURES_SETUP paraview_plugin TIMEOUT 2700 PROCESSORS 2)
 
-foreach (test IN ITEMS pictures datasets lights)
+foreach (test IN ITEMS pictures datasets files lights)
   stratus_add_test(paraview_${test} paraview ${stratus_display} "${paraview}/usr/bin/pvbatch" "${PROJECT_SOURCE_DIR}/Testing/ParaView/test_${test}.py"
     "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" $<TARGET_FILE:stratus-command> $<TARGET_FILE:compare-pictures>
     "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview")
   set_tests_properties(paraview_${test} PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin")
 endforeach ()
+
+if (TARGET TestStratusVDBReader) # whose sparse grids are read
+  set_tests_properties(paraview_files PROPERTIES DEPENDS TestStratusVDBReader)
+endif ()
+
+stratus_add_test(paraview_install paraview ${stratus_display} "${CMAKE_CURRENT_SOURCE_DIR}/ParaView/test_install" "${paraview}/usr" "${CMAKE_BINARY_DIR}"
+  "${plugin_build}" "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview_install")
+stratus_test_needs(paraview_install stratus-core)
+set_tests_properties(paraview_install PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin")
 
 find_program(STRATUS_MPIEXEC mpiexec)
 mark_as_advanced(STRATUS_MPIEXEC)
