@@ -93,11 +93,13 @@ static double together(stratus_context* context, member* m, int count, const str
 }
 
 static double single(stratus_context* context, stratus_ray_caster* caster, const member* m, const stratus_ray_cast_options* options,
-  const stratus_camera* camera, int size, float* rgba)
+  const stratus_camera* camera, int size, float* rgba, uint64_t* samples)
 {
+  stratus_ray_cast_report report;
   const stratus_image image = { .width = size, .height = size, .rgba = rgba };
   const double start = processor_ms();
-  check(context, stratus_ray_caster_render(caster, &m->volume, &m->transfer, camera, options, &image, NULL));
+  check(context, stratus_ray_caster_render(caster, &m->volume, &m->transfer, camera, options, &image, &report));
+  *samples += report.samples;
   return processor_ms() - start;
 }
 
@@ -127,12 +129,13 @@ static void judge(stratus_context* context, member* m, int count, const stratus_
   float* right = calloc(12 * pixels, sizeof *right);
   float *one = right + 4 * pixels, *over = one + 4 * pixels;
   reference_scene scenes[MEMBERS];
+  uint64_t samples = 0;
   memset(scenes, 0, sizeof scenes);
   for (int n = 0; n < count; ++n) {
     scenes[n].volume = &m[n].volume;
     scenes[n].transfer = &m[n].transfer;
     scenes[n].camera = camera;
-    single(context, m[n].alone, &m[n], &m[n].options, camera, size, one);
+    single(context, m[n].alone, &m[n], &m[n].options, camera, size, one, &samples);
     for (size_t at = 0; at < 4 * pixels; ++at) {
       over[at] = one[at] + (1.0f - one[at / 4 * 4 + 3]) * over[at];
     }
@@ -150,6 +153,7 @@ static void measure(stratus_context* context, const char* const group[MEMBERS], 
   member m[MEMBERS];
   stratus_ray_cast_report reports[STRATUS_SEVERAL_MAX];
   stratus_camera camera;
+  uint64_t samples[2] = { 0, 0 };
   const double bounds[6] = { -0.5, 0.9, -0.9, 0.5, -0.5, 0.9 };
   int count = 0;
   while (count < MEMBERS && group[count]) {
@@ -160,6 +164,7 @@ static void measure(stratus_context* context, const char* const group[MEMBERS], 
   check(context, stratus_scene_camera(context, bounds, 1, 0, 0, 1.0, &camera));
   for (int frame = -4; frame < frames; ++frame) { /* the first ones build and try */
     double sums[2] = { 0.0, 0.0 };
+    samples[0] = samples[1] = 0;
     const double all = together(context, m, count, &camera, size, rgba, reports);
     for (int n = 0; n < count; ++n) {
       stratus_ray_cast_options alike = m[n].options;
@@ -167,15 +172,17 @@ static void measure(stratus_context* context, const char* const group[MEMBERS], 
         alike.sampling = reports[n].sampling;
         alike.sample_distance = reports[n].sample_distance;
       }
-      sums[0] += single(context, m[n].alone, &m[n], &m[n].options, &camera, size, rgba);
-      sums[1] += single(context, m[n].alike, &m[n], &alike, &camera, size, rgba);
+      sums[0] += single(context, m[n].alone, &m[n], &m[n].options, &camera, size, rgba, &samples[0]);
+      sums[1] += single(context, m[n].alike, &m[n], &alike, &camera, size, rgba, &samples[1]);
     }
     for (int i = 0; i < 3 && frame >= 0; ++i) {
       ms[i][frame] = i == 0 ? all : sums[i - 1];
     }
   }
   const double of[3] = { median(ms[0], frames), median(ms[1], frames), median(ms[2], frames) };
-  printf(",%.2f,%.2f,%.2f,%.3f,%.3f", of[0], of[1], of[2], of[0] / of[1], of[0] / of[2]);
+  const double taken = (double)reports[0].samples;
+  printf(",%.2f,%.2f,%.2f,%.3f,%.3f,%.3f,%.3f", of[0], of[1], of[2], of[0] / of[1], of[0] / of[2], taken / (double)samples[0],
+    taken / (double)samples[1]);
   judge(context, m, count, &camera, size / 4, rgba);
   printf("\n");
   for (int n = 0; n < count; ++n) {
@@ -201,7 +208,7 @@ int main(int argc, char** argv)
     return 1;
   }
   float* rgba = malloc(4 * (size_t)size * (size_t)size * sizeof *rgba);
-  printf("volumes,together_ms,alone_ms,alike_ms,over_alone,over_alike,error,error_laid_over\n");
+  printf("volumes,together_ms,alone_ms,alike_ms,over_alone,over_alike,samples_over_alone,samples_over_alike,error,error_laid_over\n");
   for (size_t g = 0; rgba && g < sizeof groups / sizeof *groups; ++g) {
     measure(context, groups[g], size, frames, rgba);
   }
