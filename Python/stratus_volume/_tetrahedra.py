@@ -156,7 +156,7 @@ class Tetrahedra:
 def _of_vtk(data, scalars):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     if data.IsA("vtkUnstructuredGrid"):
-        kinds = vtk_to_numpy(data.GetCellTypesArray()) if data.GetNumberOfCells() else numpy.zeros(0)
+        kinds = vtk_to_numpy(data.GetDistinctCellTypesArray()) if data.GetNumberOfCells() else numpy.zeros(0)
         if not (kinds == _TETRA).all():
             from vtkmodules.vtkFiltersGeneral import vtkDataSetTriangleFilter
             divide = vtkDataSetTriangleFilter()
@@ -183,7 +183,8 @@ def _of_vtk(data, scalars):
             cells = cells[vtk_to_numpy(flags) == 0]
             values = values[vtk_to_numpy(flags) == 0] if of_cells else values
         return points, cells, values
-    shape = data.GetDimensions()[::-1]
+    extent = data.GetExtent()  # GetDimensions() takes other arguments in some versions
+    shape = [extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in (2, 1, 0)]
     if flags is not None and not of_cells:
         raise ValueError("the grid has blanked cells, but values of points: blank by NaN values instead")
     values = values.reshape([n - of_cells for n in shape])

@@ -82,6 +82,8 @@ def _as_placed(camera, bounds, aspect):
 
 def make(context, camera, bounds, size):
     """Returns the core's camera. Call it with the context's lock held."""
+    if isinstance(camera, c.stratus_camera):
+        return camera
     aspect = size[0] / size[1]
     wishes, result = _as_placed(camera, bounds, aspect), c.stratus_camera()
     three = ctypes.c_double * 3
