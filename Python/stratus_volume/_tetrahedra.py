@@ -156,8 +156,9 @@ class Tetrahedra:
 def _of_vtk(data, scalars):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     if data.IsA("vtkUnstructuredGrid"):
-        kinds = vtk_to_numpy(data.GetDistinctCellTypesArray()) if data.GetNumberOfCells() else numpy.zeros(0)
-        if not (kinds == _TETRA).all():
+        # The one is not there in VTK 9.1, the other warns from 9.6 on.
+        kinds = data.GetDistinctCellTypesArray() if hasattr(data, "GetDistinctCellTypesArray") else data.GetCellTypesArray()
+        if data.GetNumberOfCells() and not (vtk_to_numpy(kinds) == _TETRA).all():
             from vtkmodules.vtkFiltersGeneral import vtkDataSetTriangleFilter
             divide = vtkDataSetTriangleFilter()
             divide.SetInputData(data)
