@@ -82,7 +82,7 @@ class Context:
     def __init__(self, device="auto", threads=0):
         self._pointer, self._users, self._left, self._process = None, 0, False, os.getpid()
         self.lock = threading.RLock()
-        self._progress = self._raised = None
+        self._progress, self._raised, self._inside = None, None, False
         options = library.stratus_context_options_default()
         options.device = _text(device, "device")
         options.threads = whole(threads, "threads", 0, 1024)
@@ -124,11 +124,13 @@ class Context:
         """Calls a function of the library that returns a status, and raises what the status stands for. Call it with the lock held."""
         if self._process != os.getpid():
             raise RuntimeError("this object was made before the process was forked; make it anew in the child process")
-        self._progress, self._raised = progress, None
+        if self._inside:
+            raise RuntimeError("a progress function called what uses the same device; it may use another Context")
+        self._progress, self._raised, self._inside = progress, None, True
         try:
             status = function(*arguments)
         finally:
-            self._progress = None
+            self._progress, self._inside = None, False
         if self._raised:
             raised, self._raised = self._raised, None
             raise raised

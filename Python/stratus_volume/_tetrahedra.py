@@ -8,7 +8,8 @@ import numpy
 from . import _declarations as c
 from . import _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library, type_of
-from ._values import Spread, explain, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled, visible, warn
+from ._values import (Spread, explain, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled, unit_length,
+                      visible, warn)
 from ._volume import Image, Transfer, crop_box, set_contours, set_planes, set_shading, value_interval
 
 _TETRA = 10  # VTK's number of the cell
@@ -143,7 +144,7 @@ class Tetrahedra:
         if average_range is not None:
             options.average_range[:] = value_interval(average_range, "average_range", self.power)
         length = math.hypot(*(self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3)))
-        unit = (length / 50 or 1.0) if unit_distance is None else float(unit_distance)
+        unit = unit_length(unit_distance, length)
         transfer = Transfer(opacity, color, self.spread, self.power, unit, gradient_opacity)
         with self.context.lock:
             view, mesh = _view.make(self.context, camera, self.bounds, size), self._mesh()

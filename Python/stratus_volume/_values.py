@@ -33,9 +33,13 @@ def is_number(value):
 def number(value, name):
     if not is_number(value):
         raise TypeError(f"{name} is {value!r}, it must be a number")
-    if not numpy.isfinite(float(value)):
+    try:
+        result = float(value)
+    except OverflowError:  # an int beyond all doubles
+        result = numpy.inf
+    if not numpy.isfinite(result):
         raise ValueError(f"{name} is {value!r}, it must be finite")
-    return float(value)
+    return result
 
 
 def numbers(values, count, name):
@@ -43,6 +47,8 @@ def numbers(values, count, name):
         result = tuple(float(value) for value in values)
     except (TypeError, ValueError):
         raise TypeError(f"{name} is {values!r}, it must be {count} numbers") from None
+    except OverflowError:  # an int beyond all doubles
+        raise ValueError(f"{name} is {values!r}, it must be {count} finite numbers") from None
     if len(result) != count or not all(numpy.isfinite(result)):
         raise ValueError(f"{name} is {values!r}, it must be {count} finite numbers")
     return result
@@ -69,6 +75,15 @@ def positive(value, name):
     if number(value, name) <= 0:
         raise ValueError(f"{name} is {value!r}, it must be above 0")
     return float(value)
+
+
+def unit_length(unit_distance, length):
+    """The world length that opacities refer to, by default a fiftieth of the data's, for which its optical depths are floats."""
+    if unit_distance is None:
+        return length / 50 or 1.0
+    if length and not 1e-30 <= unit_distance / length <= 1e30:
+        raise ValueError(f"unit_distance is {unit_distance!r}, it must be 1e-30 to 1e30 times the diagonal of the data, {length:.6g}")
+    return float(unit_distance)
 
 
 # ---- arrays
@@ -177,7 +192,7 @@ def scaled_point(value, power):
 def opacity_points(opacity, low, high, common, power):
     """Returns pairs of value and opacity. A number is the top of a ramp away from the most frequent value, or the opacity of a single value."""
     if opacity is None or is_number(opacity):
-        top = 0.3 if opacity is None else float(opacity)
+        top = 0.3 if opacity is None else number(opacity, "opacity")
         if not 0 <= top <= 1:
             raise ValueError(f"opacity is {opacity!r}, it must be in 0..1")
         if low == high:

@@ -10,7 +10,8 @@ from . import _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library
 from ._grid import grid_of
 from ._picture import Rendering
-from ._values import (explain, functions, is_number, number, numbers, own_points, pairs, pixels, positive, scaled_point, warn)
+from ._values import (explain, functions, is_number, number, numbers, own_points, pairs, pixels, positive, scaled_point,
+                      unit_length, warn)
 
 _SHADING = ("ambient", "diffuse", "specular", "specular_power")
 
@@ -43,7 +44,10 @@ def set_shading(options, shade):
 
 
 def set_planes(options, clip_planes, most):
-    planes = [] if clip_planes is None else [numbers(plane, 4, "a clip plane") for plane in clip_planes]
+    try:
+        planes = [] if clip_planes is None else [numbers(plane, 4, "a clip plane") for plane in clip_planes]
+    except TypeError:
+        raise TypeError(f"clip_planes is {clip_planes!r}, it must be planes of a, b, c and d") from None
     if len(planes) > most:
         raise ValueError(f"clip_planes has {len(planes)}, it may have {most}")
     options.clip_plane_count = len(planes)
@@ -52,7 +56,10 @@ def set_planes(options, clip_planes, most):
 
 
 def set_contours(options, contours, power, most):
-    values = [] if contours is None else [contours] if is_number(contours) else list(contours)
+    try:
+        values = [] if contours is None else [contours] if is_number(contours) else list(contours)
+    except TypeError:
+        raise TypeError(f"contours is {contours!r}, it must be one number or several") from None
     if len(values) > most:
         raise ValueError(f"contours has {len(values)}, it may have {most}")
     options.contour_count = len(values)
@@ -69,7 +76,10 @@ def crop_box(crop):
 
 
 def value_interval(values, name, power):
-    first, last = (float(value) for value in values)
+    try:
+        first, last = (float(value) for value in values)
+    except (TypeError, ValueError, OverflowError):
+        raise TypeError(f"{name} is {values!r}, it must be two numbers") from None
     if not first <= last:
         raise ValueError(f"{name} is {values!r}, the first must be at most the last")
     return [scaled_point(value, power) if math.isfinite(value) else value for value in (first, last)]
@@ -160,7 +170,7 @@ class Volume:
         with self.context.lock:
             bounds = self.grid.bounds(self.context)
             length = math.hypot(*(bounds[2 * axis + 1] - bounds[2 * axis] for axis in range(3)))
-            unit = length / 50 if unit_distance is None else float(unit_distance)
+            unit = unit_length(unit_distance, length)
             transfer = Transfer(opacity, color, self.grid.spread, power, unit, gradient_opacity)
             view = _view.make(self.context, camera, bounds, size)
             volume = self.grid.view(power)

@@ -11,7 +11,7 @@ from vtkmodules.vtkRenderingCore import vtkCamera, vtkColorTransferFunction, vtk
 
 from ._picture import paint
 from ._values import (Spread, background_color, explain, functions, native, none_visible, number, numbers, own_points, pixels, positive, scaled,
-                      visible, warn)
+                      unit_length, visible, warn)
 from .StratusRenderingVolume import vtkStratusVolumeMapper
 
 _MODES = ("composite", "maximum", "minimum", "average", "additive", "isosurface", "slice")  # vtkVolumeMapper's numbers
@@ -172,7 +172,7 @@ def show(array, spacing=(1, 1, 1), opacity=None, color=None, size=(640, 480), ca
     look.SetScalarOpacity(fade)
     look.SetColor(hue)
     look.SetInterpolationTypeToLinear()
-    unit = image.GetLength() / 50 if unit_distance is None else float(unit_distance)
+    unit = unit_length(unit_distance, image.GetLength())
     look.SetScalarOpacityUnitDistance(unit)
     mapper = mapper or vtkStratusVolumeMapper()
     if tolerance is not None:

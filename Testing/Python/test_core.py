@@ -142,13 +142,16 @@ def refusals():
     for words, options in [("mode", dict(mode="glow")), ("structure", dict(structure="tree")), ("sampling", dict(sampling="local")),
                            ("interpolation", dict(interpolation="cubic")), ("crop", dict(crop=(5, 4, 0, 1, 0, 1))), ("crop", dict(crop=(0, 1))),
                            ("clip_planes", dict(clip_planes=[(1, 0, 0, 0)] * 7)), ("contours", dict(contours=range(17), mode="isosurface")),
-                           ("unit_distance", dict(unit_distance=0)), ("tolerance", dict(tolerance=-1)), ("size", dict(size=(0, 10))),
+                           ("unit_distance", dict(unit_distance=0)), ("diagonal", dict(unit_distance=1e-300)), ("tolerance", dict(tolerance=-1)),
+                           ("size", dict(size=(0, 10))),
                            ("shade", dict(shade=dict(glow=1))), ("opaque_depth", dict(opaque_depth=numpy.zeros((3, 3)))),
                            ("gradient_opacity", dict(gradient_opacity=[(0, 2)])), ("average_range", dict(average_range=(2, 1), mode="average")),
                            ("ambient", dict(shade=dict(ambient=-1))), ("contour", dict(mode="isosurface")),
-                           ("sample_distance", dict(sample_distance=-1)), ("background", dict(background=(2, 0, 0)))]:
+                           ("sample_distance", dict(sample_distance=-1)), ("opacity", dict(opacity=10**400)), ("spacing", dict(spacing=(10**400, 1, 1))),
+                           ("background", dict(background=(2, 0, 0)))]:
         refuse(ValueError, words.split("_")[0], show, field, device="host", **options)
-    for options in dict(unit_distance="x"), dict(tolerance="x"), dict(size=5), dict(opacity="x"), dict(color="red"), dict(crop=3):
+    for options in dict(unit_distance="x"), dict(tolerance="x"), dict(size=5), dict(opacity="x"), dict(color="red"), dict(crop=3), \
+            dict(clip_planes=3), dict(contours=1j), dict(average_range=3):
         refuse(TypeError, next(iter(options)), show, field, device="host", **options)
     refuse(stratus_volume.Unsupported, "nearest", render, field, mode="isosurface", contours=[0.5], interpolation="nearest", device="host")
 
@@ -162,6 +165,7 @@ def cancelled():
     def interrupt(stage, fraction):
         raise KeyboardInterrupt("as by Ctrl+C")
     refuse(KeyboardInterrupt, "Ctrl", render, field, progress=interrupt, **host)
+    refuse(RuntimeError, "progress function", render, field, progress=lambda stage, fraction: render(field, **host), **host)
     check(render(field, **host).rgba.max() > 0, "the next call draws")
 
 
