@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any, Literal, NamedTuple, Union
 
@@ -10,7 +10,7 @@ __version__: str
 _Points = Union[float, Sequence[Sequence[float]], None]
 _Colors = Union[Sequence[float], Sequence[Sequence[float]], None]
 _Device = Union[str, int, "Context", None]
-_Progress = Union[Callable[[str, float], Any], None]
+_Progress = Any  # a function of a stage and a fraction, a bar of tqdm's protocol, or None
 _Background = Union[Sequence[float], None]
 _Mode = Literal["composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface"]
 _Structure = Literal["auto", "none", "block", "distance", "octant", "hybrid"]
@@ -29,6 +29,11 @@ class Context:
     def device(self) -> str: ...
 
 class Picture(numpy.ndarray):
+    def save(self, path: str | PathLike[str]) -> None: ...
+
+class Film(list[Picture]):
+    seconds: float
+    def __init__(self, pictures: Sequence[Picture] = ..., seconds: float = ...) -> None: ...
     def save(self, path: str | PathLike[str]) -> None: ...
 
 class Rendering(NamedTuple):
@@ -93,6 +98,11 @@ def render(
 def show(
     data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: Any = ..., background: _Background = ...,
     **options: Any) -> Picture: ...
+def turn(
+    data: Any, frames: int = ..., opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., elevation: float = ..., zoom: float = ...,
+    background: _Background = ..., seconds: float = ..., progress: _Progress = ..., spacing: Sequence[float] | None = ...,
+    origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: int | None = ...,
+    device: _Device = ..., threads: int | None = ..., **options: Any) -> Film: ...
 def render_tetrahedra(
     points: ArrayLike, tetrahedra: ArrayLike | None, values: ArrayLike, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ...,
     camera: Any = ..., device: _Device = ..., threads: int | None = ..., **options: Any) -> Rendering: ...

@@ -126,7 +126,7 @@ class Context:
             raise RuntimeError("this object was made before the process was forked; make it anew in the child process")
         if self._inside:
             raise RuntimeError("a progress function called what uses the same device; it may use another Context")
-        self._progress, self._raised, self._inside = progress, None, True
+        self._progress, self._raised, self._inside = Progress.of(progress), None, True
         try:
             status = function(*arguments)
         finally:
@@ -149,6 +149,30 @@ class Context:
 
     def __repr__(self):
         return f"stratus_volume.Context: {self.device}"
+
+
+class Progress:
+    """A function of a stage and a fraction that moves a bar of tqdm's protocol: `total`, `n` and `update(step)`."""
+
+    def __init__(self, bar):
+        self.bar, self.done = bar, 0.0
+
+    @classmethod
+    def of(cls, progress):
+        """Returns a function for what a caller gave: None, a function, or a bar."""
+        if progress is None or callable(progress) and not hasattr(progress, "update"):
+            return progress
+        if not hasattr(progress, "update"):
+            raise TypeError(f"progress is {progress!r}, it must be a function of a stage and a fraction, or a bar with update(), as tqdm's")
+        return cls(progress)
+
+    def __call__(self, stage, fraction):
+        total = getattr(self.bar, "total", None) or 1.0
+        if fraction > self.done:  # stages begin anew: a bar goes forward alone
+            self.bar.update((fraction - self.done) * total)
+            self.done = fraction
+        if hasattr(self.bar, "set_description"):
+            self.bar.set_description(stage, refresh=False)
 
 
 _contexts, _lock = {}, threading.Lock()

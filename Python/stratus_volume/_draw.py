@@ -1,9 +1,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One call for one picture of whatever it is."""
-from ._picture import paint
+from ._core import Progress, whole
+from ._picture import Film, paint
 from ._tetrahedra import Tetrahedra
-from ._values import background_color
+from ._values import background_color, number, positive
 from ._volume import Volume
+
+
+def _drawn(data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None):
+    """What draws the data: a Volume or Tetrahedra."""
+    if isinstance(data, (Volume, Tetrahedra)):
+        given = dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, device=device, threads=threads)
+        for name, value in given.items():
+            if value is not None:
+                raise ValueError(f"{name} is {value!r}, but a {type(data).__name__} has its own")
+        return data
+    if hasattr(data, "IsA") and (data.IsA("vtkUnstructuredGrid") or data.IsA("vtkStructuredGrid")):
+        for name, value in dict(spacing=spacing, origin=origin, axes=axes, component=component).items():
+            if value is not None:
+                raise ValueError(f"{name} is {value!r}, but a {data.GetClassName()} has none")
+        return Tetrahedra(data, scalars=scalars, device=device, threads=threads)
+    return Volume(data, spacing, origin, axes, scalars, component, device, threads)
 
 
 def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing=None, origin=None, axes=None, scalars=None, component=None,
@@ -35,24 +52,13 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
     jitter         whether samples move along their rays by a noise
     audit          whether counters["differing_pixels"] counts the pixels that skipping changed
     opaque_depth   array (height, width) of OpenGL depths in 0..1 at which rays end, the top row first
-    progress       function of a stage's name and a fraction in 0..1; a true result, an exception, or Ctrl+C ends the call
+    progress       function of a stage's name and a fraction in 0..1; a true result, an exception, or Ctrl+C ends the call.
+                   Or a bar of tqdm's protocol
 
     Cells of unstructured and structured grids have no interpolation, structure, sampling, sample_distance, jitter and audit, and no mode
     first-hit, but a method: auto, march or project. A picture that shows nothing gives one warning, NothingShown, that names the reason.
     """
-    if isinstance(data, (Volume, Tetrahedra)):
-        given = dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, device=device, threads=threads)
-        for name, value in given.items():
-            if value is not None:
-                raise ValueError(f"{name} is {value!r}, but a {type(data).__name__} has its own")
-        drawn = data
-    elif hasattr(data, "IsA") and (data.IsA("vtkUnstructuredGrid") or data.IsA("vtkStructuredGrid")):
-        for name, value in dict(spacing=spacing, origin=origin, axes=axes, component=component).items():
-            if value is not None:
-                raise ValueError(f"{name} is {value!r}, but a {data.GetClassName()} has none")
-        drawn = Tetrahedra(data, scalars=scalars, device=device, threads=threads)
-    else:
-        drawn = Volume(data, spacing, origin, axes, scalars, component, device, threads)
+    drawn = _drawn(data, spacing, origin, axes, scalars, component, device, threads)
     return drawn.render(opacity, color, size, camera, **options)
 
 
@@ -73,3 +79,27 @@ def render_tetrahedra(points, tetrahedra, values, opacity=None, color=None, size
     Everything else is as in `render`.
     """
     return Tetrahedra(points, tetrahedra, values, device=device, threads=threads).render(opacity, color, size, camera, **options)
+
+
+def turn(data, frames=36, opacity=None, color=None, size=(320, 240), elevation=25.0, zoom=1.15, background=(0.08, 0.1, 0.14), seconds=4.0,
+         progress=None, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, **options):
+    """Returns a Film of the data as it turns once about the z axis: a list of Pictures, which notebooks show as a film.
+
+    frames     how many pictures, 1..1000
+    elevation  of the camera, degrees
+    seconds    the time of one turn
+    progress   as in `render`, of the whole film
+    Everything else is as in `render` and `show`. Structures are built once.
+    """
+    whole(frames, "frames", 1, 1000)
+    background, seconds = background_color(background), positive(seconds, "seconds")
+    view = dict(elevation=number(elevation, "elevation"), zoom=number(zoom, "zoom"))
+    drawn = _drawn(data, spacing, origin, axes, scalars, component, device, threads)
+    film, tell = Film(seconds=seconds), Progress.of(progress)
+    for n in range(frames):
+        part = None if tell is None else lambda stage, fraction, n=n: tell(stage, (n + fraction) / frames)
+        camera = dict(azimuth=30 + 360 * n / frames, **view)
+        film.append(paint(drawn.render(opacity, color, size, camera, progress=part, **options).rgba, background))
+    if tell is not None:
+        tell("done", 1.0)
+    return film

@@ -11,23 +11,61 @@ def _chunk(kind, content):
     return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
 
 
+def _rows(picture):
+    """The compressed rows of a picture, each with its filter, none, before it."""
+    height, width, channels = picture.shape
+    rows = numpy.zeros((height, 1 + width * channels), numpy.uint8)
+    rows[:, 1:] = picture.reshape(height, width * channels)
+    return zlib.compress(rows.tobytes(), 6)
+
+
+def _header(picture):
+    height, width, channels = picture.shape
+    return b"\x89PNG\r\n\x1a\n" + _chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2 if channels == 3 else 6, 0, 0, 0))
+
+
 class Picture(numpy.ndarray):
     """An array of shape (height, width, 4), RGBA of one byte each, the top row first, which notebooks show as a picture."""
 
     def _repr_png_(self):
         if self.ndim != 3 or self.shape[2] not in (3, 4) or self.dtype != numpy.uint8 or self.size == 0:
             return None  # a slice may not be a picture
-        height, width, channels = self.shape
-        rows = numpy.zeros((height, 1 + width * channels), numpy.uint8)  # each row begins with its filter: none
-        rows[:, 1:] = self.reshape(height, width * channels)
-        header = struct.pack(">IIBBBBB", width, height, 8, 2 if channels == 3 else 6, 0, 0, 0)
-        return (b"\x89PNG\r\n\x1a\n" + _chunk(b"IHDR", header) + _chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + _chunk(b"IEND", b""))
+        return _header(self) + _chunk(b"IDAT", _rows(self)) + _chunk(b"IEND", b"")
 
     def save(self, path):
         """Writes the picture as PNG."""
         encoded = self._repr_png_()
         if encoded is None:
             raise ValueError(f"an array of shape {self.shape} and type {self.dtype} is no picture: it must be (height, width, 3 or 4), uint8")
+        with open(path, "wb") as file:
+            file.write(encoded)
+
+
+class Film(list):
+    """A list of Pictures of one size, which notebooks show as a film that repeats (an animated PNG); `seconds` is the time of all of them."""
+
+    def __init__(self, pictures=(), seconds=4.0):
+        super().__init__(pictures)
+        self.seconds = seconds
+
+    def _repr_png_(self):
+        if not self or any(picture.shape != self[0].shape for picture in self):
+            return None
+        height, width = self[0].shape[:2]
+        delay = min(65535, max(1, round(1000 * self.seconds / len(self))))
+        parts, number = [_header(self[0]), _chunk(b"acTL", struct.pack(">II", len(self), 0))], 0
+        for n, picture in enumerate(self):
+            parts.append(_chunk(b"fcTL", struct.pack(">IIIIIHHBB", number, width, height, 0, 0, delay, 1000, 0, 0)))
+            # The first picture is what a reader shows that knows no films.
+            parts.append(_chunk(b"IDAT", _rows(picture)) if n == 0 else _chunk(b"fdAT", struct.pack(">I", number + 1) + _rows(picture)))
+            number += 1 if n == 0 else 2
+        return b"".join([*parts, _chunk(b"IEND", b"")])
+
+    def save(self, path):
+        """Writes the film as an animated PNG."""
+        encoded = self._repr_png_()
+        if encoded is None:
+            raise ValueError(f"a film of {len(self)} pictures can't be written: it must have one or more, of one size")
         with open(path, "wb") as file:
             file.write(encoded)
 

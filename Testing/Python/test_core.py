@@ -4,11 +4,13 @@ import gc
 import multiprocessing
 import os
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
 import threading
 import warnings
+import zlib
 
 try:
     import numpy
@@ -169,6 +171,48 @@ def cancelled():
     check(render(field, **host).rgba.max() > 0, "the next call draws")
 
 
+class Bar:
+    """What is used of a bar of tqdm's."""
+
+    def __init__(self, total):
+        self.total, self.n, self.stages = total, 0.0, []
+
+    def update(self, step):
+        check(step > 0, f"a bar goes forward: {step}")
+        self.n += step
+
+    def set_description(self, text, refresh):
+        self.stages.append(text)
+
+
+def films():
+    bar = Bar(50)
+    film = stratus_volume.turn(field, frames=5, size=(30, 20), progress=bar, device="host")
+    check(len(film) == 5 and all(picture.shape == (20, 30, 4) for picture in film), "five pictures")
+    check(abs(bar.n - 50) < 1e-9 and bar.stages, f"a bar to its end: {bar.n} of 50, {bar.stages[:3]}")
+    check(numpy.array_equal(film[1], show(field, size=(30, 20), camera=dict(azimuth=102), device="host")), "a fifth of a turn")
+    content, frames, at = film._repr_png_(), [], 8
+    while at < len(content):
+        length, kind = struct.unpack(">I", content[at:at + 4])[0], content[at + 4:at + 8]
+        part = content[at + 8:at + 8 + length]
+        check(zlib.crc32(kind + part) == struct.unpack(">I", content[at + 8 + length:at + 12 + length])[0], f"the sum of {kind}")
+        if kind in (b"IDAT", b"fdAT"):
+            rows = numpy.frombuffer(zlib.decompress(part if kind == b"IDAT" else part[4:]), numpy.uint8).reshape(20, 121)
+            frames.append(rows[:, 1:].reshape(20, 30, 4))
+        at += 12 + length
+    check(len(frames) == 5 and all(numpy.array_equal(*both) for both in zip(film, frames)), "the animated PNG holds them")
+    check(stratus_volume.Film()._repr_png_() is None, "no pictures, no film")
+    with tempfile.TemporaryDirectory() as folder:
+        film.save(os.path.join(folder, "turn.png"))
+        check(os.path.getsize(os.path.join(folder, "turn.png")) == len(content), "and is saved")
+    bar = Bar(1)
+    render(field, progress=bar, **host)
+    check(0.5 < bar.n <= 1, f"a bar of one picture: {bar.n}")
+    refuse(TypeError, "tqdm", render, field, progress=3, **host)
+    refuse(ValueError, "frames", stratus_volume.turn, field, frames=0)
+    refuse(ValueError, "film", stratus_volume.Film().save, "nowhere.png")
+
+
 def threads():
     wanted = render(field, **host).rgba
     results = []
@@ -281,6 +325,7 @@ cameras()
 kept()
 refusals()
 cancelled()
+films()
 threads()
 freed()
 forked()
