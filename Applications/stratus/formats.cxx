@@ -29,6 +29,7 @@
 #include <vtkNrrdReader.h>
 #include <vtkOpenFOAMReader.h>
 #include <vtkPointData.h>
+#include <vtkVersionMacros.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLMultiBlockDataReader.h>
@@ -58,12 +59,14 @@ template <class Reader> made reader_for(const std::string& path)
   return reader;
 }
 
-// Polyhedra stay whole, because the mappers divide them conformingly.
+// Polyhedra stay whole, because the mappers divide them conformingly. Later readers than that of VTK 9.2 leave them so.
 made openfoam(const std::string& path)
 {
   auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
   reader->SetFileName(path.c_str());
+#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 3, 0)
   reader->DecomposePolyhedraOff();
+#endif
   return reader;
 }
 

@@ -8,9 +8,9 @@
 #include "transfer.h"
 
 #include "vtkStratusTetrahedra.h"
+#include "vtkStratusVersions.h"
 
 #include <vtkCellData.h>
-#include <vtkCellTypes.h>
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
 
@@ -36,7 +36,7 @@ void print_cells(vtkDataSet* grid)
   }
   for (size_t type = 0; type < of_type.size(); ++type) {
     if (of_type[type] > 0) {
-      cli::row("", count(of_type[type]) + " " + vtkCellTypes::GetClassNameFromTypeId(static_cast<int>(type)) + cli::format(" (%zu)", type));
+      cli::row("", count(of_type[type]) + " " + vtkStratusNameOfCellType(static_cast<int>(type)) + cli::format(" (%zu)", type));
     }
   }
 }

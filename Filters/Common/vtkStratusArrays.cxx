@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusArrays.h"
 
+#include "vtkStratusVersions.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
@@ -26,7 +28,29 @@ bool CheckPoint(vtkIdType cell, vtkIdType point, vtkIdType points, std::string& 
   return true;
 }
 
-// VTK stores a polyhedron's faces as one run of numbers: the number of faces, then the size and the points of each face.
+#if VTK_STRATUS_FACES_ARE_CELLS
+// A polyhedron's faces are cells of one array, whose numbers another has. Both have been checked.
+bool CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell, std::string& error)
+{
+  vtkCellArray* of_cells = grid->GetPolyhedronFaceLocations();
+  const vtkIdType count = of_cells ? of_cells->GetNumberOfCells() : 0;
+  if (cell >= count) {
+    error = "cell " + std::to_string(cell) + " is a polyhedron without faces: the faces of " + std::to_string(count) + " cells are told";
+  }
+  return cell < count;
+}
+
+bool CheckFaceArrays(vtkUnstructuredGrid* grid, std::string& error)
+{
+  vtkCellArray *faces = grid->GetPolyhedronFaces(), *of_cells = grid->GetPolyhedronFaceLocations();
+  const char* const what = "faces of polyhedra: ";
+  const bool sound = (!faces || vtkStratusCheckCells(faces, 0, grid->GetNumberOfPoints(), error)) &&
+    (!of_cells || vtkStratusCheckCells(of_cells, 0, faces ? faces->GetNumberOfCells() : 0, error));
+  error = sound ? error : what + error;
+  return sound;
+}
+#else
+// A polyhedron's faces are one run of numbers: the number of faces, then the size and the points of each face.
 bool CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell, std::string& error)
 {
   vtkIdTypeArray* faces = grid->GetFaces();
@@ -49,6 +73,12 @@ bool CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell, std::string& error)
   }
   return inside;
 }
+
+bool CheckFaceArrays(vtkUnstructuredGrid*, std::string&)
+{
+  return true; // cell for cell
+}
+#endif
 } // namespace
 
 bool vtkStratusFindGhosts(vtkDataSetAttributes* data, vtkIdType count, const char* things, vtkUnsignedCharArray*& flags, std::string& error)
@@ -100,7 +130,7 @@ bool vtkStratusCheckCells(vtkCellArray* cells, vtkIdType first, vtkIdType points
 bool vtkStratusCheckGrid(vtkUnstructuredGrid* grid, std::string& error)
 {
   const vtkIdType cells = grid->GetNumberOfCells();
-  vtkUnsignedCharArray* types = grid->GetCellTypesArray();
+  vtkDataArray* types = vtkStratusCellTypes(grid);
   const vtkIdType typed = types ? types->GetNumberOfValues() : 0;
   if (typed < cells) {
     error =
@@ -110,8 +140,11 @@ bool vtkStratusCheckGrid(vtkUnstructuredGrid* grid, std::string& error)
   if (cells > 0 && !vtkStratusCheckCells(grid->GetCells(), 0, grid->GetNumberOfPoints(), error)) {
     return false;
   }
+  if (!CheckFaceArrays(grid, error)) {
+    return false;
+  }
   for (vtkIdType cell = 0; cell < cells; ++cell) {
-    if (types->GetValue(cell) == VTK_POLYHEDRON && !CheckFaces(grid, cell, error)) {
+    if (grid->GetCellType(cell) == VTK_POLYHEDRON && !CheckFaces(grid, cell, error)) {
       return false;
     }
   }

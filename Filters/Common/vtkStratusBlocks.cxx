@@ -364,13 +364,16 @@ bool vtkStratusBlocks::Append(const Block& block, vtkUnsignedCharArray* hidden, 
 void vtkStratusBlocks::AppendCells(vtkUnstructuredGrid* from, const std::vector<vtkIdType>& names, vtkUnstructuredGrid* to) const
 {
   std::vector<vtkIdType> ids;
+  vtkNew<vtkIdList> stream;
   for (vtkIdType c = 0; c < from->GetNumberOfCells(); ++c) {
     const int type = from->GetCellType(c);
     vtkIdType count = 0;
     const vtkIdType* of = nullptr;
     ids.clear();
     if (type == VTK_POLYHEDRON) {
-      from->GetFaceStream(c, count, of);
+      from->GetFaceStream(c, stream);
+      count = stream->GetId(0);
+      of = stream->GetPointer(1);
       for (vtkIdType face = 0; face < count; ++face) {
         ids.push_back(*of);
         std::transform(of + 1, of + 1 + *of, std::back_inserter(ids), [&](vtkIdType p) { return names[static_cast<size_t>(p)]; });

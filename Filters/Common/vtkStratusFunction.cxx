@@ -2,10 +2,12 @@
 #include "vtkStratusFunction.h"
 
 #include "vtkColorTransferFunction.h"
-#include "vtkDiscretizableColorTransferFunction.h"
 #include "vtkNew.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkVariant.h"
+#if __has_include("vtkDiscretizableColorTransferFunction.h") // which smaller builds of VTK leave out
+#include "vtkDiscretizableColorTransferFunction.h"
+#endif
 
 #include <algorithm>
 #include <array>
@@ -371,14 +373,27 @@ void TranslateIndexed(vtkColorTransferFunction* function, const Function& whole,
   }
 }
 
+// The number of colours that a function which may be discretised is divided into, 0 for none; -1: it cannot be discretised.
+int StepsOf(vtkColorTransferFunction* function)
+{
+  int steps = -1;
+#ifdef vtkDiscretizableColorTransferFunction_h
+  auto* discrete = vtkDiscretizableColorTransferFunction::SafeDownCast(function);
+  steps = !discrete ? -1 : discrete->GetDiscretize() ? static_cast<int>(discrete->GetNumberOfValues()) : 0;
+#else
+  (void)function;
+#endif
+  return steps;
+}
+
 // Adds a function of a derived class, of which only GetColor() is known. Discretised functions change once between the middles of two of
 // their colours. Others are divided at their nodes and 64 times between two, then where they bend.
 void TranslateDerived(vtkColorTransferFunction* function, const Source& source, Points& points)
 {
   const Function whole = [&](double x) { return Clamped(source.Whole(x)); };
-  auto* discrete = vtkDiscretizableColorTransferFunction::SafeDownCast(function);
-  const bool bins = discrete && discrete->GetDiscretize();
-  const int parts = bins ? static_cast<int>(discrete->GetNumberOfValues()) : 64;
+  const int colors = StepsOf(function);
+  const bool bins = colors > 0;
+  const int parts = bins ? colors : 64;
   const bool logarithmic = function->UsingLogScale() && source.Nodes[0].X > 0.0;
   std::vector<double> ends;
   for (const Node& node : source.Nodes) {
@@ -439,16 +454,16 @@ bool vtkStratusFunction::Set(vtkPiecewiseFunction* function, int width)
 
 bool vtkStratusFunction::Set(vtkColorTransferFunction* function)
 {
-  auto* discrete = vtkDiscretizableColorTransferFunction::SafeDownCast(function);
-  if (discrete) {
-    discrete->Build(); // its GetColor() reads what this builds
+  const int steps = StepsOf(function);
+  if (steps >= 0) {
+    function->Build(); // its GetColor() reads what this builds
   }
   if (this->IsCurrent(function, 3)) {
     return !this->Points.empty();
   }
   ::Points points;
   const ::Source source = SourceOf(function);
-  const bool plain = discrete ? !discrete->GetDiscretize() : std::string(function->GetClassName()) == "vtkColorTransferFunction";
+  const bool plain = steps >= 0 ? steps == 0 : std::string(function->GetClassName()) == "vtkColorTransferFunction";
   if (function->GetIndexedLookup()) {
     TranslateIndexed(function, source.Whole, points);
   } else if (!source.Nodes.empty() && plain) {

@@ -2,6 +2,7 @@
 #include "vtkStratusMeshView.h"
 
 #include "vtkStratusArrays.h"
+#include "vtkStratusVersions.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -41,10 +42,11 @@ uint64_t HashArray(vtkAbstractArray* array, uint64_t seed)
 // The hash of all that SetGeometry() reads.
 uint64_t HashGrid(vtkUnstructuredGrid* grid)
 {
+  const std::array<vtkAbstractArray*, 4> faces = vtkStratusFaceArrays(grid);
   vtkCellArray* cells = grid->GetCells(); // null in a grid after Initialize()
   vtkAbstractArray* const arrays[] = { grid->GetPoints() ? grid->GetPoints()->GetData() : nullptr,
-    cells ? cells->GetConnectivityArray() : nullptr, cells ? cells->GetOffsetsArray() : nullptr, grid->GetCellTypesArray(),
-    grid->GetFaces(), grid->GetFaceLocations(), grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
+    cells ? cells->GetConnectivityArray() : nullptr, cells ? cells->GetOffsetsArray() : nullptr, vtkStratusCellTypes(grid), faces[0],
+    faces[1], faces[2], faces[3], grid->GetPointData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()),
     grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()), grid->GetCellData()->GetHigherOrderDegrees(),
     grid->GetPointData()->GetRationalWeights(), grid->GetCellData()->GetAbstractArray(vtkStratusLeafArray),
     grid->GetFieldData()->GetAbstractArray(vtkStratusPartitionArray) };

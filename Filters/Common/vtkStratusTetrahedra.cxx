@@ -2,11 +2,11 @@
 #include "vtkStratusTetrahedra.h"
 
 #include "vtkStratusArrays.h"
+#include "vtkStratusVersions.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCell.h"
 #include "vtkCellType.h"
-#include "vtkCellTypes.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkGenericCell.h"
 #include "vtkIdList.h"
@@ -59,7 +59,7 @@ template <typename Function> void DivideQuadraticFace(int type, const std::vecto
 
 std::string TellCell(vtkIdType cell, int type)
 {
-  return "cell " + std::to_string(cell) + " is a " + vtkCellTypes::GetClassNameFromTypeId(type) + " (" + std::to_string(type) + ")";
+  return "cell " + std::to_string(cell) + " is a " + vtkStratusNameOfCellType(type) + " (" + std::to_string(type) + ")";
 }
 } // namespace
 
@@ -200,10 +200,10 @@ void vtkStratusTetrahedra::AddQuadratic(const Kind& kind, const vtkIdType* ids, 
 
 void vtkStratusTetrahedra::AddPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell)
 {
-  vtkIdType count = 0;
-  const vtkIdType* stream = nullptr;
-  grid->GetFaceStream(cell, count, stream);
-  std::vector<Face> faces(static_cast<size_t>(std::max<vtkIdType>(count, 0)));
+  vtkNew<vtkIdList> numbers; // of faces, then the size and the points of each
+  grid->GetFaceStream(cell, numbers);
+  std::vector<Face> faces(static_cast<size_t>(numbers->GetId(0)));
+  const vtkIdType* stream = numbers->GetPointer(1);
   for (Face& face : faces) {
     face.assign(stream + 1, stream + 1 + *stream);
     stream += 1 + *stream;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusDisplay.h"
 
+#include "vtkStratusGL.h"
+
 #include "vtkHardwareSelector.h"
 #include "vtkOpenGLFramebufferObject.h"
 #include "vtkOpenGLQuadHelper.h"
@@ -10,8 +12,6 @@
 #include "vtkRenderer.h"
 #include "vtkShaderProgram.h"
 #include "vtkTextureObject.h"
-
-#include "vtk_glew.h"
 
 #include <algorithm>
 #include <string>

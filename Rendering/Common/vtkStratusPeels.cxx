@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusPeels.h"
 
+#include "vtkStratusGL.h"
+
 #include "vtkAbstractMapper.h"
 #include "vtkDualDepthPeelingPass.h"
 #include "vtkInformation.h"
@@ -14,8 +16,6 @@
 #include "vtkProp.h"
 #include "vtkShaderProgram.h"
 #include "vtkTextureObject.h"
-
-#include "vtk_glew.h"
 
 #include <algorithm>
 

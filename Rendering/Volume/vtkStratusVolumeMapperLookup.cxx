@@ -3,7 +3,6 @@
 #include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkCellData.h"
-#include "vtkCone.h"
 #include "vtkCylinder.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -15,6 +14,9 @@
 #include "vtkSphere.h"
 #include "vtkVolume.h"
 #include "vtkVolumeProperty.h"
+#if __has_include("vtkCone.h") // which smaller builds of VTK leave out
+#include "vtkCone.h"
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -165,10 +167,12 @@ bool vtkStratusVolumeMapper::Internals::SetSlice(vtkVolumeProperty* property, st
       slice.square[3 + i] = -2.0 * axis[i] * axis[(i + 1) % 3];
     }
     slice.constant = -cylinder->GetRadius() * cylinder->GetRadius();
+#ifdef vtkCone_h
   } else if (vtkCone* cone = vtkCone::SafeDownCast(function)) {
     const double slope = std::tan(vtkMath::RadiansFromDegrees(cone->GetAngle()));
     slice.square[0] = -slope * slope;
     slice.square[1] = slice.square[2] = 1.0;
+#endif
   } else if (vtkQuadric* quadric = vtkQuadric::SafeDownCast(function)) {
     const double* coefficients = quadric->GetCoefficients();
     std::copy_n(coefficients, 6, slice.square);

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What VTK 9.1 to 9.7 call by different names, in one place.
+#pragma once
+
+#include "vtkCellArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+#include "vtkVersionMacros.h"
+
+#include <array>
+
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+#include "vtkCellTypeUtilities.h"
+#else
+#include "vtkCellTypes.h"
+#endif
+
+// 1: the faces of polyhedra are cells of an array of cells; 0: one run of numbers.
+#define VTK_STRATUS_FACES_ARE_CELLS (VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 4, 0))
+
+// The name of the class of a type of cells.
+inline const char* vtkStratusNameOfCellType(int type)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+  return vtkCellTypeUtilities::GetClassNameFromTypeId(type);
+#else
+  return vtkCellTypes::GetClassNameFromTypeId(type);
+#endif
+}
+
+// The types of the grid's cells, null where it has none.
+inline vtkDataArray* vtkStratusCellTypes(vtkUnstructuredGrid* grid)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+  return grid->GetCellTypes();
+#else
+  return grid->GetCellTypesArray();
+#endif
+}
+
+// The arrays that say which faces polyhedra have, null where there are none.
+inline std::array<vtkAbstractArray*, 4> vtkStratusFaceArrays(vtkUnstructuredGrid* grid)
+{
+#if VTK_STRATUS_FACES_ARE_CELLS
+  vtkCellArray *faces = grid->GetPolyhedronFaces(), *of_cells = grid->GetPolyhedronFaceLocations();
+  return { faces ? faces->GetConnectivityArray() : nullptr, faces ? faces->GetOffsetsArray() : nullptr,
+    of_cells ? of_cells->GetConnectivityArray() : nullptr, of_cells ? of_cells->GetOffsetsArray() : nullptr };
+#else
+  return { grid->GetFaces(), grid->GetFaceLocations(), nullptr, nullptr };
+#endif
+}
