@@ -12,8 +12,13 @@ import numpy
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
+import vtk_verdict_components
 import vtk_verdict_cuts
+import vtk_verdict_grids
+import vtk_verdict_light
+import vtk_verdict_masks
 import vtk_verdict_modes
+import vtk_verdict_several
 import vtk_verdict_surfaces
 import vtk_verdict_table as table
 import vtk_verdict_views

@@ -186,25 +186,27 @@ def picture(kind, data, look, settings=nothing, place=nothing, scene=nothing, ca
     return result
 
 
-OURS = {
+INSTEAD = {
     "vtkProjectedTetrahedraMapper": stratus.vtkStratusTetrahedraMapper,
     "vtkUnstructuredGridVolumeRayCastMapper": stratus.vtkStratusTetrahedraMapper,
+    "vtkMultiBlockUnstructuredGridVolumeMapper": stratus.vtkStratusTetrahedraMapper,
     "vtkMultiBlockVolumeMapper": stratus.vtkStratusMultiBlockVolumeMapper,
 }
-GPU, SMART, FIXED, TETRA = vtk.vtkGPUVolumeRayCastMapper, vtk.vtkSmartVolumeMapper, vtk.vtkFixedPointVolumeRayCastMapper, vtk.vtkProjectedTetrahedraMapper
+GPU, SMART, FIXED = vtk.vtkGPUVolumeRayCastMapper, vtk.vtkSmartVolumeMapper, vtk.vtkFixedPointVolumeRayCastMapper
+OURS, TETRA, CAST = stratus.vtkStratusVolumeMapper, vtk.vtkProjectedTetrahedraMapper, vtk.vtkUnstructuredGridVolumeRayCastMapper
 
 
 def pair(data, look, *arguments, kind=GPU, ours=None, **options):
-    """The same scene by VTK's mapper and by ours, with one line changed. FixedPoint stretches its picture, sometimes more, sometimes less,
-    where the window's sides are no powers of two."""
-    options.setdefault("size", (128, 128) if kind is FIXED else SIZE)
-    ours = ours or OURS.get(kind.__name__, stratus.vtkStratusVolumeMapper)
+    """The same scene by VTK's mapper and by ours, with one line changed. VTK's mappers that cast rays on the host stretch their picture,
+    sometimes more, sometimes less, where the window's sides are no powers of two."""
+    options.setdefault("size", (128, 128) if kind in (FIXED, CAST) else SIZE)
+    ours = ours or INSTEAD.get(kind.__name__, OURS)
     return picture(kind, data, look, *arguments, **options), picture(ours, data, look, *arguments, **options)
 
 
 def refusal(data, look, settings=nothing, place=nothing, scene=nothing, kind=GPU):
     """What our mapper says, and whether VTK's draws something."""
-    mapper = stratus.vtkStratusVolumeMapper()
+    mapper = OURS()
     mapper.SetInputDataObject(data)
     errors = errors_of(mapper)
     settings(mapper)

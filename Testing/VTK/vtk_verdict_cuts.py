@@ -98,4 +98,4 @@ def slices():
     plane.SetOrigin(20, 19.5, 19.5), plane.SetNormal(0.6, 0.2, 0.7)
     shown.SetSliceFunction(plane)
     cells = image(made.waves(), cells=True)
-    return Different([pair(image(made.waves()), shown, settings), pair(image(made.waves()), shown, cropped)], [pair(cells, shown, settings), pair(cells, shown, cropped)])
+    return Different(*([pair(data, shown, settings), pair(data, shown, cropped)] for data in (image(made.waves()), cells)))

@@ -22,7 +22,8 @@ def blobs(n=40, shift=0.0):
     """Several bumps of different widths from 0 to 255, which end before the border."""
     z, y, x = grid(n)
     total = 0
-    for cx, cy, cz, width, height in ((-0.35, -0.2, 0.1, 0.3, 1), (0.4, 0.25, -0.25, 0.22, 0.8), (0.05, -0.4, -0.45, 0.18, 0.9), (-0.1, 0.45, 0.4, 0.2, 0.7)):
+    bumps = (-0.35, -0.2, 0.1, 0.3, 1), (0.4, 0.25, -0.25, 0.22, 0.8), (0.05, -0.4, -0.45, 0.18, 0.9), (-0.1, 0.45, 0.4, 0.2, 0.7)
+    for cx, cy, cz, width, height in bumps:
         total = total + height * numpy.exp(-((x - cx - shift) ** 2 + (y - cy) ** 2 + (z - cz) ** 2) / width**2)
     edge = numpy.clip(8 * (1 - numpy.maximum(numpy.maximum(abs(x), abs(y)), abs(z))), 0, 1)
     return (255 * numpy.clip(total * edge, 0, 1)).astype(numpy.float32)
@@ -31,7 +32,8 @@ def blobs(n=40, shift=0.0):
 def waves(n=40):
     """Values of 40 to 270 that reach the border, as VTK's wavelet has them."""
     z, y, x = grid(n)
-    return (155 + 60 * numpy.exp(-(x * x + y * y + z * z)) + 25 * numpy.sin(5 * x) + 20 * numpy.cos(4 * y) + 15 * numpy.sin(6 * z)).astype(numpy.float32)
+    bump, ripples = 60 * numpy.exp(-(x * x + y * y + z * z)), 25 * numpy.sin(5 * x) + 20 * numpy.cos(4 * y) + 15 * numpy.sin(6 * z)
+    return (155 + bump + ripples).astype(numpy.float32)
 
 
 def several(count, n=32):

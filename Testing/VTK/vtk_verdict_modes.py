@@ -4,12 +4,11 @@ import numpy
 import vtk
 
 import vtk_verdict_data as made
-from vtk_verdict import FIXED, GPU, SMART, STEP, Different, Same, case, pair, refusal
+from vtk_verdict import FIXED, GPU, SMART, Different, Same, case, pair, refusal
 from vtk_verdict_data import colors, image, look, opacity
 
 INTENSITIES = dict(alpha=((0, 0), (255, 1)))
 THIN = dict(alpha=((0, 0), (20, 0), (255, 0.04)))
-MODES = "MaximumIntensity", "MinimumIntensity", "Additive", "AverageIntensity"
 
 
 def mode(name):
@@ -41,8 +40,11 @@ def four(**options):
     """The four modes of intensity. Opacity is 0 at the box's border, of which one pixel more or less is a matter of rounding."""
     fields = image(), image(255 - made.blobs())
     properties = look(**INTENSITIES), look(alpha=((0, 1), (254.9, 0)))
-    pairs = [pair(fields[name == "MinimumIntensity"], properties[name == "MinimumIntensity"], mode(name), **options) for name in MODES if name != "Additive"]
-    return pairs + [pair(fields[0], look(**THIN), mode("Additive"), **options)]
+    pairs = []
+    for name in "MaximumIntensity", "MinimumIntensity", "AverageIntensity":
+        least = name == "MinimumIntensity"
+        pairs.append(pair(fields[least], properties[least], mode(name), **options))
+    return [*pairs, pair(fields[0], look(**THIN), mode("Additive"), **options)]
 
 
 @case("TestGPURayCastBlendModes")
@@ -57,7 +59,10 @@ def composite_to_maximum():
 
 @case("TestGPURayCastMIPToComposite")
 def maximum_to_composite():
-    return Same(pair(image(made.ball()), look(), mode("MaximumIntensity"), then=lambda volume: volume.GetMapper().SetBlendModeToComposite()))
+    def then(volume):
+        volume.GetMapper().SetBlendModeToComposite()
+
+    return Same(pair(image(made.ball()), look(), mode("MaximumIntensity"), then=then))
 
 
 @case("TestMinIntensityRendering")
@@ -70,31 +75,36 @@ def minimum():
     return Same(pair(clip.GetOutput(), shown, mode("MinimumIntensity"), kind=FIXED))
 
 
-def types(blend, linear=True):
+DTYPES = numpy.uint8, numpy.int8, numpy.uint16, numpy.int16, numpy.uint32, numpy.int32, numpy.float32, numpy.float64
+
+
+def types(blend, linear=True, dtypes=DTYPES):
+    """Pairs of the ball over the whole range of each type; of the types with a point, from -3 to 5."""
     pairs = []
-    base = made.ball(24) / 255
-    for dtype in numpy.uint8, numpy.int8, numpy.uint16, numpy.int16, numpy.uint32, numpy.int32, numpy.float32, numpy.float64:
-        low, high = (-3.0, 5.0) if dtype in (numpy.float32, numpy.float64) else (float(numpy.iinfo(dtype).min), float(numpy.iinfo(dtype).max))
-        first, last = (0.9, 0) if blend == "MinimumIntensity" else (0, 0.9)
-        field = base.max() - base if blend == "MinimumIntensity" else base
-        values = low + (high - low) * field.astype(numpy.float64)
-        shown = look(alpha=((low, first), (high, last)), tints=((low, 0, 0, 1), (high, 1, 0.8, 0)), linear=linear)
-        pairs.append(pair(image(values.round().astype(dtype) if low != -3 else values.astype(dtype)), shown, mode(blend), step=STEP if linear else 0.02))
-    return Same(*pairs)
+    base = made.ball(24).astype(float) / 255
+    for dtype in dtypes:
+        whole = numpy.issubdtype(dtype, numpy.integer)
+        low, high = (float(numpy.iinfo(dtype).min), float(numpy.iinfo(dtype).max)) if whole else (-3.0, 5.0)
+        values = low + (high - low) * (1 - base if blend == "MinimumIntensity" else base)
+        ends = (0.9, 0) if blend == "MinimumIntensity" else (0, 0.9)
+        shown = look(alpha=((low, ends[0]), (high, ends[1])), tints=((low, 0, 0, 1), (high, 1, 0.8, 0)), linear=linear)
+        pairs.append(pair(image((values.round() if whole else values).astype(dtype)), shown, mode(blend)))
+    return pairs
 
 
 @case("TestGPURayCastDataTypesMIP")
 def types_by_maximum():
-    return types("MaximumIntensity")
+    return Same(*types("MaximumIntensity"))
 
 
 @case("TestGPURayCastDataTypesMinIP")
 def types_by_minimum():
-    return types("MinimumIntensity")
+    return Same(*types("MinimumIntensity"))
 
 
+@case("TestGPURayCastNearestDataTypesMIP")
 def types_by_nearest():
-    return types("MaximumIntensity", linear=False)
+    return Different(types("MaximumIntensity", False), types("MaximumIntensity", dtypes=DTYPES[2:4]))
 
 
 @case("TestGPURayCastPerspectiveParallel")

@@ -4,7 +4,7 @@ import numpy
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-from vtk_verdict import BACKGROUND, SIZE, look_at
+from vtk_verdict import BACKGROUND, SIZE, look_at, nothing, volume_of
 
 EVERY = 4
 
@@ -22,6 +22,7 @@ def rays(bounds, camera):
     mapper.SetInputConnection(source.GetOutputPort())
     actor.SetMapper(mapper)
     renderer.AddActor(actor)
+    renderer.SetNearClippingPlaneTolerance(0.001)  # what a window of 24 bits of depth sets
     look_at(renderer, camera)
     matrix = renderer.GetActiveCamera().GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1, 1)
     inverse = numpy.linalg.inv(numpy.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)]))
@@ -54,22 +55,27 @@ def nodes(function, columns):
     """The points of a vtkPiecewiseFunction or vtkColorTransferFunction: places, and these columns."""
     rows = []
     for i in range(function.GetSize()):
-        row = [0.0] * 6
+        row = [0.0] * (6 if function.IsA("vtkColorTransferFunction") else 4)
         function.GetNodeValue(i, row)
         rows.append(row)
     return numpy.array(rows)[:, [0, *columns]].T
 
 
-def composite(data, look, camera=(30, 20, 1.3), step=0.04, field=None, inside=None, opacity_of=None):
-    """RGB of 255 for an image or rectilinear grid with values at points. inside(points): which places show something; field(points): values
-    in place of the data's; opacity_of(points, alpha): the opacity in place of the function's."""
+def composite(data, look, camera=(30, 20, 1.3), step=0.04, place=nothing, field=None, inside=None):
+    """RGB of 255 for an image or rectilinear grid with values at points, placed by place(volume). field(axes, values, points): values in
+    place of the data's between points; inside(points): which places show something."""
     if isinstance(data, vtk.vtkRectilinearGrid):
         axes = [vtk_to_numpy(getattr(data, f"Get{n}Coordinates")()).astype(float) for n in "XYZ"]
     else:
         axes = [o + s * numpy.arange(n) for o, s, n in zip(data.GetOrigin(), data.GetSpacing(), data.GetDimensions())]
     values = vtk_to_numpy(data.GetPointData().GetScalars()).astype(float).reshape([len(a) for a in reversed(axes)])
     low, high = (numpy.array([axis[end] for axis in axes]) for end in (0, -1))
-    eyes, ways = rays(data.GetBounds(), camera)
+    mapper = vtk.vtkGPUVolumeRayCastMapper()
+    mapper.SetInputData(data)
+    volume = volume_of(mapper, look, place)
+    eyes, ways = rays(volume.GetBounds(), camera)
+    inverse = numpy.linalg.inv(numpy.array([[volume.GetMatrix().GetElement(i, j) for j in range(4)] for i in range(4)]))
+    eyes, ways = eyes @ inverse[:3, :3].T + inverse[:3, 3], ways @ inverse[:3, :3].T  # lengths along the rays stay the world's
     with numpy.errstate(divide="ignore", invalid="ignore"):
         crossings = numpy.stack([(low - eyes) / ways, (high - eyes) / ways])
     first = numpy.maximum(numpy.nanmax(crossings.min(0), -1), 0)
@@ -84,10 +90,8 @@ def composite(data, look, camera=(30, 20, 1.3), step=0.04, field=None, inside=No
             break
         length = numpy.clip(last - (places - 0.5 * step), 0, step)
         points = eyes + (places - 0.5 * step + 0.5 * length)[..., None] * ways
-        value = trilinear(axes, values, points) if field is None else field(points)
+        value = (field or trilinear)(axes, values, points)
         alpha = numpy.interp(value, alphas[0], alphas[1])
-        if opacity_of is not None:
-            alpha = opacity_of(points, alpha)
         if inside is not None:
             alpha = alpha * inside(points)
         shown = passed * (1 - (1 - alpha) ** (length / look.GetScalarOpacityUnitDistance())) * some

@@ -9,6 +9,7 @@ from vtk_verdict import GPU, Different, Same, case, pair, renderers
 from vtk_verdict_cuts import TWO
 from vtk_verdict_data import image, look
 from vtk_verdict_modes import four, waving
+from vtk_verdict_reference import beside, composite, trilinear
 
 
 def sphere(center=(19.5, 19.5, 19.5), radius=10, opacity=1, color=(0.5, 0.9, 0.7)):
@@ -115,14 +116,13 @@ def depth_pass():
     return Different([pair(image(), shown, settings)], [pair(image(), shown)])
 
 
-def hide(data, blocks=True):
-    """Hides a box of the data's cells and a box of its points by ghost arrays."""
-    dimensions = data.GetDimensions()
-    cells = numpy.zeros([n - 1 for n in reversed(dimensions)], numpy.uint8)
+def hide(data, points=True):
+    """Hides a box of the data's cells and, if asked for, a box of its points by ghost arrays."""
+    shape = list(reversed(data.GetDimensions()))
+    cells, others = numpy.zeros([n - 1 for n in shape], numpy.uint8), numpy.zeros(shape, numpy.uint8)
     cells[:, :18, :15] = vtk.vtkDataSetAttributes.HIDDENCELL
-    points = numpy.zeros(list(reversed(dimensions)), numpy.uint8)
-    points[22:, 25:, 25:] = vtk.vtkDataSetAttributes.HIDDENPOINT
-    for array, attributes in (cells, data.GetCellData()), (points, data.GetPointData()):
+    others[22:, 25:, 25:] = vtk.vtkDataSetAttributes.HIDDENPOINT
+    for array, attributes in ((cells, data.GetCellData()), (others, data.GetPointData()))[: 1 + points]:
         ghosts = numpy_to_vtk(array.ravel(), deep=True)
         ghosts.SetName("vtkGhostType")
         attributes.AddArray(ghosts)
@@ -131,13 +131,27 @@ def hide(data, blocks=True):
 
 @case("TestGPURayCastVolumeGhostArrays")
 def ghosts():
-    return Same(pair(hide(image(made.waves())), waving()))
+    return Same(pair(hide(image(made.waves())), waving(unit=2)))
 
 
+@case("TestGPURayCastVolumeGhostArraysCellData")
 def ghosts_of_cells():
-    return Same(pair(hide(image(made.waves(), cells=True)), waving()))
+    """In the reference what lies between the centre of a hidden cell and the centres around it is transparent."""
+    shown, values = waving(unit=2), numpy.pad(made.waves().astype(float), 1, mode="edge")
+    centres = [numpy.concatenate([[0], numpy.arange(40) + 0.5, [40]])] * 3
+
+    def field(axes, _, points):
+        return trilinear(centres, values, points)
+
+    def inside(points):
+        return (points[..., 0] >= 15.5) | (points[..., 1] >= 18.5)
+
+    both = pair(hide(image(made.waves(), cells=True), points=False), shown)
+    exact = composite(image(numpy.zeros((41, 41, 41), numpy.float32)), shown, step=0.1, field=field, inside=inside)
+    return Different([both], reference=beside(both, exact))
 
 
+@case("TestGPURayCastVolumeUniformGridBlanking")
 def blanking():
     source = image(made.waves())
     data = vtk.vtkUniformGrid()
@@ -146,4 +160,4 @@ def blanking():
         for j in range(20, 40):
             for i in range(20, 40):
                 data.BlankPoint(i + 40 * (j + 40 * k))
-    return Same(pair(data, waving()))
+    return Same(pair(data, waving(unit=2)))

@@ -9,7 +9,8 @@ MOST_OF_SAME = 0.6, 8  # mean and maximum of 255 that may be called the same
 NUMBER = r"([\d.]+)"
 PAIR = rf"mean {NUMBER}, maximum {NUMBER}"
 VERDICTS = (
-    (Different, rf"differs: {PAIR} because (?P<why>.+?)(?:; where (?P<how>[^;]+), {PAIR})?(?:; from the reference ours {NUMBER}, VTK's {NUMBER})?"),
+    (Different, rf"differs: {PAIR} because (?P<why>.+?)(?:; where (?P<how>[^;]+), {PAIR})?"
+                rf"(?:; from the reference ours {NUMBER}, VTK's {NUMBER})?"),
     (Better, rf"better: we hold (?:{NUMBER} )?(?P<we>.+?) / VTK fails (?:{NUMBER} )?(?P<vtk>.+)"),
     (Refused, r"refused: (?P<sentence>.+)"),
     (Same, rf"same: {PAIR}"),
