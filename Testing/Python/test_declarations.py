@@ -10,6 +10,12 @@ import subprocess
 import sys
 import tempfile
 
+try:
+    import numpy  # which the package needs
+except ImportError:
+    print("SKIPPED: no NumPy")
+    sys.exit(77)
+
 import stratus_volume
 from stratus_volume import _declarations as c
 
