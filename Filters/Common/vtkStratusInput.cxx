@@ -286,5 +286,48 @@ bool vtkStratusImageView::SetGhosts(vtkDataSet* image, bool cells, std::string& 
     volume.cell_ghosts = cellGhosts->GetPointer(0);
     volume.revision = Mix(volume.revision, cellGhosts->GetMTime());
   }
+  if (pointGhosts && cells) {
+    volume.revision = Mix(volume.revision, pointGhosts->GetMTime());
+    this->HideCellsAtPoints(image, pointGhosts, cellGhosts);
+    volume.cell_ghosts = this->CellGhosts.data();
+  }
   return true;
+}
+
+// Where values are of cells, the core looks at no points: cells that touch a hidden point are marked here, as vtkUniformGrid hides them.
+void vtkStratusImageView::HideCellsAtPoints(vtkDataSet* image, vtkUnsignedCharArray* points, vtkUnsignedCharArray* cells)
+{
+  const uint64_t revision = Mix(Mix(Mix(1, points->GetMTime()), cells ? cells->GetMTime() : 0), image->GetMTime());
+  if (revision == this->CellGhostsRevision) {
+    return;
+  }
+  this->CellGhostsRevision = revision;
+  const int64_t* const count = this->Volume.dimensions; // of cells
+  this->CellGhosts.assign(static_cast<size_t>(image->GetNumberOfCells()), 0);
+  if (cells) {
+    std::copy(cells->GetPointer(0), cells->GetPointer(0) + cells->GetNumberOfTuples(), this->CellGhosts.begin());
+  }
+  int places[3] = { 1, 1, 1 }; // points along an axis; one layer of points bears one layer of cells
+  if (vtkImageData* regular = vtkImageData::SafeDownCast(image)) {
+    regular->GetDimensions(places);
+  } else if (vtkRectilinearGrid* grid = vtkRectilinearGrid::SafeDownCast(image)) {
+    grid->GetDimensions(places);
+  }
+  vtkIdType point = 0;
+  for (int64_t k = 0; k < places[2]; ++k) {
+    for (int64_t j = 0; j < places[1]; ++j) {
+      for (int64_t i = 0; i < places[0]; ++i, ++point) {
+        if (!(points->GetValue(point) & STRATUS_GHOST_HIDDEN_POINT)) {
+          continue;
+        }
+        for (int64_t z = std::max<int64_t>(k - 1, 0); z <= std::min(k, count[2] - 1); ++z) {
+          for (int64_t y = std::max<int64_t>(j - 1, 0); y <= std::min(j, count[1] - 1); ++y) {
+            for (int64_t x = std::max<int64_t>(i - 1, 0); x <= std::min(i, count[0] - 1); ++x) {
+              this->CellGhosts[static_cast<size_t>((z * count[1] + y) * count[0] + x)] |= STRATUS_GHOST_HIDDEN_CELL;
+            }
+          }
+        }
+      }
+    }
+  }
 }

@@ -23,6 +23,7 @@ class vtkInformationVector;
 class vtkMatrix4x4;
 class vtkPiecewiseFunction;
 class vtkRectilinearGrid;
+class vtkUnsignedCharArray;
 class vtkVolumeProperty;
 
 // A view of one array of an image or a rectilinear grid, both called image here. It copies the values where the array's memory is not one
@@ -46,10 +47,13 @@ private:
   void SetGeometry(vtkImageData* image);
   bool SetCoordinates(vtkRectilinearGrid* grid, std::string& error);
   bool SetGhosts(vtkDataSet* image, bool cells, std::string& error);
+  void HideCellsAtPoints(vtkDataSet* image, vtkUnsignedCharArray* points, vtkUnsignedCharArray* cells);
 
   stratus_volume Volume;
   std::vector<double> Coordinates[3]; // of a rectilinear grid
   double CropOffset[3] = { 0, 0, 0 };
+  std::vector<uint8_t> CellGhosts;      // where values are of cells and points are hidden
+  uint64_t CellGhostsRevision = 0;      // 0: there are none
   vtkSmartPointer<vtkDataArray> Source; // kept alive, so that no new array can get the same address
   vtkSmartPointer<vtkDataArray> Plain;
   vtkMTimeType PlainTime = 0;

@@ -110,6 +110,45 @@ void Blanking()
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
 }
 
+// A hidden point hides the cells that touch it, where values are of cells, too.
+void HiddenPointsOfCells()
+{
+  Scene scene(64, 48);
+  vtkImageData* image = scene.Image;
+  int count[3];
+  image->GetDimensions(count);
+  FillField(image, true, "of cells");
+  scene.Mapper->SetScalarModeToUseCellData();
+  const std::vector<float> plain = scene.Picture();
+  vtkNew<vtkUnsignedCharArray> points, cells;
+  points->SetName(vtkDataSetAttributes::GhostArrayName());
+  points->SetNumberOfTuples(image->GetNumberOfPoints());
+  points->Fill(0);
+  cells->SetName(vtkDataSetAttributes::GhostArrayName());
+  cells->SetNumberOfTuples(image->GetNumberOfCells());
+  cells->Fill(0);
+  const int at[3][3] = { { 11, 11, 11 }, { 22, 17, 14 }, { count[0] - 1, 0, 1 } }; // within the blobs, and at the border
+  for (const int* p : at) {
+    points->SetValue((p[2] * count[1] + p[1]) * count[0] + p[0], vtkDataSetAttributes::HIDDENPOINT);
+    for (int c = 0; c < 8; ++c) {
+      const int i = p[0] - (c & 1), j = p[1] - (c >> 1 & 1), k = p[2] - (c >> 2);
+      if (i >= 0 && j >= 0 && k >= 0 && i < count[0] - 1 && j < count[1] - 1 && k < count[2] - 1) {
+        cells->SetValue((k * (count[1] - 1) + j) * (count[0] - 1) + i, vtkDataSetAttributes::HIDDENCELL);
+      }
+    }
+  }
+  image->GetCellData()->AddArray(cells);
+  const std::vector<float> hidden = scene.Picture();
+  image->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  CHECK(hidden != plain && scene.Picture() == plain, "hidden cells change nothing, or stay");
+  image->GetPointData()->AddArray(points);
+  CHECK(scene.Picture() == hidden, "hidden points do not hide the cells at them");
+  points->Fill(0);
+  points->Modified();
+  CHECK(scene.Picture() == plain, "cells at points that are shown again stay hidden");
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+}
+
 void Cropping()
 {
   Scene scene;
@@ -204,6 +243,7 @@ int main()
   Types();
   Layouts();
   Blanking();
+  HiddenPointsOfCells();
   Cropping();
   Clipping();
   SingleLayers();

@@ -116,16 +116,16 @@ def depth_pass():
     return Different([pair(image(), shown, settings)], [pair(image(), shown)])
 
 
-def hide(data, points=True):
-    """Hides a box of the data's cells and, if asked for, a box of its points by ghost arrays."""
+def hide(data):
+    """Hides a box of the data's cells and a box of its points by ghost arrays."""
     shape = list(reversed(data.GetDimensions()))
-    cells, others = numpy.zeros([n - 1 for n in shape], numpy.uint8), numpy.zeros(shape, numpy.uint8)
+    cells, points = numpy.zeros([n - 1 for n in shape], numpy.uint8), numpy.zeros(shape, numpy.uint8)
     cells[:, :18, :15] = vtk.vtkDataSetAttributes.HIDDENCELL
-    others[22:, 25:, 25:] = vtk.vtkDataSetAttributes.HIDDENPOINT
-    for array, attributes in ((cells, data.GetCellData()), (others, data.GetPointData()))[: 1 + points]:
-        ghosts = numpy_to_vtk(array.ravel(), deep=True)
-        ghosts.SetName("vtkGhostType")
-        attributes.AddArray(ghosts)
+    points[22:, 25:, 25:] = vtk.vtkDataSetAttributes.HIDDENPOINT
+    for array, attributes in (cells, data.GetCellData()), (points, data.GetPointData()):
+        ghosts_ = numpy_to_vtk(array.ravel(), deep=True)
+        ghosts_.SetName("vtkGhostType")
+        attributes.AddArray(ghosts_)
     return data
 
 
@@ -136,7 +136,7 @@ def ghosts():
 
 @case("TestGPURayCastVolumeGhostArraysCellData")
 def ghosts_of_cells():
-    """In the reference what lies between the centre of a hidden cell and the centres around it is transparent."""
+    """A hidden point hides the cells at it. In the reference all between the centre of a hidden cell and those around it is transparent."""
     shown, values = waving(unit=2), numpy.pad(made.waves().astype(float), 1, mode="edge")
     centres = [numpy.concatenate([[0], numpy.arange(40) + 0.5, [40]])] * 3
 
@@ -144,9 +144,10 @@ def ghosts_of_cells():
         return trilinear(centres, values, points)
 
     def inside(points):
-        return (points[..., 0] >= 15.5) | (points[..., 1] >= 18.5)
+        x, y, z = numpy.moveaxis(points, -1, 0)
+        return ((x >= 15.5) | (y >= 18.5)) & ((x <= 23.5) | (y <= 23.5) | (z <= 20.5))
 
-    both = pair(hide(image(made.waves(), cells=True), points=False), shown)
+    both = pair(hide(image(made.waves(), cells=True)), shown)
     exact = composite(image(numpy.zeros((41, 41, 41), numpy.float32)), shown, step=0.1, field=field, inside=inside)
     return Different([both], reference=beside(both, exact))
 

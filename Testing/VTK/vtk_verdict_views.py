@@ -69,7 +69,7 @@ def camera_inside_transformation():
 
 @case("TestGPURayCastCameraInsideNonUniformScaleTransform")
 def camera_inside_scale():
-    """VTK takes lengths along rays in the volume's own coordinates. Where all axes have one scale, a unit that is as much longer undoes it."""
+    """VTK takes lengths along rays in the volume's own coordinates. Where all axes have one scale, a unit multiplied by it is as long."""
 
     def place(volume):
         volume.SetScale(1.4, 0.8, 1.1)
