@@ -70,8 +70,8 @@ def crops():
     mapper, pairs = vtk.vtkFixedPointVolumeRayCastMapper(), []
     for kind in kinds:
         getattr(mapper, "SetCroppingRegionFlagsTo" + kind)()
-        pairs.append(pair(image(), look(unit=4), crop(mapper.GetCroppingRegionFlags()), step=0.05))
-    return Same(*pairs, *(pair(image(), look(unit=4), crop(flags), step=0.05) for flags in (24600, 0o123456701)))
+        pairs.append(pair(image(made.waves()), waving(unit=4), crop(mapper.GetCroppingRegionFlags()), step=0.05))
+    return Same(*pairs, *(pair(image(made.waves()), waving(unit=4), crop(flags), step=0.05) for flags in (24600, 0o123456701)))
 
 
 @case("TestGPURayCastCropping1")
