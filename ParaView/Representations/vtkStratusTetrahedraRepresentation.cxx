@@ -3,6 +3,7 @@
 
 #include "vtkStratusCompositePass.h"
 #include "vtkStratusLODVolume.h"
+#include "vtkStratusPanelUpdate.h"
 #include "vtkStratusRanks.h"
 #include "vtkStratusScalarChoice.h"
 #include "vtkStratusSolidColor.h"
@@ -72,7 +73,7 @@ vtkSmartPointer<vtkDataObject> Copy(vtkDataObject* data)
 
 vtkStandardNewMacro(vtkStratusTetrahedraRepresentation);
 
-vtkStratusTetrahedraRepresentation::vtkStratusTetrahedraRepresentation() : Solid(new stratus::SolidColor)
+vtkStratusTetrahedraRepresentation::vtkStratusTetrahedraRepresentation() : Solid(new stratus::SolidColor), Panel(new stratus::PanelUpdate)
 {
   this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
   this->Actor->SetProperty(this->Property);
@@ -243,6 +244,7 @@ bool vtkStratusTetrahedraRepresentation::AddToView(vtkView* view)
     return false;
   }
   render_view->GetRenderer()->AddActor(this->Actor);
+  this->Panel->Enter(render_view->GetRenderer(), this);
   vtkStratusCompositePass::Enter(
     render_view->GetRenderer(), this, [this](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>& boxes) {
       this->ClipTo(boxes, ranks->GetLocalProcessId());
@@ -257,6 +259,7 @@ bool vtkStratusTetrahedraRepresentation::RemoveFromView(vtkView* view)
     return false;
   }
   render_view->GetRenderer()->RemoveActor(this->Actor);
+  this->Panel->Leave();
   vtkStratusCompositePass::Leave(render_view->GetRenderer(), this);
   return this->Superclass::RemoveFromView(view);
 }

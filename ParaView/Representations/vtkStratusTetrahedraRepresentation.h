@@ -27,8 +27,9 @@ class vtkPiecewiseFunction;
 class vtkPolyDataMapper;
 class vtkStratusTetrahedraMapper;
 namespace stratus {
+class PanelUpdate;
 class SolidColor;
-}
+} // namespace stratus
 
 class STRATUSPARAVIEWREPRESENTATIONS_EXPORT vtkStratusTetrahedraRepresentation : public vtkVolumeRepresentation
 {
@@ -115,6 +116,7 @@ private:
   void ClipTo(const std::vector<vtkBoundingBox>& boxes, int rank);
 
   std::unique_ptr<stratus::SolidColor> Solid;
+  std::unique_ptr<stratus::PanelUpdate> Panel;
   vtkNew<vtkStratusTetrahedraMapper> Mapper;
   vtkNew<vtkPolyDataMapper> OutlineMapper;
   vtkSmartPointer<vtkDataObject> Cache; // what of the input this rank draws

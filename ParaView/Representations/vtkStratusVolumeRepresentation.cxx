@@ -4,6 +4,7 @@
 #include "vtkStratusCompositePass.h"
 #include "vtkStratusLODVolume.h"
 #include "vtkStratusMultiBlockVolumeMapper.h"
+#include "vtkStratusPanelUpdate.h"
 #include "vtkStratusRanks.h"
 #include "vtkStratusSolidColor.h"
 #include "vtkStratusVolumeMapper.h"
@@ -29,7 +30,7 @@
 
 vtkStandardNewMacro(vtkStratusVolumeRepresentation);
 
-vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation() : Solid(new stratus::SolidColor)
+vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation() : Solid(new stratus::SolidColor), Panel(new stratus::PanelUpdate)
 {
   this->VolumeMapper = vtkSmartPointer<vtkStratusMultiBlockVolumeMapper>::New();
   this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
@@ -192,6 +193,7 @@ bool vtkStratusVolumeRepresentation::AddToView(vtkView* view)
 {
   if (auto* render_view = vtkPVRenderView::SafeDownCast(view)) {
     vtkRenderer* renderer = render_view->GetRenderer();
+    this->Panel->Enter(renderer, this);
     vtkStratusCompositePass::Enter(renderer, this,
       [this, renderer](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>&) { this->AgreeOnSampling(renderer, ranks); });
   }
@@ -201,6 +203,7 @@ bool vtkStratusVolumeRepresentation::AddToView(vtkView* view)
 bool vtkStratusVolumeRepresentation::RemoveFromView(vtkView* view)
 {
   if (auto* render_view = vtkPVRenderView::SafeDownCast(view)) {
+    this->Panel->Leave();
     vtkStratusCompositePass::Leave(render_view->GetRenderer(), this);
   }
   return this->Superclass::RemoveFromView(view);

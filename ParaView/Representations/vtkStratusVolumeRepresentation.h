@@ -26,8 +26,9 @@ class vtkRenderer;
 class vtkStratusMultiBlockVolumeMapper;
 class vtkStratusVolumeMapper;
 namespace stratus {
+class PanelUpdate;
 class SolidColor;
-}
+} // namespace stratus
 
 class STRATUSPARAVIEWREPRESENTATIONS_EXPORT vtkStratusVolumeRepresentation : public vtkImageVolumeRepresentation
 {
@@ -114,6 +115,7 @@ private:
   void AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks);
 
   std::unique_ptr<stratus::SolidColor> Solid;
+  std::unique_ptr<stratus::PanelUpdate> Panel;
   int BlendMode = 0;
   int Projection = 0;
   int Sampling = 0; // of the user, as are the next two

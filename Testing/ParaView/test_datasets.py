@@ -58,7 +58,6 @@ def statistics(shown, view):
     for method in "March", "Project":
         shown.StratusCellsMethod = method
         simple.Render(view)
-        shown.SMProxy.UpdatePropertyInformation()
         check(shown.StratusCellsMethodUsed == method.lower() and shown.StratusCellsReason and shown.StratusCellsDeviceUsed,
               f"method, reason and device of {method}: {shown.StratusCellsMethodUsed}, {shown.StratusCellsReason}, {shown.StratusCellsDeviceUsed}")
         check(shown.StratusCellsTetrahedra >= 5 * 39 * 35 * 29 and shown.StratusCellsLeftOut == 0, f"{shown.StratusCellsTetrahedra} tetrahedra")

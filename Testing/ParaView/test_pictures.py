@@ -128,14 +128,12 @@ def filters(cloud, shown, view, before):
 def statistics(shown):
     """The panel tells of the last picture, whose step was set to 5."""
     simple.Render()
-    shown.SMProxy.UpdatePropertyInformation()
     check(shown.StratusSamplesTaken > 0 and shown.StratusCastTime > 0 and shown.StratusDeviceUsed, "samples, time and device are told")
     by_cells = shown.StratusSamplingUsed == "cells"
     check(shown.StratusUsedSampleDistance == (0 if by_cells else 5), f"a step of {shown.StratusUsedSampleDistance} by {shown.StratusSamplingUsed}")
     check(("cell error" if by_cells else "sample distance 5") in shown.StratusReason, f"the reason: {shown.StratusReason}")
     shown.StratusSampling = "Midpoint"
     simple.Render()
-    shown.SMProxy.UpdatePropertyInformation()
     check(shown.StratusUsedSampleDistance == 5, "the step is told")
     check(shown.StratusStructureUsed == "hybrid" and shown.StratusSamplingUsed == "midpoint" and shown.StratusReason, "what was chosen is told")
 
