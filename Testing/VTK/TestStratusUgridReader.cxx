@@ -7,6 +7,7 @@
 #include "vtkDataArray.h"
 #include "vtkPointData.h"
 #include "vtkStratusUgridReader.h"
+#include "vtkStringArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <functional>
@@ -93,6 +94,8 @@ void test_delft(const std::string& folder)
   check_cells(grid);
   check(
     r.reader->GetNumberOfVariables() == 5 && std::string(r.reader->GetNameOfVariable(0)) == "mesh2d_sa1", "variables, layered ones first");
+  vtkStringArray* names = r.reader->GetNamesOfVariables();
+  check(names->GetNumberOfValues() == 5 && names->GetValue(0) == "mesh2d_sa1", "all names in one array");
   for (int node = 0; node < 5; ++node) {
     check(near(height(grid, node, 0), -10) && near(height(grid, node, 1), -5) && near(height(grid, node, 2), 0), "sigma at rest");
   }
