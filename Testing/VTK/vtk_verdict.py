@@ -166,6 +166,7 @@ def nothing(*_):
 def picture(kind, data, look, settings=nothing, place=nothing, scene=nothing, camera=(30, 20, 1.3), step=STEP, size=SIZE, then=None):
     """Draws data by a mapper of this kind. settings(mapper), place(volume) and scene(renderer) say what else there is; then(volume), what
     changes after a first picture."""
+    vtk.vtkMath.RandomSeed(1)  # VTK sorts tetrahedra around random ones, and with them changes the order of those as far away
     mapper = kind()
     mapper.SetInputDataObject(data)
     fine(mapper, step)
