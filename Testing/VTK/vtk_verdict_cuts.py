@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Clipping planes, crop regions and slices."""
-import numpy
 import vtk
 
 import vtk_verdict_data as made
-from vtk_verdict import FIXED, GPU, Different, Same, case, pair
+from vtk_verdict import Different, Same, case, pair
 from vtk_verdict_data import image, look
-from vtk_verdict_modes import mode, waving
+from vtk_verdict_modes import waving
 
 
 def planes(*pairs):

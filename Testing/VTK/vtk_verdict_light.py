@@ -1,19 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Light and gradient opacity."""
-import numpy
 import vtk
 
 import vtk_verdict_data as made
-from vtk_verdict import FIXED, GPU, Different, Same, case, pair
+from vtk_verdict import FIXED, Different, Same, case, pair
 from vtk_verdict_cuts import planes
 from vtk_verdict_data import image, look
-from vtk_verdict_surfaces import with_actors
 
 SOLID = (0, 0), (50, 0), (75, 0.3), (255, 0.3)
 EDGES = (0, 0), (10, 0.1), (30, 1)
 # A sample's colour stays below 1, beyond which VTK's mapper cuts it off and ours adds it up.
 SHINY = dict(Ambient=0.1, Diffuse=0.5, Specular=0.4, SpecularPower=10)
-BRIGHT = dict(Ambient=0.1, Diffuse=0.9, Specular=0.4, SpecularPower=10)
 MATTE = dict(Ambient=0, Diffuse=1, Specular=0)
 
 

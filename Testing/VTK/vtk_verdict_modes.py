@@ -5,7 +5,7 @@ import vtk
 
 import vtk_verdict_data as made
 from vtk_verdict import FIXED, GPU, SMART, Different, Same, case, pair, refusal
-from vtk_verdict_data import colors, image, look, opacity
+from vtk_verdict_data import image, look
 
 INTENSITIES = dict(alpha=((0, 0), (255, 1)))
 THIN = dict(alpha=((0, 0), (20, 0), (255, 0.04)))

@@ -5,7 +5,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 import vtk_verdict_data as made
-from vtk_verdict import GPU, Different, Same, case, pair, renderers
+from vtk_verdict import Different, Same, case, pair
 from vtk_verdict_cuts import TWO
 from vtk_verdict_data import image, look
 from vtk_verdict_modes import four, waving

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Cameras, matrices, spacings and directions."""
-import numpy
 import vtk
 
 import vtk_verdict_data as made
