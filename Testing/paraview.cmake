@@ -47,7 +47,7 @@ if (STRATUS_MPIEXEC)
   set_tests_properties(paraview_ranks PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin" PROCESSORS 2)
 
   stratus_add_test(paraview_server paraview ${stratus_display} "${CMAKE_CURRENT_SOURCE_DIR}/ParaView/test_server" "${paraview}/usr/bin"
-    "${plugin_build}/lib/paraview-5.11/plugins/stratus.xml" "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview_server")
+    "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview_server")
   stratus_test_needs(paraview_server NOTHING)
   set_tests_properties(paraview_server PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin" PROCESSORS 2)
 endif ()

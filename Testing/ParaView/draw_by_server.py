@@ -33,6 +33,9 @@ for name, source in ("image", waves), ("cells", cells):
     simple.ColorBy(shown, ("POINTS", "RTData"))
     simple.GetOpacityTransferFunction("RTData").Points = [150, 0, 0.5, 0, 277, 0.1, 0.5, 0]
     shown.SetRepresentationType("Stratus Volume")
+    if shown.Representation != "Stratus Volume":
+        print(f"{name}: the plugin is not loaded, it is drawn as {shown.Representation}")
+        failures += 1
     simple.ResetCamera(view)
     simple.SaveScreenshot(os.path.join(folder, f"{name}-{ranks}.png"), view, ImageResolution=[400, 300])
     simple.Hide(source, view)
