@@ -165,6 +165,29 @@ static void far_origins_and_tiny_spacings_lose_nothing(void** state)
   case_destroy(&c);
 }
 
+/* All that shows at all is opaque then, and infinite depths would make colours NaN. */
+static void tiny_units_of_length_stay_finite(void** state)
+{
+  static const double units[] = { 1e-20, 1e-30, 1e-100, 1e-300 };
+  static const stratus_sampling rules[] = { STRATUS_SAMPLING_MIDPOINT, STRATUS_SAMPLING_PREINTEGRATED, STRATUS_SAMPLING_CELLS };
+  picture_case c;
+  case_create(*state, &c, STRATUS_FLOAT32, 24, 24, 24, 10);
+  case_camera(*state, &c, 2, 0);
+  for (size_t i = 0; i < sizeof units / sizeof *units * 3; ++i) {
+    static picture p;
+    int opaque = 0;
+    c.transfer.unit_distance = units[i / 3];
+    c.options.sampling = rules[i % 3];
+    case_render(*state, &c, &p);
+    for (size_t at = 0; at < 4 * CASE_PIXELS; ++at) {
+      assert_true(p.rgba[at] >= 0.0f && p.rgba[at] <= 1.0f);
+      opaque += at % 4 == 3 && p.rgba[at] == 1.0f;
+    }
+    assert_true(opaque > 100);
+  }
+  case_destroy(&c);
+}
+
 static void the_volumes_own_matrix_counts(void** state)
 {
   picture_case c;
@@ -332,6 +355,7 @@ int test_ray_cast(void)
     cmocka_unit_test(duplicates_are_interpolated_but_not_drawn),
     cmocka_unit_test(projections_and_places_agree),
     cmocka_unit_test(far_origins_and_tiny_spacings_lose_nothing),
+    cmocka_unit_test(tiny_units_of_length_stay_finite),
     cmocka_unit_test(the_volumes_own_matrix_counts),
     cmocka_unit_test(crop_planes_and_opaque_geometry_end_rays),
     cmocka_unit_test(a_single_layer_has_no_thickness_but_a_layer_of_cells_has),
