@@ -1,32 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """stratus_volume in scenes of pyvista, beside the volumes that VTK's own mapper draws there. `wheel` runs it where pyvista is installed."""
-import sys
 import warnings
+
+from checking import check, done, refuse
 
 import numpy
 import pyvista
 
 import stratus_volume
 from stratus_volume.pyvista import add_volume
-
-failures = 0
-
-
-def check(condition, what):
-    global failures
-    if not condition:
-        failures += 1
-        print("does not hold:", what)
-
-
-def refuse(kind, words, call, *arguments, **options):
-    try:
-        call(*arguments, **options)
-    except kind as error:
-        check(words in str(error), f"'{words}' in the error: {error}")
-    else:
-        check(False, f"{words}: {options} is refused")
-
 
 grid = pyvista.Wavelet(extent=(-12, 12, -12, 12, -12, 12))
 field = numpy.asarray(grid["RTData"]).reshape(25, 25, 25)
@@ -129,4 +111,4 @@ beside_vtk()
 composited()
 lives()
 data()
-sys.exit(1 if failures else 0)
+done()

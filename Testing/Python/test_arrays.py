@@ -1,35 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Arrays without surprises: types, orders, masks, steps, scales, and one warning that names the reason where nothing shows."""
-import sys
 import warnings
 
-try:
-    import numpy
-except ImportError:
-    print("SKIPPED: no NumPy")
-    sys.exit(77)
+from checking import ball, check, done, refuse
+
+import numpy
 
 import stratus_volume
 from stratus_volume import NothingShown, Volume, render
 
-failures = 0
 warnings.simplefilter("error")
-
-
-def check(condition, what):
-    global failures
-    if not condition:
-        failures += 1
-        print("does not hold:", what)
-
-
-def refuse(kind, words, call, *arguments, **options):
-    try:
-        call(*arguments, **options)
-    except kind as error:
-        check(words in str(error), f"'{words}' in the error: {error}")
-    else:
-        check(False, f"{words}: {options} is refused")
 
 
 def reason(data, **options):
@@ -43,16 +23,10 @@ def reason(data, **options):
     return str(told[0].message) if told else ""
 
 
-def ball(shape, center, radius):
-    z, y, x = numpy.ogrid[tuple(slice(0, n) for n in shape)]
-    square = (z - center[0]) ** 2 + (y - center[1]) ** 2 + (x - center[2]) ** 2
-    return numpy.maximum(0, 1 - square / radius**2)
-
-
 # Sampling is fixed where pictures must be the same to the bit: a probe chooses by rays, and rounds with the values.
 host = dict(device="host", size=(60, 60))
 exact = dict(sampling="midpoint", sample_distance=0.5, **host)
-field = ball((16, 18, 20), (8, 9, 10), 7)
+field = ball((16, 18, 20), (8, 9, 10), 7, numpy.float64)
 points = [(0, 0), (0.2, 0), (1, 0.6)]
 
 
@@ -313,4 +287,4 @@ reasons()
 labelled()
 vtk()
 check(stratus_volume.__doc__ and len(render.__doc__) > 1000, "help() tells")
-sys.exit(1 if failures else 0)
+done()

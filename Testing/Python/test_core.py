@@ -12,41 +12,14 @@ import threading
 import warnings
 import zlib
 
-try:
-    import numpy
-except ImportError:
-    print("SKIPPED: no NumPy")
-    sys.exit(77)
+from checking import ball, check, done, refuse
+
+import numpy
 
 import stratus_volume
 from stratus_volume import Context, Volume, render, show
 
-failures = 0
 warnings.simplefilter("error")
-
-
-def check(condition, what):
-    global failures
-    if not condition:
-        failures += 1
-        print("does not hold:", what)
-
-
-def refuse(kind, words, call, *arguments, **options):
-    try:
-        call(*arguments, **options)
-    except kind as error:
-        check(words in str(error), f"'{words}' in the error: {error}")
-    else:
-        check(False, f"{words}: {options} is refused")
-
-
-def ball(shape, center, radius):
-    """1 in the middle, 0 at the radius and beyond; shape and center along z, y, x."""
-    z, y, x = numpy.ogrid[tuple(slice(0, n) for n in shape)]
-    square = (z - center[0]) ** 2 + (y - center[1]) ** 2 + (x - center[2]) ** 2
-    return numpy.maximum(0, 1 - square / radius**2).astype(numpy.float32)
-
 
 field = ball((20, 22, 24), (10, 11, 12), 8)
 host = dict(device="host", size=(90, 60))
@@ -332,4 +305,4 @@ threads()
 freed()
 forked()
 missing()
-sys.exit(1 if failures else 0)
+done()

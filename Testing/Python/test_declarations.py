@@ -10,24 +10,10 @@ import subprocess
 import sys
 import tempfile
 
-try:
-    import numpy  # which the package needs
-except ImportError:
-    print("SKIPPED: no NumPy")
-    sys.exit(77)
+from checking import check, done
 
 import stratus_volume
 from stratus_volume import _declarations as c
-
-failures = 0
-
-
-def check(condition, what):
-    global failures
-    if not condition:
-        failures += 1
-        print("does not hold:", what)
-
 
 root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 compiler = os.environ.get("CC") or shutil.which("cc")
@@ -117,4 +103,4 @@ with tempfile.TemporaryDirectory() as folder:
         ended = subprocess.run([sys.executable, os.path.join(root, "Python", "declare.py"), os.path.join(folder, "out.py"), header],
                                capture_output=True, text=True)
         check(ended.returncode != 0 and "declare.py does not" in ended.stderr and of_it in ended.stderr, f"{text}: {ended.stderr}")
-sys.exit(1 if failures else 0)
+done()

@@ -1,34 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """stratus_volume's tetrahedra, distance fields, trees and first hits over arrays, against brute force and against the same volume."""
-import sys
 import warnings
 
-try:
-    import numpy
-except ImportError:
-    print("SKIPPED: no NumPy")
-    sys.exit(77)
+from checking import check, done, refuse
+
+import numpy
 
 from stratus_volume import NothingShown, Tetrahedra, Tree, Volume, distance_field, first_hits, render, render_tetrahedra, show
 
-failures = 0
 warnings.simplefilter("error")
-
-
-def check(condition, what):
-    global failures
-    if not condition:
-        failures += 1
-        print("does not hold:", what)
-
-
-def refuse(kind, words, call, *arguments, **options):
-    try:
-        call(*arguments, **options)
-    except kind as error:
-        check(words in str(error), f"'{words}' in the error: {error}")
-    else:
-        check(False, f"{words}: {options} is refused")
 
 
 def apart(a, b):
@@ -231,4 +211,4 @@ distances()
 hits()
 tetrahedra()
 vtk()
-sys.exit(1 if failures else 0)
+done()

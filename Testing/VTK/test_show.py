@@ -6,6 +6,9 @@ import sys
 import tempfile
 import warnings
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Python"))
+from checking import ball, check, done, refuse
+
 import numpy
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
@@ -13,31 +16,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 import stratus
 import stratus_volume
 
-failures = 0
 warnings.simplefilter("error")
-
-
-def check(condition, what):
-    global failures
-    if not condition:
-        failures += 1
-        print("does not hold:", what)
-
-
-def refuse(kind, words, call, *arguments, **options):
-    try:
-        call(*arguments, **options)
-    except kind as error:
-        check(words in str(error), f"'{words}' in the error: {error}")
-    else:
-        check(False, f"{words}: {options} is refused")
-
-
-def ball(shape, center, radius):
-    """1 in the middle, 0 at the radius and beyond; shape and center along z, y, x."""
-    z, y, x = numpy.ogrid[tuple(slice(0, n) for n in shape)]
-    square = (z - center[0]) ** 2 + (y - center[1]) ** 2 + (x - center[2]) ** 2
-    return numpy.maximum(0, 1 - square / radius**2).astype(numpy.float32)
 
 
 def shares_memory():
@@ -363,4 +342,4 @@ mappers()
 png()
 refusals()
 helps()
-sys.exit(1 if failures else 0)
+done()

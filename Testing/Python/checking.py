@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What tests of the Python packages check by. Imported first, it skips a script where NumPy is missing. A script ends by done(), with status 1
+if anything did not hold."""
+import sys
+
+try:
+    import numpy
+except ImportError:
+    print("SKIPPED: no NumPy")
+    sys.exit(77)
+
+failures = 0
+
+
+def check(condition, what):
+    global failures
+    if not condition:
+        failures += 1
+        print("does not hold:", what)
+
+
+def refuse(kind, words, call, *arguments, **options):
+    try:
+        call(*arguments, **options)
+    except kind as error:
+        check(words in str(error), f"'{words}' in the error: {error}")
+    else:
+        check(False, f"{words}: {options} is refused")
+
+
+def ball(shape, center, radius, dtype=numpy.float32):
+    """1 in the middle, 0 at the radius and beyond; shape and center along z, y, x."""
+    z, y, x = numpy.ogrid[tuple(slice(0, n) for n in shape)]
+    square = (z - center[0]) ** 2 + (y - center[1]) ** 2 + (x - center[2]) ** 2
+    return numpy.maximum(0, 1 - square / radius**2).astype(dtype)
+
+
+def done():
+    sys.exit(1 if failures else 0)
