@@ -6,8 +6,6 @@
 #include "input.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
