@@ -3,10 +3,10 @@
 include(CheckLanguage)
 
 # Named one by one: a bare find of Debian's VTK wants Qt. What consumers need is in the first list, tests and programs want the second.
-set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonTransforms ImagingCore ImagingMath IOCore
+set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonTransforms ImagingCore ImagingMath IOCore IOImage
   RenderingCore RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2)
 set(stratus_vtk_programs ChartsCore CommonColor CommonSystem FiltersCore FiltersGeneral FiltersSources ImagingSources InteractionStyle
-  IOEnSight IOExportGL2PS IOGeometry IOHDF IOImage IOLegacy IOXML IOXMLParser RenderingAnnotation
+  IOEnSight IOExportGL2PS IOGeometry IOHDF IOLegacy IOXML IOXMLParser RenderingAnnotation
   RenderingContext2D RenderingContextOpenGL2 RenderingFreeType RenderingGL2PSOpenGL2 TestingRendering ViewsContext2D)
 
 check_language(CXX)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command line draws a volume to a picture file. `stratus --help` describes it.
+#include "compare.h"
 #include "grid.h"
 #include "input.h"
 #include "options.h"
@@ -14,10 +15,10 @@
 #include <vtkDataArray.h>
 #include <vtkLogger.h>
 #include <vtkPointData.h>
+#include <vtkVersion.h>
 
 #include <algorithm>
 #include <cmath>
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -149,6 +150,34 @@ void devices()
   }
 }
 
+void version()
+{
+  std::printf("stratus %s\n", stratus_version());
+  row("VTK", vtkVersion::GetVTKVersion());
+  std::string formats;
+#ifdef STRATUS_EXR
+  formats += ", OpenEXR";
+#endif
+#ifdef STRATUS_NETCDF
+  formats += ", netCDF";
+#endif
+#ifdef STRATUS_VDB
+  formats += ", OpenVDB or NanoVDB";
+#endif
+  row("built with", formats.empty() ? "VTK's own file formats alone" : formats.substr(2));
+  const cli::context core("host", 0);
+  row("host", stratus_context_device(core));
+  const int count = stratus_device_count();
+  for (int i = 0; i < count; ++i) {
+    char name[256];
+    stratus_device_name(i, name, sizeof name);
+    row("OpenCL", cli::format("%d  %s", i, name));
+  }
+  if (count == 0) {
+    row("OpenCL", "no device");
+  }
+}
+
 // Fails for a small stack, on which OpenCL's compilers and VTK's readers crash.
 void check_stack()
 {
@@ -161,8 +190,10 @@ void check_stack()
   }
 }
 
-void run(const cli::options& o)
+// Returns false for pictures that differ.
+bool run(const cli::options& o)
 {
+  bool alike = true;
   check_stack();
   cli::set_read_timeout(o.read_timeout);
   if (o.command == "render") {
@@ -173,14 +204,19 @@ void run(const cli::options& o)
     cli::print_tree(o);
   } else if (o.command == "sort") {
     cli::print_sort(o);
+  } else if (o.command == "compare") {
+    alike = cli::compare(o);
   } else if (o.command == "devices") {
     devices();
+  } else if (o.command == "version") {
+    version();
   } else {
     std::fputs(cli::help().c_str(), stdout);
   }
   if (std::fflush(stdout) != 0) {
     throw cli::failure("cannot write to the standard output");
   }
+  return alike;
 }
 } // namespace
 
@@ -189,8 +225,7 @@ int main(int argc, char* argv[])
   // VTK's messages are reported as an exception's text, so VTK itself must not print them.
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   try {
-    run(cli::parse(argc, argv));
-    return 0;
+    return run(cli::parse(argc, argv)) ? 0 : 1;
   } catch (const cli::usage& error) {
     std::fprintf(stderr, "stratus: %s\nstratus: --help tells how\n", error.what());
     return 2;

@@ -30,7 +30,9 @@ std::string help()
   stratus info INPUT [--array NAME]           tell what is in a file or scene: sizes, arrays, kinds of cells
   stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes
   stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells from 16 views, and count what comes out wrong
+  stratus compare A B [options]               tell by how much two pictures differ (.exr, .png ...), and whether that is too much
   stratus devices                             list the OpenCL devices
+  stratus --version                           tell the versions of what this consists of, and the OpenCL devices
   stratus --help
 
 INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png .hdf .vtkhdf .vdb .nvdb and what else VTK reads as an
@@ -112,8 +114,18 @@ Trees
 Orders
   --depth N               planes between the mesh and a leaf, 0..16 (default 3)
 
+Comparisons: each limit that is given must hold; without any the pictures must be the same to the bit
+  --exact                 all channels have the same bits
+  --tolerance E           the root mean square difference of the colours in 0..1, over the pixels that are not 0 in both, is at most E
+  --maximum D             no component of a colour differs by more than D, in 0..1
+  --ssim S                the structural similarity is at least S, -1..1; 1 is the same
+  --difference OUT        a picture of the differences: .png stretched so that the largest is white, .exr as they are
+  --json OUT              what was found, as JSON
+  --junit OUT             the verdict, as a test of JUnit's form
+
 The stack must be allowed at least 256 KiB (ulimit -s).
-The exit status is 0 only if the picture was written whole; 1 if something failed, 2 if the command was not understood.
+The exit status is 0 only if the picture was written whole, or pictures are alike; 1 if something failed or pictures differ, 2 if the
+command was not understood.
 
   stratus render cloud -o cloud.png
   stratus render head.mha -o head.png --opacity "0:0,300:0,1500:.3" --color gray --azimuth 120 --size 1024x768
@@ -309,6 +321,11 @@ void set_frames(options& o, const std::string& word, const std::string& value)
   o.frames = value;
 }
 
+void set_tolerance(options& o, const std::string& word, const std::string& value)
+{
+  (o.command == "compare" ? o.largest_mean : o.tolerance) = not_negative(value, word);
+}
+
 using text = const std::string&;
 
 // In the order of help().
@@ -339,7 +356,7 @@ constexpr struct {
   { "--zoom", [](options& o, text word, text value) { o.zoom = within(value, word, 0.15, 1e6); } },
   { "--up", set_up },
   { "--sample-distance", keep_positive<&options::sample_distance> },
-  { "--tolerance", keep_not_negative<&options::tolerance> },
+  { "--tolerance", set_tolerance },
   { "--sampling", [](options& o, text, text value) { o.sampling = sampling_named(value); } },
   { "--cell-error", keep_positive<&options::cell_error> },
   { "--jitter", [](options& o, text word, text value) { o.jitter = whole_number(value, word, 0, std::numeric_limits<int>::max()); } },
@@ -357,6 +374,11 @@ constexpr struct {
   { "--lower", keep_bound<&options::lower> },
   { "--upper", keep_bound<&options::upper> },
   { "--depth", [](options& o, text word, text value) { o.depth = whole_number(value, word, 0, 16); } },
+  { "--maximum", keep_not_negative<&options::largest_difference> },
+  { "--ssim", [](options& o, text word, text value) { o.least_ssim = within(value, word, -1.0, 1.0); } },
+  { "--difference", keep<&options::difference> },
+  { "--json", keep<&options::json> },
+  { "--junit", keep<&options::junit> },
 };
 
 constexpr struct {
@@ -371,6 +393,7 @@ constexpr struct {
   { "--parallel", &options::parallel },
   { "--audit", &options::audit },
   { "--report", &options::report },
+  { "--exact", &options::exact },
 };
 
 // Finds a word in a table. Returns nullptr where the table lacks it.
@@ -457,7 +480,11 @@ void check_complete(const options& o)
     if (o.lower > o.upper) {
       throw usage(format("--lower: %g is above --upper %g", o.lower, o.upper));
     }
-  } else if (o.command != "devices" && o.command != "help") {
+  } else if (o.command == "compare") {
+    if (o.source.empty() || o.baseline.empty()) {
+      throw usage("compare: which pictures? Give compare A B");
+    }
+  } else if (o.command != "devices" && o.command != "version" && o.command != "help") {
     throw usage(o.command.empty() ? "no command" : "unknown command '" + o.command + "'");
   }
 }
@@ -470,6 +497,10 @@ options parse(int argc, char* argv[])
     const std::string word = argv[i];
     if (word == "--help" || word == "-h") {
       o.command = "help";
+      return o;
+    }
+    if (word == "--version") {
+      o.command = "version";
       return o;
     }
     if (const auto* entry = find_word(with_value, word)) {
@@ -488,10 +519,14 @@ options parse(int argc, char* argv[])
       o.command = word;
     } else if (o.source.empty()) {
       o.source = word;
+    } else if (o.command == "compare" && o.baseline.empty()) {
+      o.baseline = word;
     } else if (o.command == "render" && o.companions.size() + 1 < STRATUS_SEVERAL_MAX) {
       o.companions.push_back({ word, "", "", "", "", 0.0 });
     } else {
-      throw usage("one INPUT at a time, or of render up to " + std::to_string(STRATUS_SEVERAL_MAX) + ": '" + word + "' is too many");
+      throw usage((o.command == "compare" ? "compare takes two pictures"
+                                          : "one INPUT at a time, or of render up to " + std::to_string(STRATUS_SEVERAL_MAX)) +
+        ": '" + word + "' is too many");
     }
   }
   check_complete(o);

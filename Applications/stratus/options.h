@@ -17,7 +17,7 @@ struct companion {
 };
 
 struct options {
-  std::string command; // render, info, tree, sort, devices, help
+  std::string command; // render, info, tree, sort, compare, devices, version, help
   std::string source;
   std::vector<companion> companions; // render: the INPUTs behind the first
   std::string output;
@@ -70,6 +70,10 @@ struct options {
   std::string mask_raw; // what a mask in a .raw file does not tell
   int jitter = -1;      // seed, or -1: none
   stratus_normals normals = STRATUS_NORMALS_FACES;
+  // compare: what vtkStratusImageTest calls by similar names
+  std::string baseline, difference, json, junit;
+  bool exact = false;
+  double largest_mean = -1.0, largest_difference = -1.0, least_ssim = -2.0;
   stratus_structure structure = STRATUS_STRUCTURE_AUTO;
   stratus_sampling sampling = STRATUS_SAMPLING_AUTO;
 };

@@ -74,6 +74,8 @@ def pictures_as_floats():
     data = open(path, "rb").read()
     check(data[:4] == b"\x76\x2f\x31\x01" and all(channel + b"\0\x02\0\0\0" in data for channel in (b"R", b"G", b"B", b"A")),
           "four channels of floats in an EXR file")
+    again = values_of(opened(path, "StratusEXRReader"), "RGBA")
+    check((again == numpy.arange(140, dtype=numpy.float32).reshape(35, 4) / 139).all(), "which come back")
 
 
 def mesh_in_layers():
