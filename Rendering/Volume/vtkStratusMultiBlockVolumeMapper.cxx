@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusMultiBlockVolumeMapper.h"
 
+#include "vtkStratusAMR.h"
 #include "vtkStratusJointPicture.h"
 #include "vtkStratusVolumeMapperInternals.h"
 
@@ -18,8 +19,10 @@
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkSmartPointer.h"
+#include "vtkUniformGridAMR.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
 
 #include <algorithm>
 #include <iterator>
@@ -77,7 +80,8 @@ public:
   Internals();
   ~Internals();
 
-  std::vector<Block> Find(vtkDataObject* input, vtkStratusMultiBlockVolumeMapper* mapper, std::string& warning);
+  // `error` is set where nothing can be drawn.
+  std::vector<Block> Find(vtkStratusMultiBlockVolumeMapper* mapper, vtkVolume* volume, std::string& warning, std::string& error);
   void Configure(vtkStratusMultiBlockVolumeMapper* from, const std::vector<Block>& blocks); // makes a mapper of each block
   void Configure(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to) const;
   bool Measure(vtkRenderer* renderer, vtkVolume* volume, double choice[3]); // vtkStratusMultiBlockVolumeMapper::MeasureSampling()
@@ -88,14 +92,22 @@ public:
   std::vector<vtkSmartPointer<vtkStratusVolumeMapper>> Mappers; // of the blocks, in the input's order
   vtkStratusJointPicture Picture;
   std::string Error, Warning;
+  bool IsRefined = false; // whether the input is AMR
 
 private:
   bool OnProgress();
+  std::vector<Block> FindBlocks(vtkDataObject* input, vtkStratusMultiBlockVolumeMapper* mapper, std::string& warning) const;
+  std::vector<Block> FindRefined(vtkUniformGridAMR* input, vtkStratusMultiBlockVolumeMapper* mapper, vtkVolume* volume, std::string& error);
   bool Describe(vtkRenderer* renderer, vtkVolume* volume, std::string& error);
   bool PrepareContext(std::string& error);
   bool Cast(const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error);
 
   vtkStratusContext Context;
+  vtkStratusAMR Refined;        // of the input, where it is AMR
+  std::string RefinedError;     // why there are no grids of it
+  vtkMTimeType RefinedTime = 0; // of the data that it was made of, the next three too
+  vtkDataObject* RefinedOf = nullptr;
+  std::string RefinedFor;
   std::vector<stratus_ray_caster*> Casters; // of the blocks
   std::vector<stratus_ray_cast_options> Options;
   std::vector<stratus_ray_cast_input> Inputs;
@@ -137,11 +149,64 @@ int vtkStratusMultiBlockVolumeMapper::FillInputPortInformation(int, vtkInformati
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkRectilinearGrid");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUniformGridAMR");
   return 1;
 }
 
 std::vector<Block> vtkStratusMultiBlockVolumeMapper::Internals::Find(
-  vtkDataObject* input, vtkStratusMultiBlockVolumeMapper* mapper, std::string& warning)
+  vtkStratusMultiBlockVolumeMapper* mapper, vtkVolume* volume, std::string& warning, std::string& error)
+{
+  vtkDataObject* input = mapper->GetInputDataObject(0, 0);
+  auto* refined = vtkUniformGridAMR::SafeDownCast(input);
+  this->IsRefined = refined != nullptr;
+  return refined ? this->FindRefined(refined, mapper, volume, error) : this->FindBlocks(input, mapper, warning);
+}
+
+// The grids of AMR are made when data, array or interpolation change.
+std::vector<Block> vtkStratusMultiBlockVolumeMapper::Internals::FindRefined(
+  vtkUniformGridAMR* input, vtkStratusMultiBlockVolumeMapper* mapper, vtkVolume* volume, std::string& error)
+{
+  vtkVolumeProperty* property = volume->GetProperty();
+  const bool solid = this->Settings->GetRenderMode() == vtkStratusVolumeMapper::FIRST_HIT_MODE;
+  const bool nearest = solid || property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION;
+  if (!solid &&
+    (property->GetShade() || property->HasGradientOpacity() || property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D)) {
+    error = std::string(property->GetShade()     ? "light"
+                : property->HasGradientOpacity() ? "gradient opacity"
+                                                 : "a function of two variables") +
+      " is not drawn of AMR: it follows gradients, which each grid has in its own spacing, so that borders of levels would show";
+    return {};
+  }
+  const std::string wanted = std::to_string(mapper->GetScalarMode()) + " " + std::to_string(mapper->GetArrayAccessMode()) + " " +
+    std::to_string(mapper->GetArrayId()) + " " + std::to_string(nearest) + " " + (mapper->GetArrayName() ? mapper->GetArrayName() : "");
+  const vtkMTimeType time = vtkStratusAMR::GetTime(input);
+  if (input != this->RefinedOf || time != this->RefinedTime || wanted != this->RefinedFor) {
+    const auto find = [mapper](vtkDataSet* box, bool& cells) {
+      int on_cells = 0;
+      vtkDataArray* array = vtkAbstractMapper::GetScalars(
+        box, mapper->GetScalarMode(), mapper->GetArrayAccessMode(), mapper->GetArrayId(), mapper->GetArrayName(), on_cells);
+      cells = on_cells == 1;
+      return array;
+    };
+    this->RefinedError.clear();
+    this->Refined.Set(input, find, nearest, this->RefinedError);
+    this->RefinedOf = input;
+    this->RefinedTime = time;
+    this->RefinedFor = wanted;
+  }
+  error = this->RefinedError;
+  std::vector<Block> blocks;
+  for (const auto& grid : this->Refined.GetGrids()) {
+    Block block;
+    block.Grid = grid;
+    grid->GetBounds(block.Bounds);
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
+std::vector<Block> vtkStratusMultiBlockVolumeMapper::Internals::FindBlocks(
+  vtkDataObject* input, vtkStratusMultiBlockVolumeMapper* mapper, std::string& warning) const
 {
   std::vector<vtkDataSet*> grids;
   auto* tree = vtkDataObjectTree::SafeDownCast(input);
@@ -181,6 +246,10 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
       this->Mappers[i] = vtkSmartPointer<vtkStratusVolumeMapper>::New();
     }
     this->Configure(from, this->Mappers[i]);
+    if (this->IsRefined) { // grids made here, which have the one array
+      this->Mappers[i]->SetScalarMode(VTK_SCALAR_MODE_DEFAULT);
+      this->Mappers[i]->SetArrayAccessMode(VTK_GET_ARRAY_BY_NAME);
+    }
     this->Mappers[i]->SetInputDataObject(blocks[i].Grid);
   }
   if (blocks.size() == 1) { // several have a context in common, and their mappers none
@@ -345,23 +414,25 @@ void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* 
 {
   this->GetInputAlgorithm()->Update();
   std::string error, warning;
-  const std::vector<Block> blocks = this->Internal->Find(this->GetInputDataObject(0, 0), this, warning);
+  const std::vector<Block> blocks = this->Internal->Find(this, volume, warning, error);
   auto& mappers = this->Internal->Mappers;
   this->Internal->Configure(this, blocks);
-  for (size_t i = 0; i < blocks.size(); ++i) {
+  for (size_t i = 0; i < blocks.size() && !this->Internal->IsRefined; ++i) {
     for (size_t j = 0; j < i && warning.empty(); ++j) {
       if (Overlap(blocks[i], blocks[j])) {
         warning = "blocks overlap, and are drawn one over the other";
       }
     }
   }
-  if (blocks.size() == 1) { // draws and tells by itself
+  if (!error.empty()) {
+    mappers.clear();
+  } else if (blocks.size() == 1) { // draws and tells by itself
     mappers[0]->Render(renderer, volume);
     error = mappers[0]->GetLastError();
   } else if (!blocks.empty()) {
     this->Internal->Render(renderer, volume, error);
   }
-  if (!error.empty() && error != this->Internal->Error && blocks.size() > 1) {
+  if (!error.empty() && error != this->Internal->Error && mappers.size() != 1) {
     vtkErrorMacro(<< error << "; nothing is drawn");
   }
   if (!warning.empty() && warning != this->Internal->Warning) {
@@ -379,9 +450,9 @@ vtkImageData* vtkStratusMultiBlockVolumeMapper::GetLastImage()
 
 bool vtkStratusMultiBlockVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3])
 {
-  std::string unused;
-  this->Internal->Configure(this, this->Internal->Find(this->GetInputDataObject(0, 0), this, unused));
-  return this->Internal->Measure(renderer, volume, choice);
+  std::string unused, error;
+  this->Internal->Configure(this, this->Internal->Find(this, volume, unused, error));
+  return error.empty() && this->Internal->Measure(renderer, volume, choice);
 }
 
 vtkStratusVolumeMapper* vtkStratusMultiBlockVolumeMapper::GetSettings()

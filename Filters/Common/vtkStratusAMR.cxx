@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusAMR.h"
+
+#include "vtkStratusAMRField.h"
+#include "vtkStratusAMRLeaves.h"
+#include "stratus.h"
+#include "vtkStratusArrays.h"
+
+#include "vtkAMRBox.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkOverlappingAMR.h"
+#include "vtkPointData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkSMPTools.h"
+#include "vtkUniformGrid.h"
+#include "vtkUniformGridAMR.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+namespace {
+
+using Box = vtkStratusAMRField::Box;
+using Place = vtkStratusAMRField::Place;
+
+std::string NameOf(unsigned int level, unsigned int id)
+{
+  return "box " + std::to_string(id) + " of level " + std::to_string(level);
+}
+
+// Finds how many cells of each level lie along one of the level before.
+bool FindRatios(vtkOverlappingAMR* amr, std::vector<std::array<int, 3>>& ratios, std::string& error)
+{
+  for (unsigned int level = 0; level + 1 < amr->GetNumberOfLevels(); ++level) {
+    double coarse[3], fine[3];
+    amr->GetSpacing(level, coarse);
+    amr->GetSpacing(level + 1, fine);
+    std::array<int, 3> ratio;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const double exact = coarse[axis] / fine[axis];
+      if (!(exact > 0.5 && exact < 1024.5) || std::fabs(exact - std::round(exact)) > 1e-6 * exact) {
+        error = "level " + std::to_string(level + 1) + " divides cells of level " + std::to_string(level) + " by " + std::to_string(exact) +
+          " along axis " + std::to_string(axis) + ", a whole number from 1 to 1024 is needed";
+        return false;
+      }
+      ratio[axis] = static_cast<int>(std::round(exact));
+    }
+    ratios.push_back(ratio);
+  }
+  return true;
+}
+
+// Checks that a box is where the levels' lattice says, and gives its cells.
+bool FindBox(vtkOverlappingAMR* amr, unsigned int level, unsigned int id, vtkUniformGrid* grid, Box& box, std::string& error)
+{
+  double spacing[3], origin[3];
+  int dimensions[3];
+  amr->GetSpacing(level, spacing);
+  grid->GetDimensions(dimensions);
+  grid->GetOrigin(origin); // of the point of index 0
+  const int* extent = grid->GetExtent();
+  box.Level = static_cast<int>(level);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const double own = grid->GetSpacing()[axis];
+    const double lo = (origin[axis] + own * extent[2 * axis] - amr->GetOrigin()[axis]) / spacing[axis];
+    if (dimensions[axis] < 2) {
+      error = NameOf(level, id) + " is flat along axis " + std::to_string(axis) + "; boxes of three dimensions are drawn";
+      return false;
+    }
+    if (!(std::fabs(own - spacing[axis]) <= 1e-5 * spacing[axis]) || !(std::fabs(lo) < 1e9) || std::fabs(lo - std::round(lo)) > 1e-2) {
+      error = NameOf(level, id) + " is not on its level's lattice: along axis " + std::to_string(axis) + " its spacing is " +
+        std::to_string(own) + " (the level's is " + std::to_string(spacing[axis]) + ") and it starts at cell " + std::to_string(lo);
+      return false;
+    }
+    box.Lo[axis] = static_cast<int64_t>(std::round(lo));
+    box.Hi[axis] = box.Lo[axis] + dimensions[axis] - 1;
+  }
+  return true;
+}
+
+// What is drawn of a box.
+struct Source {
+  vtkDataArray* Values = nullptr;
+  vtkUnsignedCharArray* Flags = nullptr; // of what the values are of
+  Box Where;
+};
+
+bool FindSource(vtkUniformGrid* grid, const std::string& name, bool cells, Source& source, std::string& error)
+{
+  vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(grid->GetCellData()) : grid->GetPointData();
+  const vtkIdType count = cells ? grid->GetNumberOfCells() : grid->GetNumberOfPoints();
+  if (source.Values->GetNumberOfTuples() < count) {
+    error = name + " has " + std::to_string(source.Values->GetNumberOfTuples()) + " values for " + std::to_string(count) +
+      (cells ? " cells" : " points");
+    return false;
+  }
+  return vtkStratusFindGhosts(data, count, cells ? "cells of a box" : "points of a box", source.Flags, error);
+}
+
+// Whether floats would lose digits that tell values apart: those of values that lie close together, far from 0.
+bool NeedsDoubles(const std::vector<Source>& sources)
+{
+  if (vtkDataArray::GetDataTypeSize(sources[0].Values->GetDataType()) < 4 || sources[0].Values->GetDataType() == VTK_FLOAT) {
+    return false;
+  }
+  double lo = HUGE_VAL, hi = -HUGE_VAL, range[2];
+  for (const Source& source : sources) {
+    for (int c = 0; c < source.Values->GetNumberOfComponents(); ++c) {
+      source.Values->GetFiniteRange(range, c);
+      if (range[0] <= range[1]) {
+        lo = std::min(lo, range[0]);
+        hi = std::max(hi, range[1]);
+      }
+    }
+  }
+  const double most = std::max(std::fabs(lo), std::fabs(hi));
+  return lo <= hi && (most > 1e38 || hi - lo < 0.125 * most);
+}
+
+bool IsEven(const std::vector<int64_t>& planes)
+{
+  const auto uneven = [&planes](size_t i) { return planes[i + 1] - planes[i] != planes[1] - planes[0]; };
+  for (size_t i = 1; i + 1 < planes.size(); ++i) {
+    if (uneven(i)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// An image or, where planes are not even, a rectilinear grid.
+vtkSmartPointer<vtkDataSet> MakeGrid(const std::vector<int64_t> planes[3], const double origin[3], const double unit[3])
+{
+  int dimensions[3];
+  bool even = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    dimensions[axis] = static_cast<int>(planes[axis].size());
+    even = even && IsEven(planes[axis]);
+  }
+  const auto at = [&](int axis, size_t i) { return origin[axis] + unit[axis] * static_cast<double>(planes[axis][i]); };
+  if (even) {
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->SetDimensions(dimensions);
+    image->SetOrigin(at(0, 0), at(1, 0), at(2, 0));
+    double spacing[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      spacing[axis] = unit[axis] * static_cast<double>(planes[axis][1] - planes[axis][0]);
+    }
+    image->SetSpacing(spacing);
+    return image;
+  }
+  auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
+  grid->SetDimensions(dimensions);
+  vtkNew<vtkDoubleArray> axes[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    axes[axis]->SetNumberOfTuples(dimensions[axis]);
+    for (int i = 0; i < dimensions[axis]; ++i) {
+      axes[axis]->SetValue(i, at(axis, static_cast<size_t>(i)));
+    }
+  }
+  grid->SetXCoordinates(axes[0]);
+  grid->SetYCoordinates(axes[1]);
+  grid->SetZCoordinates(axes[2]);
+  return grid;
+}
+
+// Fills the values of a leaf's grid, layer by layer.
+void Fill(
+  const vtkStratusAMRField& field, const vtkStratusAMRLeaf& leaf, const std::vector<int64_t> planes[3], bool nearest, vtkDataArray* values)
+{
+  const size_t less = nearest ? 1 : 0;
+  const size_t counts[3] = { planes[0].size() - less, planes[1].size() - less, planes[2].size() - less };
+  const auto components = static_cast<size_t>(field.GetNumberOfComponents());
+  values->SetNumberOfComponents(field.GetNumberOfComponents());
+  values->SetNumberOfTuples(static_cast<vtkIdType>(counts[0] * counts[1] * counts[2]));
+  vtkSMPTools::For(0, static_cast<vtkIdType>(counts[2]), 1, [&](vtkIdType from, vtkIdType to) {
+    vtkStratusAMRField::Cache cache;
+    std::vector<double> tuple(components);
+    for (auto k = static_cast<size_t>(from); k < static_cast<size_t>(to); ++k) {
+      auto id = static_cast<vtkIdType>(k * counts[1] * counts[0]);
+      for (size_t j = 0; j < counts[1]; ++j) {
+        for (size_t i = 0; i < counts[0]; ++i, ++id) {
+          const Place at = { planes[0][i], planes[1][j], planes[2][k] };
+          if (nearest) {
+            field.EvaluateCell(at, { planes[0][i + 1], planes[1][j + 1], planes[2][k + 1] }, cache, tuple.data());
+          } else if (leaf.Even) {
+            field.EvaluateNode(leaf.Level, at, cache, tuple.data());
+          } else {
+            field.Evaluate(at, cache, tuple.data());
+          }
+          for (size_t c = 0; c < components; ++c) {
+            values->SetComponent(id, static_cast<int>(c), tuple[c]);
+          }
+        }
+      }
+    }
+  });
+}
+} // namespace
+
+vtkMTimeType vtkStratusAMR::GetTime(vtkUniformGridAMR* amr)
+{
+  vtkMTimeType time = amr->GetMTime();
+  for (unsigned int level = 0; level < amr->GetNumberOfLevels(); ++level) {
+    for (unsigned int id = 0; id < amr->GetNumberOfDataSets(level); ++id) {
+      if (vtkUniformGrid* grid = amr->GetDataSet(level, id)) {
+        time = std::max({ time, grid->GetMTime(), grid->GetPointData()->GetMTime(), grid->GetCellData()->GetMTime() });
+      }
+    }
+  }
+  return time;
+}
+
+bool vtkStratusAMR::Set(vtkUniformGridAMR* amr, const FindArray& find, bool nearest, std::string& error)
+{
+  this->Grids.clear();
+  vtkOverlappingAMR* overlapping = vtkOverlappingAMR::SafeDownCast(amr);
+  if (!overlapping) {
+    error = std::string("data of class ") + (amr ? amr->GetClassName() : "(none)") + " are not drawn; AMR of class vtkOverlappingAMR is";
+    return false;
+  }
+  try {
+    return this->Make(overlapping, find, nearest, error);
+  } catch (const std::bad_alloc&) {
+    this->Grids.clear();
+    error = "the levels' grids need more memory than there is";
+    return false;
+  }
+}
+
+bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, bool nearest, std::string& error)
+{
+  std::vector<std::array<int, 3>> ratios;
+  if (!FindRatios(amr, ratios, error)) {
+    return false;
+  }
+  std::vector<Source> sources;
+  int type = VTK_VOID, components = 0;
+  for (unsigned int level = 0; level < amr->GetNumberOfLevels(); ++level) {
+    for (unsigned int id = 0; id < amr->GetNumberOfDataSets(level); ++id) {
+      vtkUniformGrid* grid = amr->GetDataSet(level, id);
+      if (!grid || grid->GetNumberOfPoints() == 0) {
+        continue;
+      }
+      Source source;
+      bool cells = false;
+      source.Values = find(grid, cells);
+      if (!source.Values) {
+        error = NameOf(level, id) + " lacks the array";
+        return false;
+      }
+      if (sources.empty()) {
+        this->Cells = cells;
+        this->ArrayName = source.Values->GetName() ? source.Values->GetName() : "";
+        type = source.Values->GetDataType();
+        components = source.Values->GetNumberOfComponents();
+        this->Levels = static_cast<int>(level) + 1;
+      }
+      if (cells != this->Cells || source.Values->GetDataType() != type || source.Values->GetNumberOfComponents() != components) {
+        error = NameOf(level, id) +
+          " has its array of another type or number of components than the first box, or on points where that has cells";
+        return false;
+      }
+      if (!FindBox(amr, level, id, grid, source.Where, error) || !FindSource(grid, NameOf(level, id), cells, source, error)) {
+        return false;
+      }
+      this->Levels = std::max(this->Levels, static_cast<int>(level) + 1);
+      sources.push_back(source);
+    }
+  }
+  if (sources.empty()) {
+    return true;
+  }
+  if (nearest && !this->Cells) {
+    error =
+      "nearest interpolation of AMR's values of points is not drawn: cells about points of two levels overlap. Use linear interpolation";
+    return false;
+  }
+  ratios.resize(static_cast<size_t>(this->Levels - 1));
+  vtkStratusAMRField field;
+  if (!field.Begin(ratios, this->Cells, components, error)) {
+    return false;
+  }
+  const auto hides = static_cast<unsigned char>(this->Cells ? STRATUS_GHOST_HIDDEN_CELL : STRATUS_GHOST_HIDDEN_POINT);
+  for (const Source& source : sources) {
+    const auto value = [&source](int64_t i, int c) { return source.Values->GetComponent(static_cast<vtkIdType>(i), c); };
+    const auto hidden = [&source, hides](
+                          int64_t i) { return source.Flags && (source.Flags->GetValue(static_cast<vtkIdType>(i)) & hides) != 0; };
+    if (!field.Add(source.Where, value, hidden, error)) {
+      return false;
+    }
+  }
+  if (!field.End(error)) {
+    return false;
+  }
+  double unit[3];
+  amr->GetSpacing(static_cast<unsigned int>(this->Levels - 1), unit);
+  for (double& along : unit) {
+    along *= 0.5;
+  }
+  const int drawn_type = nearest ? type : NeedsDoubles(sources) ? VTK_DOUBLE : VTK_FLOAT;
+  const vtkStratusAMRLeaves leaves(field, nearest);
+  for (const vtkStratusAMRLeaf& leaf : leaves.GetLeaves()) {
+    std::vector<int64_t> planes[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      planes[axis] = leaves.GetPlanes(leaf, axis);
+    }
+    const vtkSmartPointer<vtkDataSet> grid = MakeGrid(planes, amr->GetOrigin(), unit);
+    auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(drawn_type));
+    values->SetName(this->ArrayName.c_str());
+    Fill(field, leaf, planes, nearest, values);
+    vtkDataSetAttributes* data = nearest ? static_cast<vtkDataSetAttributes*>(grid->GetCellData()) : grid->GetPointData();
+    data->SetScalars(values);
+    this->Grids.push_back(grid);
+  }
+  this->Cells = nearest;
+  return true;
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Adaptive mesh refinement (vtkOverlappingAMR) as grids side by side that hold its field exactly. Private to the modules.
+#ifndef vtkStratusAMR_h
+#define vtkStratusAMR_h
+
+#include "vtkStratusPrivate.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkDataSet;
+class vtkOverlappingAMR;
+class vtkUniformGridAMR;
+
+class VTK_STRATUS_PRIVATE vtkStratusAMR
+{
+public:
+  // Gives a box's array and whether its values are of cells; nullptr where the box has none.
+  using FindArray = std::function<vtkDataArray*(vtkDataSet* box, bool& cells)>;
+
+  // Makes the grids: images and rectilinear grids, whose drawn array has the name of the data's, of points for linear interpolation, of
+  // cells and as they are for nearest. It is of floats, or of doubles where values lie close together, far from 0. Boxes without data, as
+  // other ranks have them, count as not there. Returns false, with the reason in `error`, where the data can't be drawn right.
+  bool Set(vtkUniformGridAMR* amr, const FindArray& find, bool nearest, std::string& error);
+  const std::vector<vtkSmartPointer<vtkDataSet>>& GetGrids() const { return this->Grids; }
+  bool HasCells() const { return this->Cells; } // whether the grids' array is of cells
+  const std::string& GetArrayName() const { return this->ArrayName; }
+  int GetNumberOfLevels() const { return this->Levels; }
+
+  // When the data or an array of theirs were modified last.
+  static vtkMTimeType GetTime(vtkUniformGridAMR* amr);
+
+private:
+  bool Make(vtkOverlappingAMR* amr, const FindArray& find, bool nearest, std::string& error);
+
+  std::vector<vtkSmartPointer<vtkDataSet>> Grids;
+  bool Cells = false;
+  std::string ArrayName;
+  int Levels = 0;
+};
+
+#endif

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusAMRField.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+constexpr int64_t Reach = INT64_C(1) << 20; // tiles along an axis, to each side of 0
+
+std::string Text(const vtkStratusAMRField::Box& box, const std::vector<vtkStratusAMRField::Box>& before)
+{
+  const auto of_level = [&box](const vtkStratusAMRField::Box& other) { return other.Level == box.Level; };
+  return "box " + std::to_string(std::count_if(before.begin(), before.end(), of_level)) + " of level " + std::to_string(box.Level);
+}
+} // namespace
+
+uint64_t vtkStratusAMRField::KeyOf(const Place& tile)
+{
+  uint64_t key = 0;
+  for (const int64_t along : tile) {
+    key = key << 21 | static_cast<uint64_t>(along + Reach);
+  }
+  return key;
+}
+
+bool vtkStratusAMRField::Begin(const std::vector<std::array<int, 3>>& ratios, bool cells, int components, std::string& error)
+{
+  this->Levels.clear();
+  this->Levels.resize(ratios.size() + 1);
+  this->Boxes.clear();
+  this->Cells = cells;
+  this->Components = components;
+  if (this->Levels.size() > 32) {
+    error = std::to_string(this->Levels.size()) + " levels of refinement, at most 32 can be drawn";
+    return false;
+  }
+  for (size_t axis = 0; axis < 3; ++axis) {
+    this->Levels.back().Cell[axis] = 2;
+    for (size_t i = ratios.size(); i-- > 0;) {
+      this->Levels[i].Ratio[axis] = ratios[i][axis];
+      this->Levels[i].Cell[axis] = this->Levels[i + 1].Cell[axis] * ratios[i][axis];
+      if (this->Levels[i].Cell[axis] > INT64_C(1) << 31) {
+        error = "cells of level " + std::to_string(i) + " are more than 2^30 of the finest ones wide";
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+vtkStratusAMRField::Tile& vtkStratusAMRField::Make(int level, const Place& cell, size_t& index)
+{
+  Place tile;
+  index = 0;
+  for (size_t axis = 3; axis-- > 0;) {
+    tile[axis] = Floor(cell[axis], Side);
+    index = index * Side + static_cast<size_t>(cell[axis] - tile[axis] * Side);
+  }
+  std::unique_ptr<Tile>& found = this->Levels[static_cast<size_t>(level)].Tiles[KeyOf(tile)];
+  if (!found) {
+    found = std::make_unique<Tile>();
+    found->Values.assign(found->State.size() * static_cast<size_t>(this->Components), 0.0);
+  }
+  return *found;
+}
+
+const vtkStratusAMRField::Tile* vtkStratusAMRField::Find(int level, const Place& cell, size_t& index, Cache& cache) const
+{
+  Place tile;
+  index = 0;
+  for (size_t axis = 3; axis-- > 0;) {
+    tile[axis] = Floor(cell[axis], Side);
+    index = index * Side + static_cast<size_t>(cell[axis] - tile[axis] * Side);
+  }
+  const uint64_t key = KeyOf(tile);
+  if (!cache.Last[level] || cache.Key[level] != key) {
+    const auto& tiles = this->Levels[static_cast<size_t>(level)].Tiles;
+    const auto found = tiles.find(key);
+    if (found == tiles.end()) {
+      return nullptr;
+    }
+    cache.Last[level] = found->second.get();
+    cache.Key[level] = key;
+  }
+  return cache.Last[level];
+}
+
+uint8_t vtkStratusAMRField::StateOf(int level, const Place& cell, Cache& cache) const
+{
+  size_t index;
+  const Tile* tile = this->Find(level, cell, index, cache);
+  return tile ? tile->State[index] : 0;
+}
+
+const double* vtkStratusAMRField::ValuesOf(int level, const Place& cell, Cache& cache) const
+{
+  size_t index;
+  const Tile* tile = this->Find(level, cell, index, cache);
+  return tile && tile->State[index] & HAS_VALUE ? tile->Values.data() + index * static_cast<size_t>(this->Components) : nullptr;
+}
+
+bool vtkStratusAMRField::Start(const Box& box, std::string& error)
+{
+  const int64_t most = Side * Reach - Side;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if (box.Hi[axis] <= box.Lo[axis] || box.Lo[axis] < -most || box.Hi[axis] > most) {
+      error = Text(box, this->Boxes) + " has the cells " + std::to_string(box.Lo[axis]) + " to " + std::to_string(box.Hi[axis] - 1) +
+        " along axis " + std::to_string(axis) + ": one at least is needed, between -" + std::to_string(most) + " and " +
+        std::to_string(most);
+      return false;
+    }
+  }
+  Cache cache;
+  Place at;
+  for (at[2] = box.Lo[2]; at[2] < box.Hi[2]; ++at[2]) {
+    for (at[1] = box.Lo[1]; at[1] < box.Hi[1]; ++at[1]) {
+      for (at[0] = box.Lo[0]; at[0] < box.Hi[0]; ++at[0]) {
+        if (this->StateOf(box.Level, at, cache) & EXISTS) {
+          error = Text(box, this->Boxes) + " overlaps another box of its level; boxes of a level must lie side by side";
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+// Marks the coarser cells that a box covers.
+bool vtkStratusAMRField::Cover(const Box& box, std::string& error)
+{
+  const Place& ratio = this->Levels[static_cast<size_t>(box.Level - 1)].Ratio;
+  Place lo, hi, at;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    lo[axis] = Floor(box.Lo[axis], ratio[axis]);
+    hi[axis] = Floor(box.Hi[axis], ratio[axis]);
+    if (lo[axis] * ratio[axis] != box.Lo[axis] || hi[axis] * ratio[axis] != box.Hi[axis]) {
+      error = "a box of level " + std::to_string(box.Level) + " has the cells " + std::to_string(box.Lo[axis]) + " to " +
+        std::to_string(box.Hi[axis] - 1) + " along axis " + std::to_string(axis) + ", which are no whole cells of level " +
+        std::to_string(box.Level - 1) + ", each " + std::to_string(ratio[axis]) + " wide";
+      return false;
+    }
+  }
+  Cache cache;
+  size_t index;
+  for (at[2] = lo[2]; at[2] < hi[2]; ++at[2]) {
+    for (at[1] = lo[1]; at[1] < hi[1]; ++at[1]) {
+      for (at[0] = lo[0]; at[0] < hi[0]; ++at[0]) {
+        if (!(this->StateOf(box.Level - 1, at, cache) & EXISTS)) {
+          error = "a box of level " + std::to_string(box.Level) + " lies where level " + std::to_string(box.Level - 1) + " has no cells";
+          return false;
+        }
+        this->Make(box.Level - 1, at, index).State[index] |= COVERED;
+      }
+    }
+  }
+  return true;
+}
+
+// Gives the cells of a level that finer ones cover these ones' field at their centres.
+void vtkStratusAMRField::TakeFiner(int level)
+{
+  const Level& own = this->Levels[static_cast<size_t>(level)];
+  Cache cache;
+  Place center, finer;
+  for (const Box& box : this->Boxes) {
+    for (finer[2] = 0; box.Level == level + 1 && finer[2] < (box.Hi[2] - box.Lo[2]) / own.Ratio[2]; ++finer[2]) {
+      for (finer[1] = 0; finer[1] < (box.Hi[1] - box.Lo[1]) / own.Ratio[1]; ++finer[1]) {
+        for (finer[0] = 0; finer[0] < (box.Hi[0] - box.Lo[0]) / own.Ratio[0]; ++finer[0]) {
+          Place cell;
+          for (size_t axis = 0; axis < 3; ++axis) {
+            cell[axis] = box.Lo[axis] / own.Ratio[axis] + finer[axis];
+            center[axis] = cell[axis] * own.Cell[axis] + own.Cell[axis] / 2;
+          }
+          size_t index;
+          Tile& tile = this->Make(level, cell, index);
+          this->EvaluateNode(level + 1, center, cache, tile.Values.data() + index * static_cast<size_t>(this->Components));
+        }
+      }
+    }
+  }
+}
+
+bool vtkStratusAMRField::End(std::string& error)
+{
+  for (const Box& box : this->Boxes) {
+    if (box.Level > 0 && !this->Cover(box, error)) {
+      return false;
+    }
+  }
+  for (int level = this->GetNumberOfLevels() - 2; this->Cells && level >= 0; --level) {
+    this->TakeFiner(level);
+  }
+  return true;
+}
+
+// Finds the coarsest level of the cells that show and touch a place; -1: there is none. octant: on which side of the place one of them
+// lies, a bit an axis.
+int vtkStratusAMRField::FindCoarsest(const Place& at, Cache& cache, int& octant) const
+{
+  for (int level = 0; level < this->GetNumberOfLevels(); ++level) {
+    int64_t cells[3][2];
+    for (int axis = 0; axis < 3; ++axis) {
+      const int64_t width = this->GetCell(level, axis);
+      cells[axis][1] = Floor(at[static_cast<size_t>(axis)], width);
+      cells[axis][0] = cells[axis][1] - (cells[axis][1] * width == at[static_cast<size_t>(axis)] ? 1 : 0);
+    }
+    for (octant = 0; octant < 8; ++octant) {
+      const Place cell = { cells[0][octant & 1], cells[1][octant >> 1 & 1], cells[2][octant >> 2] };
+      if ((this->StateOf(level, cell, cache) & (EXISTS | COVERED)) == EXISTS) {
+        return level;
+      }
+    }
+  }
+  return -1;
+}
+
+void vtkStratusAMRField::EvaluateNode(int level, const Place& at, Cache& cache, double* sums) const
+{
+  const auto components = static_cast<size_t>(this->Components);
+  int64_t first[3];
+  int counts[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const int64_t width = this->GetCell(level, axis), place = at[static_cast<size_t>(axis)];
+    first[axis] = Floor(place, width);
+    counts[axis] = 1;
+    if (this->Cells && first[axis] * width == place) { // between two cells
+      --first[axis];
+      counts[axis] = 2;
+    }
+  }
+  std::fill_n(sums, components, 0.0);
+  int found = 0;
+  for (int k = 0; k < counts[2]; ++k) {
+    for (int j = 0; j < counts[1]; ++j) {
+      for (int i = 0; i < counts[0]; ++i) {
+        if (const double* values = this->ValuesOf(level, { first[0] + i, first[1] + j, first[2] + k }, cache)) {
+          ++found;
+          for (size_t c = 0; c < components; ++c) {
+            sums[c] += values[c];
+          }
+        }
+      }
+    }
+  }
+  for (size_t c = 0; c < components && found > 1; ++c) {
+    sums[c] /= found;
+  }
+}
+
+void vtkStratusAMRField::Evaluate(const Place& at, Cache& cache, double* sums) const
+{
+  int octant = 0;
+  const int level = this->FindCoarsest(at, cache, octant);
+  const auto components = static_cast<size_t>(this->Components);
+  if (level < 0) {
+    std::fill_n(sums, components, std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  Place lo;
+  double share[3];
+  int64_t width[3];
+  bool on_node = true;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    width[axis] = this->GetCell(level, static_cast<int>(axis)) / (this->Cells ? 2 : 1);
+    lo[axis] = Floor(at[axis], width[axis]) * width[axis];
+    share[axis] = static_cast<double>(at[axis] - lo[axis]) / static_cast<double>(width[axis]);
+    on_node = on_node && lo[axis] == at[axis];
+  }
+  if (on_node) {
+    this->EvaluateNode(level, at, cache, sums);
+    return;
+  }
+  std::vector<double> corner(components);
+  std::fill_n(sums, components, 0.0);
+  for (int c = 0; c < 8; ++c) {
+    double weight = 1.0;
+    Place node = lo;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const bool upper = (c >> axis & 1) != 0;
+      weight *= upper ? share[axis] : 1.0 - share[axis];
+      node[axis] += upper ? width[axis] : 0;
+    }
+    if (weight > 0.0) {
+      this->Evaluate(node, cache, corner.data());
+      for (size_t i = 0; i < components; ++i) {
+        sums[i] += weight * corner[i];
+      }
+    }
+  }
+}
+
+bool vtkStratusAMRField::EvaluateCell(const Place& lo, const Place& hi, Cache& cache, double* values) const
+{
+  for (int level = this->GetNumberOfLevels() - 1; level >= 0; --level) {
+    Place cell;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      cell[axis] = Floor(lo[axis] + (hi[axis] - lo[axis]) / 2, this->GetCell(level, static_cast<int>(axis)));
+    }
+    if (this->StateOf(level, cell, cache) & EXISTS) {
+      std::copy_n(this->ValuesOf(level, cell, cache), static_cast<size_t>(this->Components), values);
+      return true;
+    }
+  }
+  return false;
+}
