@@ -39,6 +39,7 @@
 #include <vtkXMLPUnstructuredGridReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
+#include <vtkXMLUniformGridAMRReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUtilities.h>
 
@@ -163,6 +164,14 @@ made raw_reader(const std::string& path, const std::string& raw)
   return reader;
 }
 
+made refined(const std::string& path)
+{
+  auto reader = vtkSmartPointer<vtkXMLUniformGridAMRReader>::New();
+  reader->SetFileName(path.c_str());
+  reader->SetMaximumLevelsToReadByDefault(0); // all of them
+  return reader;
+}
+
 constexpr struct {
   const char* extension;
   made (*make)(const std::string& path);
@@ -177,6 +186,8 @@ constexpr struct {
   { ".pvtu", reader_for<vtkXMLPUnstructuredGridReader> },
   { ".vtm", reader_for<vtkXMLMultiBlockDataReader> },
   { ".vtmb", reader_for<vtkXMLMultiBlockDataReader> },
+  { ".vthb", refined },
+  { ".vth", refined },
   { ".vtk", reader_for<vtkDataSetReader> },
   { ".vtkhdf", reader_for<vtkHDFReader> },
   { ".hdf", reader_for<vtkHDFReader> },

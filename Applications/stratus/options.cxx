@@ -39,7 +39,7 @@ INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png .hd
 image) or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels, cumulus-rectilinear; to be
 drawn or told of also a rectilinear grid (.vtr .pvtr), or a grid of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu
 .vtk .hdf, TetGen's .node .ele), curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .vtmb), in steps (.pvd), of OpenFOAM (.foam,
-system/controlDict) or EnSight (.case).
+system/controlDict) or EnSight (.case); or boxes of several levels (AMR: .vthb .vth), each place by its finest cells.
 
 What is drawn
   --array NAME            point or cell array (default: the active scalars, else the first of one component); of vectors the lengths, or

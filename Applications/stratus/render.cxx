@@ -24,7 +24,7 @@ cli::routed read_apart(cli::series& in, size_t step, const cli::options& o)
   const vtkSmartPointer<vtkDataObject> shared = in.read(step);
   const auto own = vtkSmartPointer<vtkDataObject>::Take(shared->NewInstance());
   own->DeepCopy(shared);
-  return cli::route(own, o.source, o.array);
+  return cli::route(own, o.source, o.array, o.nearest || o.mode == STRATUS_MODE_FIRST_HIT);
 }
 
 // Puts what was asked for around the picture that was drawn.
@@ -194,5 +194,5 @@ void cli::render(const options& o)
     return;
   }
   const size_t step = in.find(o.time);
-  render_one(o, route(in.read(step), o.source, o.array), &in, step);
+  render_one(o, route(in.read(step), o.source, o.array, o.nearest || o.mode == STRATUS_MODE_FIRST_HIT), &in, step);
 }

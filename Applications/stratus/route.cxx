@@ -4,6 +4,7 @@
 #include "support.h"
 #include "vectors.h"
 
+#include "vtkStratusAMR.h"
 #include "vtkStratusArrays.h"
 #include "vtkStratusBlocks.h"
 
@@ -14,6 +15,8 @@
 #include <vtkPointData.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkStructuredGrid.h>
+#include <vtkUniformGrid.h>
+#include <vtkUniformGridAMR.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
@@ -157,6 +160,35 @@ bool keep_blocks(vtkCompositeDataSet* whole, const std::string& path, const std:
   return true;
 }
 
+// Makes blocks of AMR.
+void refine(vtkUniformGridAMR* amr, const std::string& path, const std::string& array, bool nearest, cli::routed& result)
+{
+  vtkStratusAMR grids;
+  std::string error;
+  int boxes = 0;
+  const auto find = [&](vtkDataSet* box, bool& on_cells) {
+    vtkDataArray* values = cli::choose_array(box, array, on_cells);
+    result.arrays = boxes++ == 0 ? names_of(box) : result.arrays;
+    return values;
+  };
+  if (!grids.Set(amr, find, nearest, error)) {
+    throw cli::failure("'" + path + "': " + error);
+  }
+  if (grids.GetGrids().empty()) {
+    throw cli::failure("'" + path + "' holds no box with values");
+  }
+  for (const auto& grid : grids.GetGrids()) { // the name that was asked for, also of a part of vectors
+    vtkDataSetAttributes* data = grids.HasCells() ? static_cast<vtkDataSetAttributes*>(grid->GetCellData()) : grid->GetPointData();
+    data->GetScalars()->SetName(array.empty() ? data->GetScalars()->GetName() : array.c_str());
+  }
+  const int levels = grids.GetNumberOfLevels();
+  result.kind = std::string("AMR: ") + std::to_string(boxes) + (boxes == 1 ? " box in " : " boxes in ") + std::to_string(levels) +
+    (levels == 1 ? " level" : " levels");
+  result.image = grids.GetGrids()[0];
+  result.blocks.assign(grids.GetGrids().begin() + 1, grids.GetGrids().end());
+  result.refined = true;
+}
+
 // Joins the parts that have the array. `result` gets the grid and tells of the parts.
 void join(vtkCompositeDataSet* whole, const std::string& path, const std::string& array, cli::routed& result)
 {
@@ -195,7 +227,7 @@ void join(vtkCompositeDataSet* whole, const std::string& path, const std::string
 
 namespace cli {
 
-routed route(vtkDataObject* data, const std::string& path, const std::string& array)
+routed route(vtkDataObject* data, const std::string& path, const std::string& array, bool nearest)
 {
   routed result;
   if (vtkImageData* image = vtkImageData::SafeDownCast(data)) {
@@ -220,6 +252,8 @@ routed route(vtkDataObject* data, const std::string& path, const std::string& ar
     curved->GetDimensions(dimensions);
     result.kind = points_of(dimensions, "curvilinear grid");
     result.grid = curved;
+  } else if (vtkUniformGridAMR* amr = vtkUniformGridAMR::SafeDownCast(data)) {
+    refine(amr, path, array, nearest, result);
   } else if (vtkCompositeDataSet* whole = vtkCompositeDataSet::SafeDownCast(data)) {
     if (!keep_blocks(whole, path, array, result)) {
       join(whole, path, array, result);

@@ -19,14 +19,15 @@ struct routed {
   std::vector<vtkSmartPointer<vtkDataSet>> blocks;
   vtkSmartPointer<vtkDataSet> grid; // or an unstructured or structured one, for the caster of tetrahedra
   std::string kind;                 // of the file's data, for people
+  bool refined = false;             // whether image and blocks hold AMR, whose gradients change from block to block
   std::string arrays;               // of composite data: what their first part has, since `grid` has the drawn one alone
 };
 
 // The one place that decides how a kind of data is drawn. Throws failure for data that are not drawn at all, with their kind.
 // Composite data of images and rectilinear grids alone stay blocks; other composite data become one grid, in which parts that meet share
-// their points. `array` is the name of the array that will be drawn, "" for
-// the first.
-routed route(vtkDataObject* data, const std::string& path, const std::string& array);
+// their points. AMR becomes blocks that hold its field. `array` is the name of the array that will be drawn, "" for the first. nearest:
+// of AMR, cells' values are drawn as they are.
+routed route(vtkDataObject* data, const std::string& path, const std::string& array, bool nearest = false);
 
 // Returns the array `name`. If the name is empty it returns the active scalars, or else the first array of one component, or else the
 // lengths of the first vectors. Points come before cells. Of vectors, the lengths are added to the data set and returned, or the component

@@ -165,7 +165,7 @@ void series::open()
   const file_format found = choose_format(path, this->Raw);
   if (!found.reader) {
     throw failure("'" + path + "' is no image file that VTK reads (.vti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...) " +
-      "and no grid (.nc .vdb .vtr .vts .vtu .vtm .pvd .vtk .vtkhdf .foam .case .node .ele ...)");
+      "and no grid (.nc .vdb .vtr .vts .vtu .vtm .vthb .pvd .vtk .vtkhdf .foam .case .node .ele ...)");
   }
   this->Units = found.time_units;
   this->Reader = found.reader;

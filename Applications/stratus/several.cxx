@@ -91,9 +91,10 @@ void several_drawing::take(const cli::routed& data)
 // Takes a scene, an image or a rectilinear grid, or else cells. The first one says which axis is up.
 void several_drawing::take_member(const cli::options& o, const cli::routed& data)
 {
-  if (!data.blocks.empty()) {
-    throw cli::usage("'" + o.source + "' is a volume of " + std::to_string(1 + data.blocks.size()) +
-      " blocks, which is drawn alone: leave out the other INPUTs");
+  if (!data.blocks.empty() || data.refined) {
+    throw cli::usage(data.refined ? "'" + o.source + "' is AMR, which is drawn alone: leave out the other INPUTs"
+                                  : "'" + o.source + "' is a volume of " + std::to_string(1 + data.blocks.size()) +
+          " blocks, which is drawn alone: leave out the other INPUTs");
   }
   this->Members.emplace_back();
   member& one = this->Members.back();

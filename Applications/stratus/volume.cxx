@@ -73,6 +73,10 @@ void volume_drawing::take(const cli::routed& data)
     this->Blocks.back()->volume.revision = this->Steps;
     this->Blocks.back()->volume.matrix[5 * this->Up] *= o.exaggeration;
   }
+  if (data.refined && (o.shade || (o.mode == STRATUS_MODE_FIRST_HIT && o.normals == STRATUS_NORMALS_GRADIENT))) {
+    throw cli::usage("'" + o.source + "' is AMR, which is drawn without " + (o.shade ? "--shade" : "--normals gradient") +
+      ": light follows gradients, which each block has in its own spacing, so that borders of levels would show");
+  }
   if (!this->Blocks.empty() && (!o.mask.empty() || o.audit)) {
     throw cli::usage("'" + o.source + "' is a volume of " + std::to_string(1 + this->Blocks.size()) + " blocks, which is drawn without " +
       (o.audit ? "--audit" : "--mask"));

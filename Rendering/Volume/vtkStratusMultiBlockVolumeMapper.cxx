@@ -169,12 +169,12 @@ std::vector<Block> vtkStratusMultiBlockVolumeMapper::Internals::FindRefined(
   vtkVolumeProperty* property = volume->GetProperty();
   const bool solid = this->Settings->GetRenderMode() == vtkStratusVolumeMapper::FIRST_HIT_MODE;
   const bool nearest = solid || property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION;
-  if (!solid &&
-    (property->GetShade() || property->HasGradientOpacity() || property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D)) {
-    error = std::string(property->GetShade()     ? "light"
+  const bool lit = solid ? this->Settings->GetNormals() == vtkStratusVolumeMapper::GRADIENT_NORMALS : property->GetShade() != 0;
+  if (lit || (!solid && (property->HasGradientOpacity() || property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D))) {
+    error = std::string(lit                      ? "light by gradients"
                 : property->HasGradientOpacity() ? "gradient opacity"
                                                  : "a function of two variables") +
-      " is not drawn of AMR: it follows gradients, which each grid has in its own spacing, so that borders of levels would show";
+      " is not drawn of AMR: each grid has gradients in its own spacing, so that borders of levels would show";
     return {};
   }
   const std::string wanted = std::to_string(mapper->GetScalarMode()) + " " + std::to_string(mapper->GetArrayAccessMode()) + " " +

@@ -207,7 +207,7 @@ def refusals():
     tell("nearest interpolation of AMR's values of points", Scene(blocks(), Refined(uneven(), cells=False).data(vtk), nearest=True))
     shaded, faded = (Scene(blocks(), Refined(uneven()).data(vtk)) for _ in range(2))
     shaded.property.ShadeOn()
-    tell("light is not drawn of AMR", shaded)
+    tell("light by gradients is not drawn of AMR", shaded)
     fade = vtk.vtkPiecewiseFunction()
     fade.AddPoint(0, 0)
     fade.AddPoint(1, 1)
