@@ -17,8 +17,11 @@ from vtkmodules.vtkFiltersCore import vtkAppendFilter
 from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import (
     vtkXMLImageDataWriter, vtkXMLMultiBlockDataWriter, vtkXMLRectilinearGridWriter, vtkXMLStructuredGridWriter,
-    vtkXMLUnstructuredGridWriter)
+    vtkXMLUniformGridAMRWriter, vtkXMLUnstructuredGridWriter)
 import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "VTK"))
+from refined import Refined, uneven
 
 STRATUS, FOLDER = os.path.realpath(sys.argv[1]), sys.argv[2]
 MAKERS = {os.path.basename(path): os.path.realpath(path) for path in sys.argv[3:]}
@@ -618,6 +621,41 @@ def test_ensight():
     expect(0, "6 tetrahedra, 8 points", "render", "box.case", "-o", "ensight.png", "--size", "40x40")
     os.remove("box.geo")
     expect(1, "^stratus: ", "render", "box.case", "-o", "no.png")
+
+
+def test_refined():
+    """AMR looks as one fine grid of its field does, from levels that all are read; what it can't be is refused."""
+    from vtkmodules import vtkCommonDataModel
+
+    data = Refined(uneven())
+    write(vtkXMLUniformGridAMRWriter, data.data(vtkCommonDataModel), "refined.vthb")
+    os.replace("refined.vthb", "refined.vth")
+    write(vtkXMLUniformGridAMRWriter, data.data(vtkCommonDataModel), "refined.vthb")
+    field = data.field()
+    fine = vtkImageData()
+    fine.SetDimensions(*field.shape)
+    fine.SetSpacing(1 / 8, 1 / 8, 1 / 8)
+    array = numpy_to_vtk(field.ravel(order="F"), deep=True)
+    array.SetName("values")
+    fine.GetPointData().AddArray(array)
+    write(vtkXMLImageDataWriter, fine, "fine.vti")
+    look = "--size", "120x100", "--device", "host", "--tolerance", "2e-4", "--opacity", "0:.01,.3:.02,.9:.6", "--color", "viridis", "--unit-distance", "1"
+    pictures = []
+    for name in "refined.vthb", "refined.vth", "fine.vti":
+        expect(0, "picture", "render", name, "-o", "out.png", *look)
+        reader = vtkPNGReader()
+        reader.SetFileName("out.png")
+        reader.Update()
+        pictures.append(vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int))
+    difference = abs(pictures[0] - pictures[2]).max()
+    if difference > 1 or (pictures[0] != pictures[1]).any() or pictures[0].std() < 5:
+        fail(f"AMR is {difference} of 255 from its field")
+    expect(0, r"kind +AMR: 6 boxes in 3 levels", "info", "refined.vthb")
+    expect(0, "picture", "render", "refined.vthb", "-o", "out.png", *look, "--nearest")
+    expect(2, "which is drawn without --shade", "render", "refined.vthb", "-o", "no.png", "--shade")
+    expect(2, "is AMR, which is drawn alone", "render", "refined.vthb", "fine.vti", "-o", "no.png")
+    write(vtkXMLUniformGridAMRWriter, Refined(uneven(), cells=False).data(vtkCommonDataModel), "points.vthb")
+    expect(1, "nearest interpolation of AMR's values of points", "render", "points.vthb", "-o", "no.png", "--nearest")
 
 
 if __name__ == "__main__":
