@@ -5,6 +5,7 @@
 #include "vtkStratusLODVolume.h"
 #include "vtkStratusMultiBlockVolumeMapper.h"
 #include "vtkStratusPanelUpdate.h"
+#include "vtkStratusRankWhole.h"
 #include "vtkStratusRanks.h"
 #include "vtkStratusSolidColor.h"
 #include "vtkStratusVolumeMapper.h"
@@ -27,6 +28,11 @@
 
 #include <algorithm>
 #include <string>
+
+namespace {
+// Rank 0 takes pieces of up to so many bytes to ask which step a picture of the whole needs.
+constexpr vtkIdType WHOLE_BYTES = vtkIdType(1) << 28;
+} // namespace
 
 vtkStandardNewMacro(vtkStratusVolumeRepresentation);
 
@@ -120,16 +126,55 @@ vtkMTimeType vtkStratusVolumeRepresentation::GetSamplingTime()
     { this->Cache ? this->Cache->GetMTime() : 0, this->Property->GetMTime(), this->Actor->GetMTime(), this->VolumeMapper->GetMTime() });
 }
 
-// Takes the sampling that serves all ranks: the rule that is asked for where the field bends most, and of it the shortest step and the
-// least error. Settings of the user's own stay. Every rank must call it.
+// Puts the pieces of all ranks together on rank 0, if they are a grid of at most WHOLE_BYTES and any has changed. Every rank must call it.
+void vtkStratusVolumeRepresentation::GatherWhole(vtkMultiProcessController* ranks)
+{
+  std::vector<std::string> names;
+  const char* second = this->UseTransfer2D ? this->GetSettings()->GetTransfer2DYAxisArray() : nullptr;
+  for (const char* name : { static_cast<const char*>(this->VolumeMapper->GetArrayName()), second }) {
+    if (name && name[0]) {
+      names.push_back(name);
+    }
+  }
+  const bool cells = this->VolumeMapper->GetScalarMode() == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA;
+  const vtkMTimeType time = this->Cache ? this->Cache->GetMTime() : 0;
+  int changed = time != this->WholeFor || names != this->WholeNames || cells != this->WholeCells, any_changed = 0;
+  ranks->AllReduce(&changed, &any_changed, 1, vtkCommunicator::MAX_OP);
+  if (any_changed) {
+    this->Whole = stratus::gather_whole(ranks, vtkDataSet::SafeDownCast(this->Cache), names, cells, WHOLE_BYTES, this->Gathered);
+    this->WholeFor = time;
+    this->WholeNames = names;
+    this->WholeCells = cells;
+  }
+}
+
+// Asks rank 0 what a picture of the whole would take. Every rank must call it. Returns false where it has no whole, or draws none.
+bool vtkStratusVolumeRepresentation::MeasureWhole(vtkRenderer* renderer, vtkMultiProcessController* ranks)
+{
+  double told[4] = { 0.0, 0.0, 0.0, 0.0 };
+  this->GatherWhole(ranks);
+  if (this->Gathered && this->Whole) {
+    told[3] = this->GetMapper()->MeasureSampling(renderer, this->Actor, told, this->Whole);
+  }
+  if (this->Gathered) {
+    ranks->Broadcast(told, 4, 0);
+    std::copy_n(told, 3, this->Agreed);
+  }
+  return this->Gathered && told[3] != 0.0;
+}
+
+// Takes the sampling that serves all ranks: that of the whole, where rank 0 has it. Else the rule that is asked for where the field bends
+// most, and of it the shortest step and the least error. Settings of the user's own stay. Every rank must call it.
 void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks)
 {
   const bool open_rule = this->Sampling == vtkStratusVolumeMapper::AUTO_SAMPLING;
   int changed = this->GetSamplingTime() > this->AgreedFor, any_changed = 0;
   ranks->AllReduce(&changed, &any_changed, 1, vtkCommunicator::MAX_OP);
   if (any_changed) {
-    vtkStratusVolumeMapper* settings = this->GetSettings();
     this->ApplySampling();
+  }
+  if (any_changed && !this->MeasureWhole(renderer, ranks)) {
+    vtkStratusVolumeMapper* settings = this->GetSettings();
     const bool draws = this->Actor->GetVisibility() != 0;
     double rule = 0.0, choice[3] = { 0.0, 0.0, 0.0 };
     bool any = draws && this->GetMapper()->MeasureSampling(renderer, this->Actor, choice);

@@ -16,10 +16,14 @@
 
 #include "StratusParaViewRepresentationsModule.h" // For export macro
 #include "vtkImageVolumeRepresentation.h"
+#include "vtkSmartPointer.h" // For vtkSmartPointer
 
 #include <memory> // For std::unique_ptr
+#include <string> // For std::string
+#include <vector> // For std::vector
 
 class vtkColorTransferFunction;
+class vtkDataSet;
 class vtkMultiProcessController;
 class vtkPiecewiseFunction;
 class vtkRenderer;
@@ -112,6 +116,8 @@ private:
   void ApplySampling();
   void ShareBounds();
   vtkMTimeType GetSamplingTime();
+  void GatherWhole(vtkMultiProcessController* ranks);
+  bool MeasureWhole(vtkRenderer* renderer, vtkMultiProcessController* ranks);
   void AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks);
 
   std::unique_ptr<stratus::SolidColor> Solid;
@@ -124,6 +130,11 @@ private:
   double WholeBounds[6];             // of all ranks
   vtkMTimeType AgreedFor = 0;        // of what the ranks have agreed on last
   double Agreed[3] = { 0., 0., 0. }; // sampling, sample distance, cell error
+  vtkSmartPointer<vtkDataSet> Whole; // of all ranks' pieces, on rank 0
+  bool Gathered = false;             // whether rank 0 has it
+  vtkMTimeType WholeFor = 0;         // of this rank's piece, when the whole was gathered; names and cells: what it has
+  std::vector<std::string> WholeNames;
+  bool WholeCells = false;
 };
 
 #endif

@@ -88,7 +88,7 @@ public:
   // Draws all mappers' blocks in one picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* volume, std::string& error);
 
-  vtkNew<vtkStratusVolumeMapper> Settings;
+  vtkNew<vtkStratusVolumeMapper> Settings, Whole;
   std::vector<vtkSmartPointer<vtkStratusVolumeMapper>> Mappers; // of the blocks, in the input's order
   vtkStratusJointPicture Picture;
   std::string Error, Warning;
@@ -448,8 +448,14 @@ vtkImageData* vtkStratusMultiBlockVolumeMapper::GetLastImage()
   return mappers.size() == 1 ? mappers[0]->GetLastImage() : this->Internal->Picture.GetLastImage();
 }
 
-bool vtkStratusMultiBlockVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3])
+bool vtkStratusMultiBlockVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3], vtkDataSet* whole)
 {
+  if (whole) {
+    this->Internal->Configure(this, this->Internal->Whole);
+    this->Internal->Whole->SetInputDataObject(whole);
+    this->Internal->Whole->SetDevice(this->Internal->Settings->GetDevice());
+    return this->Internal->Whole->MeasureSampling(renderer, volume, choice);
+  }
   std::string unused, error;
   this->Internal->Configure(this, this->Internal->Find(this, volume, unused, error));
   return error.empty() && this->Internal->Measure(renderer, volume, choice);

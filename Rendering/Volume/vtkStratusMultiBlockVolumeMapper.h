@@ -25,6 +25,7 @@
 #include <memory> // For std::unique_ptr
 
 class vtkImageData;
+class vtkDataSet;
 class vtkStratusVolumeMapper;
 
 class STRATUSRENDERINGVOLUME_EXPORT vtkStratusMultiBlockVolumeMapper : public vtkVolumeMapper
@@ -75,9 +76,9 @@ public:
   /**
    * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
    * As of vtkStratusVolumeMapper, for all blocks: the largest sampling of any, and the shortest distance and least error. Returns false
-   * where no block would be drawn.
+   * where no block would be drawn. whole: an image or rectilinear grid that is measured in place of the input.
    */
-  bool MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3]);
+  bool MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3], vtkDataSet* whole = nullptr);
 
 protected:
   vtkStratusMultiBlockVolumeMapper();
