@@ -2,7 +2,12 @@
 #include "vtkStratusRanks.h"
 
 #include "vtkMath.h"
+#include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
+#include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
+#include "vtkPropCollection.h"
+#include "vtkRenderer.h"
 
 int stratus::count_ranks()
 {
@@ -21,4 +26,39 @@ bool stratus::join_bounds(vtkMultiProcessController* controller, const double mi
     whole[i] = i % 2 ? -least[i] : least[i];
   }
   return least[0] < VTK_DOUBLE_MAX;
+}
+
+vtkSmartPointer<vtkPlaneCollection> stratus::planes_between(const double own[6], const double whole[6], vtkMatrix4x4* matrix)
+{
+  const auto planes = vtkSmartPointer<vtkPlaneCollection>::New();
+  vtkNew<vtkMatrix4x4> inverse;
+  vtkMatrix4x4::Invert(matrix, inverse);
+  for (int face = 0; face < 6 && vtkMath::AreBoundsInitialized(own); ++face) {
+    if (own[face] != whole[face]) {
+      double point[4] = { 0.0, 0.0, 0.0, 1.0 }, normal[3]; // of the world
+      point[face / 2] = own[face];
+      matrix->MultiplyPoint(point, point);
+      for (int axis = 0; axis < 3; ++axis) {
+        normal[axis] = (face % 2 ? -1.0 : 1.0) * inverse->GetElement(face / 2, axis);
+      }
+      vtkNew<vtkPlane> plane;
+      plane->SetOrigin(point);
+      plane->SetNormal(normal);
+      planes->AddItem(plane);
+    }
+  }
+  return planes;
+}
+
+bool stratus::has_translucent(vtkRenderer* renderer)
+{
+  vtkPropCollection* props = renderer->GetViewProps();
+  vtkCollectionSimpleIterator at;
+  props->InitTraversal(at);
+  while (vtkProp* prop = props->GetNextProp(at)) {
+    if (prop->GetVisibility() && prop->HasTranslucentPolygonalGeometry()) {
+      return true;
+    }
+  }
+  return false;
 }

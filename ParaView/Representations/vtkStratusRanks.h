@@ -2,7 +2,12 @@
 // What ranks of ParaView, which each have a piece of the data, find out together. Private to the module.
 #pragma once
 
+#include "vtkSmartPointer.h"
+
+class vtkMatrix4x4;
 class vtkMultiProcessController;
+class vtkPlaneCollection;
+class vtkRenderer;
 
 namespace stratus {
 
@@ -12,4 +17,11 @@ int count_ranks();
 // Gives the bounds about those of all ranks, each of which may be uninitialized. Returns false, and leaves `whole`, if all are. Every rank
 // of the controller must call it.
 bool join_bounds(vtkMultiProcessController* controller, const double mine[6], double whole[6]);
+
+// Returns planes in the faces of a rank's bounds that are not faces of all ranks' bounds; their normals point into the rank's part. matrix:
+// from the bounds' coordinates to the world's.
+vtkSmartPointer<vtkPlaneCollection> planes_between(const double own[6], const double whole[6], vtkMatrix4x4* matrix);
+
+// Whether any visible prop of the renderer has translucent surfaces.
+bool has_translucent(vtkRenderer* renderer);
 } // namespace stratus

@@ -23,7 +23,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
 #include "vtkPVRenderView.h"
-#include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkRenderer.h"
@@ -181,25 +180,12 @@ void vtkStratusTetrahedraRepresentation::ClipTo(const std::vector<vtkBoundingBox
       whole.AddBox(box);
     }
   }
-  vtkNew<vtkPlaneCollection> planes;
-  const vtkBoundingBox& own = boxes[static_cast<size_t>(rank)];
-  vtkNew<vtkMatrix4x4> matrix, inverse;
+  vtkNew<vtkMatrix4x4> matrix;
   this->Actor->GetMatrix(matrix);
-  vtkMatrix4x4::Invert(matrix, inverse);
-  for (int face = 0; face < 6 && own.IsValid(); ++face) {
-    if (own.GetBound(face) != whole.GetBound(face)) {
-      double point[4] = { 0.0, 0.0, 0.0, 1.0 }, normal[3]; // of the world
-      point[face / 2] = own.GetBound(face);
-      matrix->MultiplyPoint(point, point);
-      for (int axis = 0; axis < 3; ++axis) {
-        normal[axis] = (face % 2 ? -1.0 : 1.0) * inverse->GetElement(face / 2, axis);
-      }
-      vtkNew<vtkPlane> plane;
-      plane->SetOrigin(point);
-      plane->SetNormal(normal);
-      planes->AddItem(plane);
-    }
-  }
+  double own[6], all[6];
+  boxes[static_cast<size_t>(rank)].GetBounds(own);
+  whole.GetBounds(all);
+  const auto planes = stratus::planes_between(own, all, matrix);
   this->Mapper->SetClippingPlanes(planes->GetNumberOfItems() > 0 ? planes.Get() : nullptr);
 }
 

@@ -10,6 +10,7 @@
 #include "vtkStratusSolidColor.h"
 #include "vtkStratusVolumeMapper.h"
 
+#include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObjectTree.h"
@@ -17,13 +18,16 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
+#include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
 #include "vtkPVRenderView.h"
+#include "vtkPlaneCollection.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkRenderer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -86,6 +90,8 @@ int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInfo
     }
   }
   this->Actor->SetEnableLOD(0);
+  this->EndsAtBorders = false;
+  this->VolumeMapper->SetClippingPlanes(static_cast<vtkPlaneCollection*>(nullptr));
   this->VolumeMapper->SetInputDataObject(this->Cache);
   this->VolumeMapper->GetBounds(this->DataBounds);
   if (vtkMath::AreBoundsInitialized(this->DataBounds)) {
@@ -117,6 +123,37 @@ void vtkStratusVolumeRepresentation::ShareBounds()
       this->Solid->JoinRange(vtkMultiProcessController::GetGlobalController());
     }
   }
+}
+
+// Whether segments end at the borders of ranks, between which each rank else draws whole segments, by where their middles lie. A rank knows
+// the translucent surfaces in its own part alone, and a segment that reaches beyond the part would lie before all surfaces of the next.
+void vtkStratusVolumeRepresentation::EndAtBorders(bool end)
+{
+  auto* piece = vtkDataSet::SafeDownCast(this->Cache);
+  if (end == this->EndsAtBorders && (!end || this->EndedFor == this->Cache->GetMTime())) {
+    return;
+  }
+  this->EndsAtBorders = end;
+  this->EndedFor = this->Cache->GetMTime();
+  vtkUnsignedCharArray* flags = piece ? piece->GetCellGhostArray() : nullptr;
+  if (!end || !flags || !vtkMath::AreBoundsInitialized(this->DataBounds)) {
+    this->VolumeMapper->SetInputDataObject(this->Cache);
+    this->VolumeMapper->SetClippingPlanes(static_cast<vtkPlaneCollection*>(nullptr));
+    return;
+  }
+  const auto all = vtkSmartPointer<vtkDataSet>::Take(piece->NewInstance());
+  all->ShallowCopy(piece);
+  vtkNew<vtkUnsignedCharArray> hidden; // but who owns cells: planes cut instead
+  hidden->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (vtkIdType cell = 0; cell < flags->GetNumberOfValues(); ++cell) {
+    hidden->InsertNextValue(static_cast<unsigned char>(flags->GetValue(cell) & ~vtkDataSetAttributes::DUPLICATECELL));
+  }
+  all->GetCellData()->AddArray(hidden);
+  this->VolumeMapper->SetInputDataObject(all);
+  vtkNew<vtkMatrix4x4> matrix;
+  this->Actor->GetMatrix(matrix);
+  const auto planes = stratus::planes_between(this->DataBounds, this->WholeBounds, matrix);
+  this->VolumeMapper->SetClippingPlanes(planes->GetNumberOfItems() > 0 ? planes.Get() : nullptr);
 }
 
 // When what follows from the data and from how they are shown was changed last, but for what ranks agree on.
@@ -168,23 +205,27 @@ bool vtkStratusVolumeRepresentation::MeasureWhole(vtkRenderer* renderer, vtkMult
 void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks)
 {
   const bool open_rule = this->Sampling == vtkStratusVolumeMapper::AUTO_SAMPLING;
-  int changed = this->GetSamplingTime() > this->AgreedFor, any_changed = 0;
-  ranks->AllReduce(&changed, &any_changed, 1, vtkCommunicator::MAX_OP);
-  if (any_changed) {
+  const int mine[2] = { this->GetSamplingTime() > this->AgreedFor, stratus::has_translucent(renderer) };
+  int any[2] = { 0, 0 };
+  ranks->AllReduce(mine, any, 2, vtkCommunicator::MAX_OP);
+  if (this->Cache) {
+    this->EndAtBorders(any[1] != 0);
+  }
+  if (any[0]) {
     this->ApplySampling();
   }
-  if (any_changed && !this->MeasureWhole(renderer, ranks)) {
+  if (any[0] && !this->MeasureWhole(renderer, ranks)) {
     vtkStratusVolumeMapper* settings = this->GetSettings();
     const bool draws = this->Actor->GetVisibility() != 0;
     double rule = 0.0, choice[3] = { 0.0, 0.0, 0.0 };
-    bool any = draws && this->GetMapper()->MeasureSampling(renderer, this->Actor, choice);
-    const double own = any ? choice[0] : 0.0;
+    bool measured = draws && this->GetMapper()->MeasureSampling(renderer, this->Actor, choice);
+    const double own = measured ? choice[0] : 0.0;
     ranks->AllReduce(&own, &rule, 1, vtkCommunicator::MAX_OP);
-    if (any && open_rule && rule != own) {
+    if (measured && open_rule && rule != own) {
       settings->SetSampling(static_cast<int>(rule));
-      any = this->GetMapper()->MeasureSampling(renderer, this->Actor, choice);
+      measured = this->GetMapper()->MeasureSampling(renderer, this->Actor, choice);
     }
-    const double lengths[2] = { any ? choice[1] : VTK_DOUBLE_MAX, any ? choice[2] : VTK_DOUBLE_MAX };
+    const double lengths[2] = { measured ? choice[1] : VTK_DOUBLE_MAX, measured ? choice[2] : VTK_DOUBLE_MAX };
     double least[2];
     ranks->AllReduce(lengths, least, 2, vtkCommunicator::MIN_OP);
     this->Agreed[0] = rule;

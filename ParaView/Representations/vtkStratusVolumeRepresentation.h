@@ -116,6 +116,7 @@ private:
   void ApplySampling();
   void ShareBounds();
   vtkMTimeType GetSamplingTime();
+  void EndAtBorders(bool end);
   void GatherWhole(vtkMultiProcessController* ranks);
   bool MeasureWhole(vtkRenderer* renderer, vtkMultiProcessController* ranks);
   void AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks);
@@ -130,6 +131,8 @@ private:
   double WholeBounds[6];             // of all ranks
   vtkMTimeType AgreedFor = 0;        // of what the ranks have agreed on last
   double Agreed[3] = { 0., 0., 0. }; // sampling, sample distance, cell error
+  bool EndsAtBorders = false;
+  vtkMTimeType EndedFor = 0;         // of the data
   vtkSmartPointer<vtkDataSet> Whole; // of all ranks' pieces, on rank 0
   bool Gathered = false;             // whether rank 0 has it
   vtkMTimeType WholeFor = 0;         // of this rank's piece, when the whole was gathered; names and cells: what it has
