@@ -91,8 +91,8 @@ SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POIN
           ("rectilinear", "levels.vtr", "POINTS", []), ("rectilinear-shade", "levels.vtr", "POINTS", [shade]),
           ("blocks", "parts.vtm", "POINTS", []), ("structured", "hills.vts", "POINTS", []), ("structured-shade", "hills.vts", "POINTS", [shade]),
           ("unstructured", "cells.vtu", "POINTS", []), ("unstructured-opaque", "cells.vtu", "POINTS", [opaque])]
-# Other scenes may differ by 1. The light of a mesh comes from gradients at its points, and
-# the cells about a rank's points are not all on the rank.
+# Other scenes may differ by 1. The light of a mesh comes from gradients at its points, and the cells about a rank's points are not all on the
+# rank.
 MORE = {"blocks": 2, "structured-shade": 4}
 wanted = sys.argv[3:]
 
