@@ -67,6 +67,14 @@ if (stratus_vtk)
   endif ()
 endif ()
 
+# ---- Debian packages: made, unpacked and used
+if (stratus_vtk AND TARGET stratus-command)
+  find_program(CPACK cpack REQUIRED)
+  stratus_add_test(packages consumers "${PROJECT_SOURCE_DIR}/Testing/Consumers/test_packages" "${CPACK}" "${CMAKE_BINARY_DIR}"
+    "${CMAKE_BINARY_DIR}/Testing/Temporary/packages")
+  set_tests_properties(packages PROPERTIES PROCESSORS 2)
+endif ()
+
 # ---- every kernel through clang's own OpenCL front end, warnings as errors
 function (stratus_add_kernel_test name)
   stratus_add_test(${name} kernels ${ARGN})
