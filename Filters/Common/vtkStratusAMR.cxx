@@ -218,7 +218,52 @@ vtkMTimeType vtkStratusAMR::GetTime(vtkUniformGridAMR* amr)
   return time;
 }
 
-bool vtkStratusAMR::Set(vtkUniformGridAMR* amr, const FindArray& find, bool nearest, std::string& error)
+bool vtkStratusAMR::GetBounds(vtkUniformGridAMR* amr, int piece, int pieces, double bounds[6])
+{
+  vtkOverlappingAMR* overlapping = vtkOverlappingAMR::SafeDownCast(amr);
+  std::vector<std::array<int, 3>> ratios;
+  std::string unused;
+  if (!overlapping || !FindRatios(overlapping, ratios, unused)) {
+    return false;
+  }
+  std::vector<vtkStratusAMRLeaves::Box> boxes; // in halves of the finest level's cells, as the field counts
+  std::vector<double> values;
+  Place lo, hi, cell;
+  double unit[3];
+  overlapping->GetSpacing(static_cast<unsigned int>(ratios.size()), unit);
+  for (unsigned int level = static_cast<unsigned int>(ratios.size()) + 1; level-- > 0;) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      cell[axis] = level == ratios.size() ? 2 : cell[axis] * ratios[level][axis];
+    }
+    for (unsigned int id = 0; id < overlapping->GetNumberOfDataSets(level); ++id) {
+      vtkUniformGrid* grid = overlapping->GetDataSet(level, id);
+      Box box;
+      if (!grid || grid->GetNumberOfPoints() == 0 || !FindBox(overlapping, level, id, grid, box, unused)) {
+        continue;
+      }
+      double count = 1.0;
+      for (size_t axis = 0; axis < 3; ++axis) {
+        count *= static_cast<double>(box.Hi[axis] - box.Lo[axis]);
+        box.Lo[axis] *= cell[axis];
+        box.Hi[axis] *= cell[axis];
+        lo[axis] = boxes.empty() ? box.Lo[axis] : std::min(lo[axis], box.Lo[axis]);
+        hi[axis] = boxes.empty() ? box.Hi[axis] : std::max(hi[axis], box.Hi[axis]);
+      }
+      boxes.push_back({ box.Level, box.Lo, box.Hi });
+      values.push_back(count);
+    }
+  }
+  if (boxes.empty() || !vtkStratusAMRLeaves::FindPiece(boxes, cell, values, piece, pieces, lo, hi)) {
+    return false;
+  }
+  for (size_t axis = 0; axis < 3; ++axis) {
+    bounds[2 * axis] = overlapping->GetOrigin()[axis] + 0.5 * unit[axis] * static_cast<double>(lo[axis]);
+    bounds[2 * axis + 1] = overlapping->GetOrigin()[axis] + 0.5 * unit[axis] * static_cast<double>(hi[axis]);
+  }
+  return true;
+}
+
+bool vtkStratusAMR::Set(vtkUniformGridAMR* amr, const FindArray& find, bool nearest, std::string& error, int piece, int pieces)
 {
   this->Grids.clear();
   vtkOverlappingAMR* overlapping = vtkOverlappingAMR::SafeDownCast(amr);
@@ -227,7 +272,7 @@ bool vtkStratusAMR::Set(vtkUniformGridAMR* amr, const FindArray& find, bool near
     return false;
   }
   try {
-    return this->Make(overlapping, find, nearest, error);
+    return this->Make(overlapping, find, nearest, piece, pieces, error);
   } catch (const std::bad_alloc&) {
     this->Grids.clear();
     error = "the levels' grids need more memory than there is";
@@ -235,7 +280,7 @@ bool vtkStratusAMR::Set(vtkUniformGridAMR* amr, const FindArray& find, bool near
   }
 }
 
-bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, bool nearest, std::string& error)
+bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, bool nearest, int piece, int pieces, std::string& error)
 {
   std::vector<std::array<int, 3>> ratios;
   if (!FindRatios(amr, ratios, error)) {
@@ -306,7 +351,7 @@ bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, bool nea
     along *= 0.5;
   }
   const int drawn_type = nearest ? type : NeedsDoubles(sources) ? VTK_DOUBLE : VTK_FLOAT;
-  const vtkStratusAMRLeaves leaves(field, nearest);
+  const vtkStratusAMRLeaves leaves(field, nearest, piece, pieces);
   for (const vtkStratusAMRLeaf& leaf : leaves.GetLeaves()) {
     std::vector<int64_t> planes[3];
     for (int axis = 0; axis < 3; ++axis) {

@@ -26,17 +26,20 @@ public:
   // Makes the grids: images and rectilinear grids, whose drawn array has the name of the data's, of points for linear interpolation, of
   // cells and as they are for nearest. It is of floats, or of doubles where values lie close together, far from 0. Boxes without data, as
   // other ranks have them, count as not there. Returns false, with the reason in `error`, where the data can't be drawn right.
-  bool Set(vtkUniformGridAMR* amr, const FindArray& find, bool nearest, std::string& error);
+  // piece of pieces: a box of the space, whose grids are made.
+  bool Set(vtkUniformGridAMR* amr, const FindArray& find, bool nearest, std::string& error, int piece = 0, int pieces = 1);
   const std::vector<vtkSmartPointer<vtkDataSet>>& GetGrids() const { return this->Grids; }
   bool HasCells() const { return this->Cells; } // whether the grids' array is of cells
   const std::string& GetArrayName() const { return this->ArrayName; }
   int GetNumberOfLevels() const { return this->Levels; }
 
+  // Gives the bounds of a piece. Returns false where it has nothing.
+  static bool GetBounds(vtkUniformGridAMR* amr, int piece, int pieces, double bounds[6]);
   // When the data or an array of theirs were modified last.
   static vtkMTimeType GetTime(vtkUniformGridAMR* amr);
 
 private:
-  bool Make(vtkOverlappingAMR* amr, const FindArray& find, bool nearest, std::string& error);
+  bool Make(vtkOverlappingAMR* amr, const FindArray& find, bool nearest, int piece, int pieces, std::string& error);
 
   std::vector<vtkSmartPointer<vtkDataSet>> Grids;
   bool Cells = false;

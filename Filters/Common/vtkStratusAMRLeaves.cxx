@@ -31,9 +31,60 @@ double Shared(const Place& lo, const Place& hi, const Place& other_lo, const Pla
 }
 } // namespace
 
-vtkStratusAMRLeaves::vtkStratusAMRLeaves(const vtkStratusAMRField& field, bool nearest) : Field(field), Nearest(nearest)
+bool vtkStratusAMRLeaves::FindPiece(
+  const std::vector<Box>& boxes, const Place& cell, const std::vector<double>& values, int piece, int pieces, Place& lo, Place& hi)
+{
+  const auto values_in = [&](const Place& from, const Place& to) {
+    double sum = 0.0;
+    for (size_t i = 0; i < boxes.size(); ++i) {
+      sum += values[i] * Shared(from, to, boxes[i].Lo, boxes[i].Hi) / Volume(boxes[i].Lo, boxes[i].Hi);
+    }
+    return sum;
+  };
+  if (piece >= pieces) {
+    return false;
+  }
+  while (pieces > 1) {
+    size_t axis = 0;
+    for (size_t other = 1; other < 3; ++other) {
+      axis = (hi[other] - lo[other]) / cell[other] > (hi[axis] - lo[axis]) / cell[axis] ? other : axis;
+    }
+    const int below = pieces / 2;
+    const double wanted = values_in(lo, hi) * below / pieces;
+    int64_t first = 1, last = (hi[axis] - lo[axis]) / cell[axis] - 1; // planes, from lo
+    if (last < first) {
+      return piece == 0;
+    }
+    Place middle = hi;
+    while (first < last) {
+      const int64_t plane = first + (last - first) / 2;
+      middle[axis] = lo[axis] + plane * cell[axis];
+      const bool beyond = values_in(lo, middle) < wanted;
+      first = beyond ? plane + 1 : first;
+      last = beyond ? last : plane;
+    }
+    const int64_t plane = lo[axis] + first * cell[axis];
+    if (piece < below) {
+      hi[axis] = plane;
+      pieces = below;
+    } else {
+      lo[axis] = plane;
+      piece -= below;
+      pieces -= below;
+    }
+  }
+  return true;
+}
+
+vtkStratusAMRLeaves::vtkStratusAMRLeaves(const vtkStratusAMRField& field, bool nearest, int piece, int pieces)
+    : Field(field), Nearest(nearest)
 {
   std::vector<Box> boxes;
+  std::vector<double> values;
+  Place cell;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    cell[axis] = field.GetCell(0, static_cast<int>(axis));
+  }
   for (const vtkStratusAMRField::Box& box : field.GetBoxes()) {
     Box one = { box.Level, box.Lo, box.Hi };
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -44,9 +95,11 @@ vtkStratusAMRLeaves::vtkStratusAMRLeaves(const vtkStratusAMRField& field, bool n
       this->WholeHi[axis] = boxes.empty() ? one.Hi[axis] : std::max(this->WholeHi[axis], one.Hi[axis]);
     }
     boxes.push_back(one);
+    values.push_back(Volume(box.Lo, box.Hi));
   }
-  if (!boxes.empty()) {
-    this->Divide(boxes, this->WholeLo, this->WholeHi);
+  Place lo = this->WholeLo, hi = this->WholeHi;
+  if (!boxes.empty() && FindPiece(boxes, cell, values, piece, pieces, lo, hi)) {
+    this->Divide(boxes, lo, hi);
   }
 }
 

@@ -23,19 +23,25 @@ struct VTK_STRATUS_PRIVATE vtkStratusAMRLeaf {
 class VTK_STRATUS_PRIVATE vtkStratusAMRLeaves
 {
 public:
-  // nearest: cells' values are taken as they are, and a leaf's lattice is that of its cells.
-  vtkStratusAMRLeaves(const vtkStratusAMRField& field, bool nearest);
+  // nearest: cells' values are taken as they are, and a leaf's lattice is that of its cells. piece of pieces: the part of the space that is
+  // divided.
+  vtkStratusAMRLeaves(const vtkStratusAMRField& field, bool nearest, int piece = 0, int pieces = 1);
   const std::vector<vtkStratusAMRLeaf>& GetLeaves() const { return this->Leaves; }
   // The planes of a leaf's lattice along an axis.
   std::vector<int64_t> GetPlanes(const vtkStratusAMRLeaf& leaf, int axis) const;
 
-private:
   using Place = vtkStratusAMRField::Place;
   struct Box {
     int Level;
     Place Lo, Hi; // in units
   };
+  // Makes lo..hi, the bounds of all boxes, those of one piece: planes across the longest side halve the pieces, so that each half has its
+  // share of all boxes' values. They lie between cells of level 0, which are `cell` wide. Returns false where nothing is left for the
+  // piece.
+  static bool FindPiece(
+    const std::vector<Box>& boxes, const Place& cell, const std::vector<double>& values, int piece, int pieces, Place& lo, Place& hi);
 
+private:
   double VolumeIn(const std::vector<Box>& boxes, int level, const Place& lo, const Place& hi) const;
   vtkStratusAMRLeaf Describe(const std::vector<Box>& boxes, const Place& lo, const Place& hi, bool& covered) const;
   double CostOf(const vtkStratusAMRLeaf& leaf) const;

@@ -2,6 +2,7 @@
 #include "vtkStratusVolumeRepresentation.h"
 
 #include "vtkStratusCompositePass.h"
+#include "vtkStratusGather.h"
 #include "vtkStratusLODVolume.h"
 #include "vtkStratusMultiBlockVolumeMapper.h"
 #include "vtkStratusPanelUpdate.h"
@@ -13,7 +14,6 @@
 #include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkDataObjectTree.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -22,6 +22,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
+#include "vtkOverlappingAMR.h"
 #include "vtkPVRenderView.h"
 #include "vtkPlaneCollection.h"
 #include "vtkPolyDataMapper.h"
@@ -61,6 +62,13 @@ vtkStratusVolumeMapper* vtkStratusVolumeRepresentation::GetSettings()
   return this->GetMapper()->GetSettings();
 }
 
+int vtkStratusVolumeRepresentation::FillInputPortInformation(int port, vtkInformation* info)
+{
+  const int filled = this->Superclass::FillInputPortInformation(port, info);
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkUniformGridAMR");
+  return filled;
+}
+
 int vtkStratusVolumeRepresentation::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
   const int done = this->Superclass::RequestUpdateExtent(request, input, output);
@@ -77,14 +85,13 @@ int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInfo
   if (!data) {
     return this->Superclass::RequestData(request, input, output);
   }
-  this->FindArray(data);
-  this->Cache.TakeReference(data->NewInstance());
-  this->Cache->ShallowCopy(data); // composite data block by block: arrays may be added to them
+  this->TakeData(data);
+  this->FindArray(this->Cache);
   if (this->UseSeparateOpacityArray) {
     if (auto* grid = vtkDataSet::SafeDownCast(this->Cache)) {
       this->AppendOpacityComponent(grid);
     } else {
-      for (vtkDataSet* block : vtkCompositeDataSet::GetDataSets(vtkDataObjectTree::SafeDownCast(this->Cache))) {
+      for (vtkDataSet* block : vtkCompositeDataSet::GetDataSets(vtkCompositeDataSet::SafeDownCast(this->Cache))) {
         this->AppendOpacityComponent(block);
       }
     }
@@ -100,6 +107,24 @@ int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInfo
   }
   this->DataSize = this->Cache->GetActualMemorySize();
   return this->vtkVolumeRepresentation::RequestData(request, input, output);
+}
+
+// Keeps a copy of the data, or of what all ranks have of AMR.
+void vtkStratusVolumeRepresentation::TakeData(vtkDataObject* data)
+{
+  auto* refined = vtkOverlappingAMR::SafeDownCast(data);
+  vtkStratusMultiBlockVolumeMapper* mapper = this->GetMapper();
+  const int ranks = refined ? stratus::count_ranks() : 1;
+  if (ranks > 1) {
+    vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+    this->Cache = stratus::gather(controller, refined);
+    mapper->SetPiece(controller->GetLocalProcessId());
+  } else {
+    this->Cache.TakeReference(data->NewInstance());
+    this->Cache->ShallowCopy(data); // composite data block by block: arrays may be added to them
+    mapper->SetPiece(0);
+  }
+  mapper->SetNumberOfPieces(ranks);
 }
 
 int vtkStratusVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out)
@@ -204,6 +229,10 @@ bool vtkStratusVolumeRepresentation::MeasureWhole(vtkRenderer* renderer, vtkMult
 // most, and of it the shortest step and the least error. Settings of the user's own stay. Every rank must call it.
 void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks)
 {
+  if (vtkOverlappingAMR::SafeDownCast(this->Cache)) { // whose grids sample as their levels need
+    this->ApplySampling();
+    return;
+  }
   const bool open_rule = this->Sampling == vtkStratusVolumeMapper::AUTO_SAMPLING;
   const int mine[2] = { this->GetSamplingTime() > this->AgreedFor, stratus::has_translucent(renderer) };
   int any[2] = { 0, 0 };

@@ -3,7 +3,8 @@
  * @class   vtkStratusVolumeRepresentation
  * @brief   ParaView's volume rendering of uniform and rectilinear grids by vtkStratusVolumeMapper
  *
- * Composite data are drawn block by block, in exact order (vtkStratusMultiBlockVolumeMapper).
+ * Composite data are drawn block by block, in exact order, and AMR by levels (vtkStratusMultiBlockVolumeMapper). Of AMR each of several
+ * ranks gets all boxes, and draws a part of the space; each grid has its own sampling.
  * On several ranks each draws the cells that it owns; a layer of ghost cells is asked for, so that light and values at borders are those of
  * the whole. All ranks sample alike: they agree on what the automatic settings of each would take.
  * Supports everything of ParaView's own representation "Volume" that the mapper supports. The mapper refuses the rest by an error in
@@ -23,6 +24,7 @@
 #include <vector> // For std::vector
 
 class vtkColorTransferFunction;
+class vtkDataObject;
 class vtkDataSet;
 class vtkMultiProcessController;
 class vtkPiecewiseFunction;
@@ -99,6 +101,7 @@ protected:
   vtkStratusVolumeRepresentation();
   ~vtkStratusVolumeRepresentation() override;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
   int RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
   bool AddToView(vtkView* view) override;
@@ -112,6 +115,7 @@ private:
   vtkStratusMultiBlockVolumeMapper* GetMapper();
   vtkStratusVolumeMapper* GetSettings();
   void FindArray(vtkDataObject* data);
+  void TakeData(vtkDataObject* data);
   void ApplyBlendMode();
   void ApplySampling();
   void ShareBounds();

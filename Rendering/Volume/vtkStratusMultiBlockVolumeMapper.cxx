@@ -178,7 +178,8 @@ std::vector<Block> vtkStratusMultiBlockVolumeMapper::Internals::FindRefined(
     return {};
   }
   const std::string wanted = std::to_string(mapper->GetScalarMode()) + " " + std::to_string(mapper->GetArrayAccessMode()) + " " +
-    std::to_string(mapper->GetArrayId()) + " " + std::to_string(nearest) + " " + (mapper->GetArrayName() ? mapper->GetArrayName() : "");
+    std::to_string(mapper->GetArrayId()) + " " + std::to_string(nearest) + " " + std::to_string(mapper->GetPiece()) + "/" +
+    std::to_string(mapper->GetNumberOfPieces()) + " " + (mapper->GetArrayName() ? mapper->GetArrayName() : "");
   const vtkMTimeType time = vtkStratusAMR::GetTime(input);
   if (input != this->RefinedOf || time != this->RefinedTime || wanted != this->RefinedFor) {
     const auto find = [mapper](vtkDataSet* box, bool& cells) {
@@ -189,7 +190,7 @@ std::vector<Block> vtkStratusMultiBlockVolumeMapper::Internals::FindRefined(
       return array;
     };
     this->RefinedError.clear();
-    this->Refined.Set(input, find, nearest, this->RefinedError);
+    this->Refined.Set(input, find, nearest, this->RefinedError, mapper->GetPiece(), mapper->GetNumberOfPieces());
     this->RefinedOf = input;
     this->RefinedTime = time;
     this->RefinedFor = wanted;
@@ -492,6 +493,10 @@ double* vtkStratusMultiBlockVolumeMapper::GetBounds()
       if (OwnedBounds(grid, bounds)) {
         std::copy_n(bounds, 6, this->Bounds);
       }
+    } else if (auto* refined = vtkUniformGridAMR::SafeDownCast(input)) {
+      if (vtkStratusAMR::GetBounds(refined, this->Piece, this->NumberOfPieces, bounds)) {
+        std::copy_n(bounds, 6, this->Bounds);
+      }
     } else if (auto* tree = vtkCompositeDataSet::SafeDownCast(input)) {
       vtkBoundingBox box;
       for (vtkDataSet* block : vtkCompositeDataSet::GetDataSets(tree)) {
@@ -526,6 +531,7 @@ void vtkStratusMultiBlockVolumeMapper::ReleaseGraphicsResources(vtkWindow* windo
 void vtkStratusMultiBlockVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Piece: " << this->Piece << " of " << this->NumberOfPieces << "\n";
   os << indent << "NumberOfBlocks: " << this->GetNumberOfBlocks() << "\n";
   os << indent << "LastError: " << this->Internal->Error << "\n";
   os << indent << "Settings:\n";

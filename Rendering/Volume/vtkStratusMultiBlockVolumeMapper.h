@@ -3,11 +3,21 @@
  * @class   vtkStratusMultiBlockVolumeMapper
  * @brief   draws blocks of images and rectilinear grids, one behind the other, by a vtkStratusVolumeMapper each
  *
- * Replaces vtkMultiBlockVolumeMapper. The input is a vtkImageData, a vtkRectilinearGrid, or composite data of them at any depth
- * (vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection). Blocks that a plane across an axis of the data parts are
- * drawn in exact order, however uneven their sizes. Blocks that overlap are each drawn whole, the farther middle first, with a warning: use
- * vtkStratusMultiVolume for media that mix. Blocks that lack the array, and kinds of data that are no grid of these, are left out with a
- * warning. Each block chooses its own structure and sampling, and its gradients are one-sided at its border unless it has ghost cells.
+ * Replaces vtkMultiBlockVolumeMapper and vtkAMRVolumeMapper. The input is a vtkImageData, a vtkRectilinearGrid, composite data of them at
+ * any depth (vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection), or a vtkOverlappingAMR. Blocks that a plane
+ * across an axis of the data parts are drawn in exact order, however uneven their sizes. Blocks that overlap are each drawn whole, the
+ * farther middle first, with a warning: use vtkStratusMultiVolume for media that mix. Blocks that lack the array, and kinds of data that
+ * are no grid of these, are left out with a warning. Each block chooses its own structure and sampling, and its gradients are one-sided at
+ * its border unless it has ghost cells.
+ *
+ * Of AMR, each place has its finest cell, and the field has no crack between levels, whatever their ratios. Linear interpolation of values
+ * of cells is between centres; a cell that finer ones cover has their field's value at its centre, and where two levels meet, the finer
+ * side has the coarser side's values at the corners of halves of its cells. Values of points on such a border are those of the coarser
+ * side, too. Nearest interpolation, and first hits, show each cell's own value. The mapper makes grids side by side that hold this field
+ * exactly, with the finer cells of a place and, around them, the coarser ones at their own spacing; these are its blocks. Vectors are
+ * interpolated by components before their magnitude is taken. Levels must nest: a box lies on whole cells of the next coarser level, which
+ * has boxes there. Light by gradients, gradient opacity, functions of two variables and nearest interpolation of values of points are
+ * refused by an error, and so is vtkNonOverlappingAMR.
  *
  * What vtkVolumeMapper has (scalars, blend mode, cropping, clipping planes) is set at this mapper, the rest at GetSettings(); both hold for
  * all blocks. The blocks' pictures are blended as floats, so that their borders show nothing. That draws the blend modes composite,
@@ -39,6 +49,17 @@ public:
    * Get the mapper whose settings each block's mapper takes. It draws nothing itself.
    */
   vtkStratusVolumeMapper* GetSettings();
+
+  //@{
+  /**
+   * Set/Get which piece of AMR is drawn, and of how many: boxes of the space that share its values evenly. Other input is drawn whole.
+   * Numbers below their least become it. Default 0 of 1.
+   */
+  vtkSetClampMacro(Piece, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Piece, int);
+  vtkSetClampMacro(NumberOfPieces, int, 1, VTK_INT_MAX);
+  vtkGetMacro(NumberOfPieces, int);
+  //@}
 
   /**
    * Get the number of blocks of the last picture.
@@ -92,6 +113,8 @@ private:
 
   class Internals;
   std::unique_ptr<Internals> Internal;
+  int Piece = 0;
+  int NumberOfPieces = 1;
 };
 
 #endif

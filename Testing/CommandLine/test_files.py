@@ -639,7 +639,8 @@ def test_refined():
     array.SetName("values")
     fine.GetPointData().AddArray(array)
     write(vtkXMLImageDataWriter, fine, "fine.vti")
-    look = "--size", "120x100", "--device", "host", "--tolerance", "2e-4", "--opacity", "0:.01,.3:.02,.9:.6", "--color", "viridis", "--unit-distance", "1"
+    look = ("--size", "120x100", "--device", "host", "--tolerance", "2e-4",
+            "--opacity", "0:.01,.3:.02,.9:.6", "--color", "viridis", "--unit-distance", "1")
     pictures = []
     for name in "refined.vthb", "refined.vth", "fine.vti":
         expect(0, "picture", "render", name, "-o", "out.png", *look)

@@ -44,11 +44,11 @@ def look_like(view, output):
 
 
 def draw(path, array, opacity, color, unit, least, width=500, height=400, component=None, judged=None, settings=None, options=(),
-         judge=None, representation=None, headlight=False):
+         judge=None, representation=None, headlight=False, of="POINTS"):
     """The same scene twice: `stratus render` in floats, ParaView in bytes. component: of a vector, by its name; `stratus render` then draws
     the array `judged`, which holds that component alone, or the magnitude. settings: properties of the representation, which `options` are
     on the command line. judge: a file of the same data that `stratus render` draws. representation: where the reader's is another.
-    headlight: in place of ParaView's kit of lights."""
+    headlight: in place of ParaView's kit of lights. of: what the array is of."""
     name = os.path.splitext(os.path.basename(path))[0] + (f"-{judged}" if judged else "")
     name += options[0][1:] + options[1][:5] if len(options) > 1 else "".join(options)[1:]
     floats, bytes_ = (os.path.join(folder, name + end) for end in (".exr", ".png"))
@@ -58,7 +58,7 @@ def draw(path, array, opacity, color, unit, least, width=500, height=400, compon
     told = subprocess.run(command, capture_output=True, text=True)
     check(told.returncode == 0, told.stderr)
     view = make_view(width, height)
-    source, shown = show_volume(path, array, opacity, color, unit, view, representation, component)
+    source, shown = show_volume(path, array, opacity, color, unit, view, representation, component, of)
     if headlight:
         view.UseLight = 0
         lamp = simple.AddLight(view=view)

@@ -89,7 +89,8 @@ SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POIN
           ("image-translucent", "even.vti", "POINTS", [translucent]), ("image-cells", "boxes.vti", "CELLS", []),
           ("image-solid", "even.vti", "POINTS", [never_coloured]), ("two-cells", "two.vti", "POINTS", [close]),
           ("rectilinear", "levels.vtr", "POINTS", []), ("rectilinear-shade", "levels.vtr", "POINTS", [shade]),
-          ("blocks", "parts.vtm", "POINTS", []), ("structured", "hills.vts", "POINTS", []), ("structured-shade", "hills.vts", "POINTS", [shade]),
+          ("blocks", "parts.vtm", "POINTS", []), ("refined", "refined.vthb", "CELLS", []),
+          ("structured", "hills.vts", "POINTS", []), ("structured-shade", "hills.vts", "POINTS", [shade]),
           ("unstructured", "cells.vtu", "POINTS", []), ("unstructured-opaque", "cells.vtu", "POINTS", [opaque])]
 # Other scenes may differ by 1. The light of a mesh comes from gradients at its points, and the cells about a rank's points are not all on the
 # rank.

@@ -2,10 +2,14 @@
 """One smooth field on each kind of grid, for the plugin's tests: point arrays `hill`, `wind` (three components), `wind_alone` (its
 magnitude) and `wind_third` (its third component)."""
 import os
+import sys
 
 import numpy
 from paraview.vtk import vtkIOXML, vtkCommonCore, vtkCommonDataModel, vtkFiltersCore, vtkFiltersExtraction
 from paraview.vtk.util.numpy_support import numpy_to_vtk
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "VTK"))
+from refined import Refined, uneven
 
 COUNTS = (40, 36, 30)
 COLORS = [(0, 0.3, 0.4, 0.7), (0.5, 0.9, 0.9, 0.9), (1.4, 1, 0.9, 0.7)]
@@ -110,6 +114,13 @@ def blocks():
     return outer
 
 
+def refined():
+    """AMR of three levels, whose values are of cells."""
+    function = lambda x, y, z: vectors(numpy.stack([x, y, z], axis=-1))[..., 0]
+    data = Refined(uneven(), spacing=(2.5, 3.75, 2.6), origin=(100, -20, 5), function=function)
+    return data.data(vtkCommonDataModel, name="hill")
+
+
 def unstructured(grid):
     join = vtkFiltersCore.vtkAppendFilter()
     join.AddInputData(grid)
@@ -119,9 +130,10 @@ def unstructured(grid):
 
 def write_all(folder):
     """Returns the names of four files: levels.vtr, hills.vts, cells.vtu (the cells of hills.vts) and parts.vtm (blocks of levels.vtr).
-    Also writes even.vti; boxes.vti, whose values are of cells; and two.vti, of two cells."""
+    Also writes even.vti; refined.vthb, which is AMR; boxes.vti, whose values are of cells; and two.vti, of two cells."""
     for name, cells in ("even.vti", False), ("boxes.vti", True):
         write(image(cells), vtkIOXML.vtkXMLImageDataWriter(), folder, name)
+    write(refined(), vtkIOXML.vtkXMLUniformGridAMRWriter(), folder, "refined.vthb")
     two = vtkCommonDataModel.vtkImageData()
     two.SetDimensions(3, 2, 2)
     add(two, "hill", numpy.arange(12.0).reshape(3, 2, 2) / 10)

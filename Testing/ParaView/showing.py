@@ -7,7 +7,7 @@ from paraview import simple
 READERS = {".vti": ("XMLImageDataReader", "UniformGridRepresentation"), ".vtr": ("XMLRectilinearGridReader", "UniformGridRepresentation"),
            ".vtu": ("XMLUnstructuredGridReader", "UnstructuredGridRepresentation"),
            ".vts": ("XMLStructuredGridReader", "StructuredGridRepresentation"),
-           ".vtm": ("XMLMultiBlockDataReader", "UnstructuredGridRepresentation")}
+           ".vtm": ("XMLMultiBlockDataReader", "UnstructuredGridRepresentation"), ".vthb": ("XMLUniformGridAMRReader", "AMRRepresentation")}
 
 
 def make_view(width, height):
@@ -25,6 +25,8 @@ def show_volume(path, array, opacity, color, unit, view, representation=None, co
     what the array is of, POINTS or CELLS."""
     reader, usual = READERS[os.path.splitext(path)[1]]
     source = getattr(simple, reader)(FileName=[path])
+    if hasattr(source, "DefaultNumberOfLevels"):
+        source.DefaultNumberOfLevels = 0  # all of them
     source.UpdatePipeline()
     shown = simple.Show(source, view, representation or usual)
     simple.ColorBy(shown, (of, array, component) if component else (of, array))

@@ -122,6 +122,32 @@ def fields():
     check(levels == {1, 2, 4}, f"parts of the finer level, cores of it and coarse cells: {levels}")
 
 
+def pieces():
+    """Boxes that share the space: each has its part of the field."""
+    data = Refined(uneven(), spacing=SPACING, origin=ORIGIN)
+    meant, amr = data.field(), data.data(vtk)
+    for count in 1, 2, 3, 5:
+        volume = 0.0
+        for piece in range(count):
+            scene = Scene(blocks(), amr)
+            scene.mapper.SetNumberOfPieces(count)
+            scene.mapper.SetPiece(piece)
+            box = numpy.array([numpy.inf, -numpy.inf] * 3)
+            for grid in grids_of(scene):
+                places = [numpy.rint((axis - o) / h * 8).astype(int) for axis, o, h in zip(planes(grid), ORIGIN, SPACING)]
+                drawn = vtk_to_numpy(grid.GetPointData().GetScalars()).reshape(grid.GetDimensions(), order="F")
+                check(abs(drawn - meant[numpy.ix_(*places)]).max() < 1e-7, f"piece {piece} of {count}: its part of the field")
+                volume += numpy.prod([at[-1] - at[0] for at in places])
+                box[::2], box[1::2] = numpy.minimum(box[::2], grid.GetBounds()[::2]), numpy.maximum(box[1::2], grid.GetBounds()[1::2])
+            check(numpy.allclose(scene.mapper.GetBounds(), box), f"piece {piece} of {count}: bounds {scene.mapper.GetBounds()}, {box}")
+        check(volume == meant[1:, 1:, 1:].size, f"{count} pieces fill the space: {volume}")
+    scene = Scene(blocks(), amr)
+    scene.mapper.SetNumberOfPieces(400)
+    scene.mapper.SetPiece(399)
+    scene.picture(0)
+    check(not scene.errors, "a piece of nothing")
+
+
 def constant():
     """Nearest interpolation: each place has its finest cell's value, whatever its type."""
     data = Refined(uneven(), function=lambda x, y, z: numpy.floor(50 * bump(x, y, z)), spacing=SPACING, origin=ORIGIN)
@@ -252,6 +278,7 @@ def follows():
 
 
 fields()
+pieces()
 constant()
 pictures()
 refusals()
