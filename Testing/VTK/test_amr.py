@@ -113,9 +113,8 @@ def judge_field(ratios, cells, counts=(16, 12, 10), boxes=None):
 
 
 def fields():
-    for ratios in (2, 2), (3, 2), (2, 3), (4, 1):
-        for cells in True, False:
-            judge_field(ratios, cells)
+    for ratios, cells in ((2, 2), True), ((2, 2), False), ((3, 2), True), ((2, 3), False), ((4, 1), True):
+        judge_field(ratios, cells)
     # A large box of one level, so that its core is taken apart from its border, and coarse cells stay coarse.
     wide = [(0, (0, 0, 0), (50, 30, 30)), (1, (30, 4, 4), (90, 54, 54))]
     levels = judge_field((2,), True, (50, 30, 30), wide)
@@ -126,7 +125,7 @@ def pieces():
     """Boxes that share the space: each has its part of the field."""
     data = Refined(uneven(), spacing=SPACING, origin=ORIGIN)
     meant, amr = data.field(), data.data(vtk)
-    for count in 1, 2, 3, 5:
+    for count in 2, 3:
         volume = 0.0
         for piece in range(count):
             scene = Scene(blocks(), amr)
@@ -186,7 +185,7 @@ def pictures():
     meant = Scene(stratus.vtkStratusVolumeMapper(), image_of(data.field(), 8))
     exact = Scene(stratus.vtkStratusVolumeMapper(), image_of(bump(*fine), 8))
     coarse = Scene(stratus.vtkStratusVolumeMapper(), image_of(bump(*[axis[::8, ::8, ::8] for axis in fine]), 1))
-    for view in (20, 10, False), (115, -35, True), (260, 60, False), (75, 5, False, True):
+    for view in (20, 10, False), (115, -35, True), (75, 5, False, True):
         parts = [scene.picture(*view) for scene in (refined, meant, exact, points, coarse)]
         check(not refined.errors + points.errors, f"no complaint: {refined.errors}")
         shown = parts[2][:, 3] > 0.004
@@ -277,10 +276,6 @@ def follows():
     check(scene.errors == [], f"empty: {scene.errors}")
 
 
-fields()
-pieces()
-constant()
-pictures()
-refusals()
-follows()
+for test in fields, pieces, constant, pictures, refusals, follows:
+    test()
 done()
