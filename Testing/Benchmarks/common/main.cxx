@@ -3,6 +3,7 @@
 #include "bench.h"
 #include "distance.h"
 #include "octree_bench.h"
+#include "paraview_bench.h"
 #include "tetra_bench.h"
 #include "tree_methods.h"
 
@@ -47,6 +48,9 @@ int main(int argc, char* argv[])
     }
     if (part == "tetra") {
       return bench::tetra_main(argc, argv);
+    }
+    if (part == "paraview") {
+      return bench::paraview_main(argc, argv);
     }
     if (part == "all") {
       return bench::all_main(argc, argv);

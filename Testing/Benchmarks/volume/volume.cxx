@@ -48,7 +48,8 @@ floor_ms is an estimate, not a bound: the samples with alpha > 0, one a voxel un
 up, skips and tests nothing. A method can take fewer samples than floor counts.
 
 stratus-bench all --out FOLDER measures everything, stratus-bench compare A B compares two such runs.
-stratus-bench distance --help tells of distance fields, octree --help of culling, tetra --help of tetrahedra, tree --help of first hits.
+stratus-bench distance --help tells of distance fields, octree --help of culling, tetra --help of tetrahedra, tree --help of first hits,
+paraview --help of the plugin in ParaView.
 )";
 
 struct options {
