@@ -60,6 +60,8 @@ foreach (module IN LISTS stratus_modules)
   vtk_module_compile_options("${module}" PRIVATE -Wall -Wextra $<$<BOOL:${STRATUS_WERROR}>:-Werror>)
 endforeach ()
 
+add_subdirectory(Rendering/Factory)
+
 # ---- Python: package `stratus` beside Debian's `vtk`
 if (VTK_WRAP_PYTHON AND TARGET VTK::WrappingPythonCore)
   # The interpreter VTK was built with, not the first one on PATH.

@@ -130,6 +130,11 @@ const char* vtkStratusTetrahedraMapper::GetMethodAsString()
   return stratus_tetra_method_name(static_cast<stratus_tetra_method>(this->Method));
 }
 
+const char* vtkStratusTetrahedraMapper::GetLastError()
+{
+  return this->Internal->LastError.c_str();
+}
+
 const char* vtkStratusTetrahedraMapper::GetMethodUsedAsString()
 {
   return stratus_tetra_method_name(this->Internal->Report.method);

@@ -245,6 +245,12 @@ public:
   //@}
 
   /**
+   * Get the reason why the last picture was refused, empty if it was not. An error event reports it, too, but only once for equal reasons
+   * in a row.
+   */
+  const char* GetLastError();
+
+  /**
    * Get the last picture as floats, of the renderer's viewport's size: point arrays RGBA (premultiplied by alpha) and Depth (world distance
    * along the ray from the eye, infinity where nothing is). nullptr before the first picture. Each call makes a new image.
    */

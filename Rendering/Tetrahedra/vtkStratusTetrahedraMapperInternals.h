@@ -49,7 +49,7 @@ public:
   stratus_tetra_report Report = stratus_tetra_report();
   vtkNew<vtkTable> BuildReport;
   vtkStratusDisplay Display;
-  std::string LastError; // reported already
+  std::string LastError; // of the last picture, reported already; empty: none
 
 private:
   bool OnProgress(double fraction);

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusFactoryVolumeMapper.h"
+
+#include "vtkStratusFactory.h"
+#include "vtkStratusVolumeMapper.h"
+
+#include "vtkAlgorithmOutput.h"
+#include "vtkCallbackCommand.h"
+#include "vtkImageData.h"
+#include "vtkObjectFactory.h"
+#include "vtkShaderProperty.h"
+#include "vtkVersionMacros.h"
+#include "vtkVolume.h"
+#include "vtkVolumeProperty.h"
+
+vtkStandardNewMacro(vtkStratusFactoryVolumeMapper);
+
+vtkStratusFactoryVolumeMapper::vtkStratusFactoryVolumeMapper()
+{
+  // What these two mean to VTK's mappers, since the program was written for them.
+  this->Own->SetGradientOpacityDistance(-1.0);
+  this->Own->SetComponentMixingToMean();
+  // An error that somebody hears is not printed: VTK's mapper draws then.
+  vtkNew<vtkCallbackCommand> hears;
+  this->Own->AddObserver(vtkCommand::ErrorEvent, hears);
+}
+
+vtkStratusFactoryVolumeMapper::~vtkStratusFactoryVolumeMapper() = default;
+
+// Finds what vtkStratusVolumeMapper is not told of and so cannot refuse. Returns "" if there is nothing.
+std::string vtkStratusFactoryVolumeMapper::FindHindrance(vtkVolume* volume)
+{
+  if (this->GetInputCount() > 1 || this->GetNumberOfInputConnections(0) != 1) {
+    return "several volumes share one mapper";
+  }
+  vtkShaderProperty* shaders = volume->GetShaderProperty();
+  if (shaders && (shaders->HasVertexShaderCode() || shaders->HasFragmentShaderCode() || shaders->GetNumberOfShaderReplacements() > 0)) {
+    return "the volume has shaders of its own";
+  }
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)
+  if (this->GetVolumetricScatteringBlending() > 0.0f || this->GetGlobalIlluminationReach() > 0.0f) {
+    return "light is scattered or casts shadows";
+  }
+  if (this->GetComputeNormalFromOpacity()) {
+    return "normals are those of opacity";
+  }
+#endif
+  return "";
+}
+
+void vtkStratusFactoryVolumeMapper::TakeSettings()
+{
+  vtkStratusVolumeMapper* own = this->Own;
+  if (own->GetNumberOfInputConnections(0) != 1 || own->GetInputConnection(0, 0) != this->GetInputConnection(0, 0)) {
+    own->SetInputConnection(this->GetInputConnection(0, 0));
+  }
+  own->SetScalarMode(this->ScalarMode);
+  if (this->ArrayAccessMode == VTK_GET_ARRAY_BY_ID) {
+    own->SelectScalarArray(this->ArrayId);
+  } else {
+    own->SelectScalarArray(this->ArrayName);
+  }
+  own->SetArrayAccessMode(this->ArrayAccessMode);
+  own->SetBlendMode(this->BlendMode);
+  own->SetAverageIPScalarRange(this->AverageIPScalarRange);
+  own->SetCropping(this->Cropping);
+  own->SetCroppingRegionPlanes(this->CroppingRegionPlanes);
+  own->SetCroppingRegionFlags(this->CroppingRegionFlags);
+  own->SetClippingPlanes(this->ClippingPlanes);
+  // Steps are left to the tolerance: a program sets them for the sake of the picture or of speed, of which each has its own way here.
+  own->SetAutoAdjustSampleDistances(this->AutoAdjustSampleDistances);
+  own->SetImageSampleDistance(this->ImageSampleDistance);
+  own->SetMaximumImageSampleDistance(this->MaximumImageSampleDistance);
+  own->SetFinalColorWindow(this->FinalColorWindow);
+  own->SetFinalColorLevel(this->FinalColorLevel);
+  own->SetUseJittering(this->UseJittering);
+  own->SetMaskInput(this->MaskInput);
+  own->SetMaskType(this->MaskType);
+  own->SetMaskBlendFactor(this->MaskBlendFactor);
+  own->SetTransfer2DYAxisArray(this->Transfer2DYAxisArray);
+  own->SetRenderToImage(this->RenderToImage);
+  own->SetDepthImageScalarType(this->DepthImageScalarType);
+}
+
+void vtkStratusFactoryVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
+{
+  std::string reason = this->FindHindrance(volume);
+  if (reason.empty()) {
+    this->TakeSettings();
+    this->Own->Render(renderer, volume);
+    reason = this->Own->GetLastError();
+  }
+  this->DrawnByOwn = reason.empty();
+  if (!this->DrawnByOwn) {
+    vtkStratusSayWhyNot(reason);
+    this->Superclass::Render(renderer, volume);
+  }
+}
+
+void vtkStratusFactoryVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
+{
+  this->Own->ReleaseGraphicsResources(window);
+  this->Superclass::ReleaseGraphicsResources(window);
+}
+
+void vtkStratusFactoryVolumeMapper::GetColorImage(vtkImageData* image)
+{
+  if (this->DrawnByOwn) {
+    this->Own->GetColorImage(image);
+  } else {
+    this->Superclass::GetColorImage(image);
+  }
+}
+
+void vtkStratusFactoryVolumeMapper::GetDepthImage(vtkImageData* image)
+{
+  if (this->DrawnByOwn) {
+    this->Own->GetDepthImage(image);
+  } else {
+    this->Superclass::GetDepthImage(image);
+  }
+}
+
+void vtkStratusFactoryVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "DrawnByOwn: " << this->DrawnByOwn << "\n";
+  os << indent << "Own:\n";
+  this->Own->PrintSelf(os, indent.GetNextIndent());
+}
