@@ -29,6 +29,11 @@ foreach (test IN ITEMS pictures datasets files lights refined)
   set_tests_properties(paraview_${test} PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin")
 endforeach ()
 
+stratus_add_test(paraview_tutorial paraview "${CMAKE_COMMAND}" -E env "STRATUS_PVBATCH=${paraview}/usr/bin/pvbatch"
+  "STRATUS_PLUGIN=${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" ${stratus_display}
+  "${PROJECT_SOURCE_DIR}/Testing/Documentation/test_tutorials.py" "${CMAKE_BINARY_DIR}" "${CMAKE_BINARY_DIR}/Testing/Temporary/tutorials" paraview)
+set_tests_properties(paraview_tutorial PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin")
+
 if (TARGET TestStratusVDBReader) # whose sparse grids are read
   set_tests_properties(paraview_files PROPERTIES DEPENDS TestStratusVDBReader)
 endif ()

@@ -18,7 +18,7 @@ static int find_vtk(struct dl_phdr_info* info, size_t size, void* found)
   (void)size;
   const char* slash = strrchr(info->dlpi_name, '/');
   const char* name = slash ? slash + 1 : info->dlpi_name;
-  if (strncmp(name, "libvtkCommonCore", 16) == 0) {
+  if (strncmp(name, "libvtkCommonCore", 16) == 0 || strncmp(name, "libvtkCommon-", 13) == 0) { /* the latter in a VTK of kits */
     snprintf(found, NAME_MAX, "%s", name);
     return strcmp(name, STRATUS_VTK_LIBRARY) == 0; /* the right one ends the search */
   }
