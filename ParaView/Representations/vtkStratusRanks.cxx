@@ -9,6 +9,8 @@
 #include "vtkPropCollection.h"
 #include "vtkRenderer.h"
 
+#include <vector>
+
 int stratus::count_ranks()
 {
   vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
@@ -26,6 +28,22 @@ bool stratus::join_bounds(vtkMultiProcessController* controller, const double mi
     whole[i] = i % 2 ? -least[i] : least[i];
   }
   return least[0] < VTK_DOUBLE_MAX;
+}
+
+std::string stratus::agree_on_array(vtkMultiProcessController* controller, const std::string& mine, bool& on_cells)
+{
+  constexpr size_t length = 257; // what it is of, the name, 0
+  std::vector<char> own(length, 0), all(length * static_cast<size_t>(controller->GetNumberOfProcesses()));
+  own[0] = on_cells ? 1 : 0;
+  mine.copy(&own[1], length - 2);
+  controller->AllGather(own.data(), all.data(), static_cast<vtkIdType>(length));
+  for (size_t at = 0; at < all.size(); at += length) {
+    if (all[at + 1]) {
+      on_cells = all[at] != 0;
+      return std::string(&all[at + 1]);
+    }
+  }
+  return std::string();
 }
 
 vtkSmartPointer<vtkPlaneCollection> stratus::planes_between(const double own[6], const double whole[6], vtkMatrix4x4* matrix)

@@ -4,6 +4,8 @@
 
 #include "vtkSmartPointer.h"
 
+#include <string>
+
 class vtkMatrix4x4;
 class vtkMultiProcessController;
 class vtkPlaneCollection;
@@ -17,6 +19,9 @@ int count_ranks();
 // Gives the bounds about those of all ranks, each of which may be uninitialized. Returns false, and leaves `whole`, if all are. Every rank
 // of the controller must call it.
 bool join_bounds(vtkMultiProcessController* controller, const double mine[6], double whole[6]);
+
+// Returns the first rank's array that is not "", and sets whether it is of cells. Names are cut after 255 bytes. Every rank must call it.
+std::string agree_on_array(vtkMultiProcessController* controller, const std::string& mine, bool& on_cells);
 
 // Returns planes in the faces of a rank's bounds that are not faces of all ranks' bounds; their normals point into the rank's part. matrix:
 // from the bounds' coordinates to the world's.

@@ -4,13 +4,13 @@
 #include "vtkStratusCompositePass.h"
 #include "vtkStratusLODVolume.h"
 #include "vtkStratusPanelUpdate.h"
+#include "vtkStratusRankCells.h"
 #include "vtkStratusRanks.h"
 #include "vtkStratusScalarChoice.h"
 #include "vtkStratusSolidColor.h"
 #include "vtkStratusTetrahedraMapper.h"
 
 #include "vtkAlgorithmOutput.h"
-#include "vtkAppendFilter.h"
 #include "vtkBoundingBox.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkContourValues.h"
@@ -43,29 +43,11 @@ void bounds_of(vtkDataObject* data, double bounds[6])
   }
 }
 
-// Copies composite data block by block, for arrays may be added to them. Among several ranks blocks become one grid: ParaView's
-// redistribution loses composite data.
+// Copies composite data block by block, for arrays may be added to them.
 vtkSmartPointer<vtkDataObject> Copy(vtkDataObject* data)
 {
-  auto* blocks = vtkCompositeDataSet::SafeDownCast(data);
-  vtkSmartPointer<vtkDataObject> copy;
-  if (!blocks || stratus::count_ranks() == 1) {
-    copy.TakeReference(data->NewInstance());
-    copy->ShallowCopy(data);
-    return copy;
-  }
-  vtkNew<vtkAppendFilter> join;
-  for (vtkDataSet* block : vtkCompositeDataSet::GetDataSets(blocks)) {
-    if (block->GetNumberOfCells() > 0) {
-      join->AddInputData(block);
-    }
-  }
-  if (join->GetNumberOfInputConnections(0) > 0) {
-    join->Update();
-    copy = join->GetOutput();
-  } else {
-    copy = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  }
+  const auto copy = vtkSmartPointer<vtkDataObject>::Take(data->NewInstance());
+  copy->ShallowCopy(data);
   return copy;
 }
 } // namespace
@@ -131,10 +113,8 @@ int vtkStratusTetrahedraRepresentation::ProcessViewRequest(vtkInformationRequest
     vtkPVRenderView::SetPiece(in, this, this->OutlineSource->GetOutputDataObject(0), 0, 1);
     vtkPVRenderView::SetDeliverToClientAndRenderingProcesses(in, this, false, false, 0);
     // ParaView cuts the cells' space into a box a rank, which it can put in order. Cells that reach into several boxes are whole on each of
-    // their ranks, and the mapper clips them (ClipTo).
-    vtkPVRenderView::SetOrderedCompositingConfiguration(
-      in, this, vtkPVRenderView::DATA_IS_REDISTRIBUTABLE | vtkPVRenderView::USE_DATA_FOR_LOAD_BALANCING);
-    vtkPVRenderView::SetRedistributionModeToDuplicateBoundaryCells(in, this);
+    // their ranks (Deal), and the mapper clips them (ClipTo).
+    vtkPVRenderView::SetOrderedCompositingConfiguration(in, this, vtkPVRenderView::USE_DATA_FOR_LOAD_BALANCING);
     vtkPVRenderView::SetRequiresDistributedRendering(in, this, true);
     vtkPVRenderView::SetGeometryBounds(in, this, this->DataBounds, matrix);
   } else if (request == vtkPVView::REQUEST_UPDATE_LOD()) {
@@ -146,14 +126,32 @@ int vtkStratusTetrahedraRepresentation::ProcessViewRequest(vtkInformationRequest
   return 1;
 }
 
-void vtkStratusTetrahedraRepresentation::UpdateMapper(vtkDataObject* data)
+// Finds the array that is drawn. Returns nullptr where there is none.
+const char* vtkStratusTetrahedraRepresentation::GetShownArray(bool& on_cells)
 {
-  this->Solid->Apply(this->Property);
   vtkInformation* info = this->GetInputArrayInformation(0);
   const char* name = info && info->Has(vtkDataObject::FIELD_NAME()) ? info->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  const bool on_cells = info && info->Has(vtkDataObject::FIELD_ASSOCIATION()) &&
+  on_cells = info && info->Has(vtkDataObject::FIELD_ASSOCIATION()) &&
     info->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
-  bool any = name && name[0];
+  return name && name[0] ? name : nullptr;
+}
+
+void vtkStratusTetrahedraRepresentation::UpdateMapper(vtkDataObject* data)
+{
+  bool on_cells = false;
+  const char* name = this->GetShownArray(on_cells);
+  this->Solid->Apply(this->Property);
+  this->Piece = data;
+  if (stratus::count_ranks() == 1) {
+    this->Show(data, name ? name : "", on_cells);
+  } else {
+    this->Show(this->Dealt, this->DealtArray, this->DealtCells);
+  }
+}
+
+void vtkStratusTetrahedraRepresentation::Show(vtkDataObject* data, const std::string& name, bool on_cells)
+{
+  bool any = data && !name.empty();
   if (auto* grid = vtkDataSet::SafeDownCast(data)) {
     any = any && grid->GetNumberOfCells() > 0; // a rank may be left without any
   }
@@ -163,11 +161,43 @@ void vtkStratusTetrahedraRepresentation::UpdateMapper(vtkDataObject* data)
   }
   this->Property->SetIndependentComponents(this->MapScalars && !this->MultiComponentsMapping && !this->UseSeparateOpacityArray);
   const std::string shown =
-    this->UseSeparateOpacityArray ? std::string(name) + "_and_opacity" : stratus::choose_scalars(data, name, on_cells, this->Property);
+    this->UseSeparateOpacityArray ? name + "_and_opacity" : stratus::choose_scalars(data, name.c_str(), on_cells, this->Property);
   this->Mapper->SetScalarMode(on_cells ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
   this->Mapper->SelectScalarArray(shown.c_str());
   this->Mapper->SetInputDataObject(data);
   this->Actor->SetMapper(this->Mapper);
+}
+
+// Gives this rank the cells in its box, and those that light reads beyond it, where that has changed. Every rank must call it.
+void vtkStratusTetrahedraRepresentation::Deal(vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>& boxes)
+{
+  bool on_cells = false;
+  const char* name = this->GetShownArray(on_cells);
+  std::vector<double> state = { static_cast<double>(this->Piece ? this->Piece->GetMTime() : 0), static_cast<double>(on_cells),
+    static_cast<double>(this->Property->GetShade()), static_cast<double>(this->UseSeparateOpacityArray) };
+  for (const vtkBoundingBox& box : boxes) {
+    double bounds[6];
+    box.GetBounds(bounds);
+    state.insert(state.end(), bounds, bounds + 6);
+  }
+  const int changed = !this->Dealt || state != this->DealtFor || this->DealtOf != this->Piece || (name ? name : "") != this->DealtName;
+  int any_changed = 0;
+  ranks->AllReduce(&changed, &any_changed, 1, vtkCommunicator::MAX_OP);
+  if (!any_changed) {
+    return;
+  }
+  this->DealtFor = state;
+  this->DealtOf = this->Piece;
+  this->DealtName = name ? name : "";
+  this->DealtArray = stratus::agree_on_array(ranks, this->DealtName, on_cells); // a rank without data has found none
+  this->DealtCells = on_cells;
+  stratus::Dealing dealing;
+  dealing.cells = on_cells;
+  dealing.names.push_back(this->UseSeparateOpacityArray ? this->DealtArray + "_and_opacity" : this->DealtArray);
+  dealing.layers = this->Property->GetShade() ? (on_cells ? 2 : 1) : 0;
+  bool lacks = false;
+  this->Dealt = stratus::deal_cells(ranks, this->Piece, boxes, dealing, lacks);
+  this->Show(this->Dealt, this->DealtArray, this->DealtCells);
 }
 
 // Draws what lies in a rank's box. Faces of the box that are faces of all boxes together cut nothing, since cells beyond them are drawn,
@@ -233,6 +263,7 @@ bool vtkStratusTetrahedraRepresentation::AddToView(vtkView* view)
   this->Panel->Enter(render_view->GetRenderer(), this);
   vtkStratusCompositePass::Enter(
     render_view->GetRenderer(), this, [this](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>& boxes) {
+      this->Deal(ranks, boxes);
       this->ClipTo(boxes, ranks->GetLocalProcessId());
     });
   return this->Superclass::AddToView(view);

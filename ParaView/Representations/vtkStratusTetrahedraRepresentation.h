@@ -4,9 +4,9 @@
  * @brief   ParaView's volume rendering of cells by vtkStratusTetrahedraMapper
  *
  * Draws unstructured and structured grids and composite data of them as they are: nothing divides their cells before the mapper does.
- * Several ranks redistribute the cells as ParaView asks, so that each has all cells that reach into a box of its own, and draws what of
- * them lies in the box. Arrays of several components are drawn by their
- * magnitude or one component, as the colour map says. The mapper refuses the rest by an error in ParaView's messages.
+ * Several ranks deal the cells out, so that each has all that reach into the box that ParaView gives it, and draws what of them lies in the
+ * box. Arrays of several components are drawn by their magnitude or one component, as the colour map says. The mapper refuses the rest by
+ * an error in ParaView's messages.
  *
  * @sa vtkStratusTetrahedraMapper
  */
@@ -19,10 +19,12 @@
 #include "vtkVolumeRepresentation.h"
 
 #include <memory> // For std::unique_ptr
+#include <string> // For std::string
 #include <vector> // For std::vector
 
 class vtkBoundingBox;
 class vtkColorTransferFunction;
+class vtkMultiProcessController;
 class vtkPiecewiseFunction;
 class vtkPolyDataMapper;
 class vtkStratusTetrahedraMapper;
@@ -112,14 +114,25 @@ private:
   void operator=(const vtkStratusTetrahedraRepresentation&) = delete;
 
   void FindArray(vtkDataObject* data);
+  const char* GetShownArray(bool& on_cells);
   void UpdateMapper(vtkDataObject* data);
+  void Show(vtkDataObject* data, const std::string& name, bool on_cells);
+  void Deal(vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>& boxes);
   void ClipTo(const std::vector<vtkBoundingBox>& boxes, int rank);
 
   std::unique_ptr<stratus::SolidColor> Solid;
   std::unique_ptr<stratus::PanelUpdate> Panel;
   vtkNew<vtkStratusTetrahedraMapper> Mapper;
   vtkNew<vtkPolyDataMapper> OutlineMapper;
-  vtkSmartPointer<vtkDataObject> Cache; // what of the input this rank draws
+  vtkSmartPointer<vtkDataObject> Cache; // what of the input this rank has
+  vtkSmartPointer<vtkDataObject> Piece; // the same where it is drawn
+  // Among several ranks: what this one draws, the array of it, and what it was dealt for.
+  vtkSmartPointer<vtkDataObject> Dealt;
+  std::string DealtArray;
+  bool DealtCells = false;
+  std::vector<double> DealtFor;
+  vtkSmartPointer<vtkDataObject> DealtOf;
+  std::string DealtName;
 };
 
 #endif
