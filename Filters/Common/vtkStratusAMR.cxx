@@ -104,24 +104,21 @@ bool FindSource(vtkUniformGrid* grid, const std::string& name, bool cells, Sourc
   return vtkStratusFindGhosts(data, count, cells ? "cells of a box" : "points of a box", source.Flags, error);
 }
 
-// Whether floats would lose digits that tell values apart: those of values that lie close together, far from 0.
-bool NeedsDoubles(const std::vector<Source>& sources)
+// How a level's values become those of grids.
+struct Kind {
+  int Type;
+  double Least; // values nearer to 0 become 0: a grid that had no others could not be told from an even one by floats
+};
+
+// Takes doubles where floats would lose digits that tell values apart: those of values that lie close together, far from 0.
+Kind ChooseKind(const vtkStratusAMRField& field, int type, bool nearest)
 {
-  if (vtkDataArray::GetDataTypeSize(sources[0].Values->GetDataType()) < 4 || sources[0].Values->GetDataType() == VTK_FLOAT) {
-    return false;
-  }
-  double lo = HUGE_VAL, hi = -HUGE_VAL, range[2];
-  for (const Source& source : sources) {
-    for (int c = 0; c < source.Values->GetNumberOfComponents(); ++c) {
-      source.Values->GetFiniteRange(range, c);
-      if (range[0] <= range[1]) {
-        lo = std::min(lo, range[0]);
-        hi = std::max(hi, range[1]);
-      }
-    }
-  }
-  const double most = std::max(std::fabs(lo), std::fabs(hi));
-  return lo <= hi && (most > 1e38 || hi - lo < 0.125 * most);
+  double range[2];
+  const bool any = field.GetRange(range);
+  const double most = any ? std::max(std::fabs(range[0]), std::fabs(range[1])) : 0.0;
+  const bool digits = vtkDataArray::GetDataTypeSize(type) >= 4 && type != VTK_FLOAT;
+  const bool doubles = digits && any && range[1] - range[0] < 0.125 * most;
+  return { nearest ? type : doubles ? VTK_DOUBLE : VTK_FLOAT, std::min(1e-33, 1e-3 * most) };
 }
 
 bool IsEven(const std::vector<int64_t>& planes)
@@ -172,8 +169,8 @@ vtkSmartPointer<vtkDataSet> MakeGrid(const std::vector<int64_t> planes[3], const
 }
 
 // Fills the values of a leaf's grid, layer by layer.
-void Fill(
-  const vtkStratusAMRField& field, const vtkStratusAMRLeaf& leaf, const std::vector<int64_t> planes[3], bool nearest, vtkDataArray* values)
+void Fill(const vtkStratusAMRField& field, const vtkStratusAMRLeaf& leaf, const std::vector<int64_t> planes[3], bool nearest, double least,
+  vtkDataArray* values)
 {
   const size_t less = nearest ? 1 : 0;
   const size_t counts[3] = { planes[0].size() - less, planes[1].size() - less, planes[2].size() - less };
@@ -196,7 +193,7 @@ void Fill(
             field.Evaluate(at, cache, tuple.data());
           }
           for (size_t c = 0; c < components; ++c) {
-            values->SetComponent(id, static_cast<int>(c), tuple[c]);
+            values->SetComponent(id, static_cast<int>(c), std::fabs(tuple[c]) < least ? 0.0 : tuple[c]);
           }
         }
       }
@@ -350,7 +347,7 @@ bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, bool nea
   for (double& along : unit) {
     along *= 0.5;
   }
-  const int drawn_type = nearest ? type : NeedsDoubles(sources) ? VTK_DOUBLE : VTK_FLOAT;
+  const Kind kind = ChooseKind(field, type, nearest);
   const vtkStratusAMRLeaves leaves(field, nearest, piece, pieces);
   for (const vtkStratusAMRLeaf& leaf : leaves.GetLeaves()) {
     std::vector<int64_t> planes[3];
@@ -358,9 +355,9 @@ bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, bool nea
       planes[axis] = leaves.GetPlanes(leaf, axis);
     }
     const vtkSmartPointer<vtkDataSet> grid = MakeGrid(planes, amr->GetOrigin(), unit);
-    auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(drawn_type));
+    auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(kind.Type));
     values->SetName(this->ArrayName.c_str());
-    Fill(field, leaf, planes, nearest, values);
+    Fill(field, leaf, planes, nearest, kind.Least, values);
     vtkDataSetAttributes* data = nearest ? static_cast<vtkDataSetAttributes*>(grid->GetCellData()) : grid->GetPointData();
     data->SetScalars(values);
     this->Grids.push_back(grid);

@@ -194,21 +194,43 @@ bool vtkStratusAMRField::End(std::string& error)
   return true;
 }
 
-// Finds the coarsest level of the cells that show and touch a place; -1: there is none. octant: on which side of the place one of them
-// lies, a bit an axis.
-int vtkStratusAMRField::FindCoarsest(const Place& at, Cache& cache, int& octant) const
+bool vtkStratusAMRField::GetRange(double range[2]) const
+{
+  const auto components = static_cast<size_t>(this->Components);
+  range[0] = HUGE_VAL;
+  range[1] = -HUGE_VAL;
+  for (const Level& level : this->Levels) {
+    for (const auto& tile : level.Tiles) {
+      for (size_t i = 0; i < tile.second->Values.size(); ++i) {
+        const double value = tile.second->Values[i];
+        const uint8_t state = tile.second->State[i / components];
+        if (state & HAS_VALUE && !(this->Cells && state & COVERED) && std::fabs(value) <= 1e30) {
+          range[0] = std::min(range[0], value);
+          range[1] = std::max(range[1], value);
+        }
+      }
+    }
+  }
+  return range[0] <= range[1];
+}
+
+// Finds the coarsest level of the cells that show and touch a place; -1: there is none.
+int vtkStratusAMRField::FindCoarsest(const Place& at, Cache& cache) const
 {
   for (int level = 0; level < this->GetNumberOfLevels(); ++level) {
-    int64_t cells[3][2];
-    for (int axis = 0; axis < 3; ++axis) {
-      const int64_t width = this->GetCell(level, axis);
-      cells[axis][1] = Floor(at[static_cast<size_t>(axis)], width);
-      cells[axis][0] = cells[axis][1] - (cells[axis][1] * width == at[static_cast<size_t>(axis)] ? 1 : 0);
+    Place last, first;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const int64_t width = this->GetCell(level, static_cast<int>(axis));
+      last[axis] = Floor(at[axis], width);
+      first[axis] = last[axis] - (last[axis] * width == at[axis] ? 1 : 0);
     }
-    for (octant = 0; octant < 8; ++octant) {
-      const Place cell = { cells[0][octant & 1], cells[1][octant >> 1 & 1], cells[2][octant >> 2] };
-      if ((this->StateOf(level, cell, cache) & (EXISTS | COVERED)) == EXISTS) {
-        return level;
+    for (int64_t k = first[2]; k <= last[2]; ++k) {
+      for (int64_t j = first[1]; j <= last[1]; ++j) {
+        for (int64_t i = first[0]; i <= last[0]; ++i) {
+          if ((this->StateOf(level, { i, j, k }, cache) & (EXISTS | COVERED)) == EXISTS) {
+            return level;
+          }
+        }
       }
     }
   }
@@ -250,8 +272,7 @@ void vtkStratusAMRField::EvaluateNode(int level, const Place& at, Cache& cache, 
 
 void vtkStratusAMRField::Evaluate(const Place& at, Cache& cache, double* sums) const
 {
-  int octant = 0;
-  const int level = this->FindCoarsest(at, cache, octant);
+  const int level = this->FindCoarsest(at, cache);
   const auto components = static_cast<size_t>(this->Components);
   if (level < 0) {
     std::fill_n(sums, components, std::numeric_limits<double>::quiet_NaN());
@@ -271,9 +292,8 @@ void vtkStratusAMRField::Evaluate(const Place& at, Cache& cache, double* sums) c
     this->EvaluateNode(level, at, cache, sums);
     return;
   }
-  std::vector<double> corner(components);
   std::fill_n(sums, components, 0.0);
-  for (int c = 0; c < 8; ++c) {
+  for (size_t c = 0; c < 8; ++c) {
     double weight = 1.0;
     Place node = lo;
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -282,12 +302,30 @@ void vtkStratusAMRField::Evaluate(const Place& at, Cache& cache, double* sums) c
       node[axis] += upper ? width[axis] : 0;
     }
     if (weight > 0.0) {
-      this->Evaluate(node, cache, corner.data());
+      const double* corner = this->EvaluateCorner(level, lo, c, node, cache);
       for (size_t i = 0; i < components; ++i) {
         sums[i] += weight * corner[i];
       }
     }
   }
+}
+
+// Gives the field at a corner of a part of a cell, from what is kept of the part if it is the last one.
+const double* vtkStratusAMRField::EvaluateCorner(int level, const Place& part, size_t corner, const Place& node, Cache& cache) const
+{
+  const auto components = static_cast<size_t>(this->Components);
+  Part& kept = cache.Parts[level];
+  if (kept.Values.empty() || kept.Lo != part) {
+    kept.Lo = part;
+    kept.Known = 0;
+    kept.Values.resize(8 * components);
+  }
+  double* values = kept.Values.data() + corner * components;
+  if (!(kept.Known >> corner & 1)) {
+    this->Evaluate(node, cache, values); // at a corner of its own or in a part of a coarser level
+    kept.Known |= 1 << corner;
+  }
+  return values;
 }
 
 bool vtkStratusAMRField::EvaluateCell(const Place& lo, const Place& hi, Cache& cache, double* values) const

@@ -49,6 +49,8 @@ public:
   int GetNumberOfComponents() const { return this->Components; }
   bool IsOfCells() const { return this->Cells; }
   const std::vector<Box>& GetBoxes() const { return this->Boxes; }
+  // Gives the range of what shows, without values beyond 1e30, which stand for none. Returns false where there is nothing.
+  bool GetRange(double range[2]) const;
   // Units along a cell of a level.
   int64_t GetCell(int level, int axis) const { return this->Levels[static_cast<size_t>(level)].Cell[static_cast<size_t>(axis)]; }
 
@@ -70,6 +72,12 @@ private:
     Place Ratio{}; // to the next finer level
     std::unordered_map<uint64_t, std::unique_ptr<Tile>> Tiles;
   };
+  // The part of a cell in which a place was last, and the field at its corners.
+  struct Part {
+    Place Lo{};
+    int Known = 0; // a bit a corner
+    std::vector<double> Values;
+  };
   enum State : uint8_t { EXISTS = 1, COVERED = 2, HAS_VALUE = 4 };
 
   static int64_t Floor(int64_t a, int64_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
@@ -79,7 +87,8 @@ private:
   uint8_t StateOf(int level, const Place& cell, Cache& cache) const;
   const double* ValuesOf(int level, const Place& cell, Cache& cache) const;
   bool Start(const Box& box, std::string& error);
-  int FindCoarsest(const Place& at, Cache& cache, int& octant) const;
+  int FindCoarsest(const Place& at, Cache& cache) const;
+  const double* EvaluateCorner(int level, const Place& part, size_t corner, const Place& node, Cache& cache) const;
   bool Cover(const Box& box, std::string& error);
   void TakeFiner(int level);
 
@@ -92,7 +101,7 @@ private:
 struct vtkStratusAMRField::Cache {
   const vtkStratusAMRField::Tile* Last[32] = {};
   uint64_t Key[32];
-  std::vector<double> Room;
+  Part Parts[32]; // of each level
 };
 
 template <class Value, class Hidden>

@@ -3,8 +3,8 @@
 // modules.
 //
 // A part may hold cells of several levels: the lattice of the finest holds the coarser cells' field exactly. Planes along the boxes' sides
-// cut a part in two as long as that saves values, each grid counted as some thousands of values for what it costs to draw. So a part has no
-// more than 27 values for each of its cells, or it is that small.
+// cut a part in two where that saves values, each grid counted as some thousands of values for what it costs to draw. So there are no more
+// values than 27 a cell, and these thousands for each part of one level.
 #ifndef vtkStratusAMRLeaves_h
 #define vtkStratusAMRLeaves_h
 
@@ -45,7 +45,9 @@ private:
   double VolumeIn(const std::vector<Box>& boxes, int level, const Place& lo, const Place& hi) const;
   vtkStratusAMRLeaf Describe(const std::vector<Box>& boxes, const Place& lo, const Place& hi, bool& covered) const;
   double CostOf(const vtkStratusAMRLeaf& leaf) const;
-  void Divide(const std::vector<Box>& boxes, const Place& lo, const Place& hi);
+  double Divide(const std::vector<Box>& boxes, const Place& lo, const Place& hi);
+  bool FindPlane(const std::vector<Box>& near, const std::vector<const Box*>& within, const Place& lo, const Place& hi, Place& middle_hi,
+    Place& middle_lo) const;
   bool Peel(const std::vector<Box>& boxes, const vtkStratusAMRLeaf& leaf);
 
   const vtkStratusAMRField& Field;

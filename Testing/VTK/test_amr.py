@@ -116,8 +116,8 @@ def fields():
     for ratios, cells in ((2, 2), True), ((2, 2), False), ((3, 2), True), ((2, 3), False), ((4, 1), True):
         judge_field(ratios, cells)
     # A large box of one level, so that its core is taken apart from its border, and coarse cells stay coarse.
-    wide = [(0, (0, 0, 0), (50, 30, 30)), (1, (30, 4, 4), (90, 54, 54))]
-    levels = judge_field((2,), True, (50, 30, 30), wide)
+    wide = [(0, (0, 0, 0), (60, 40, 40)), (1, (30, 4, 4), (120, 76, 76))]
+    levels = judge_field((2,), True, (60, 40, 40), wide)
     check(levels == {1, 2, 4}, f"parts of the finer level, cores of it and coarse cells: {levels}")
 
 
@@ -269,6 +269,13 @@ def follows():
     grid.Modified()
     hidden = scene.picture(0)
     check(scene.errors == [] and abs(hidden - first).max() > 0.05 and numpy.isfinite(hidden).all(), "hidden cells show nothing")
+    digits = Refined(uneven(), function=lambda x, y, z: 1e6 + 1e-3 * bump(x, y, z)).data(vtk)
+    for level in range(2):  # covered cells may hold anything
+        for box in range(2):
+            covered = vtk_to_numpy(digits.GetDataSet(level, box).GetCellData().GetScalars())
+            covered[covered == 77] = 1e36
+    drawn = [vtk_to_numpy(grid.GetPointData().GetScalars()) for grid in grids_of(Scene(blocks(), digits))]
+    check(all(values.dtype == numpy.float64 and abs(values - 1e6).max() < 2e-3 for values in drawn), "digits of values far from 0 are kept")
     empty = vtk.vtkOverlappingAMR()
     empty.Initialize(1, [0])
     scene = Scene(blocks(), empty)
