@@ -43,6 +43,15 @@ stratus_add_test(paraview_install paraview ${stratus_display} "${CMAKE_CURRENT_S
 stratus_test_needs(paraview_install stratus-core)
 set_tests_properties(paraview_install PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin")
 
+if (XVFB_RUN) # a window that is large enough for all panels
+  stratus_add_test(paraview_window paraview "${XVFB_RUN}" -a -s "-screen 0 1440x900x24 -noreset" "${CMAKE_CURRENT_SOURCE_DIR}/ParaView/test_window"
+    "${paraview}/usr/bin" "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview_window")
+  stratus_test_needs(paraview_window NOTHING)
+  set_tests_properties(paraview_window PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin")
+else ()
+  message(WARNING "There is no xvfb-run (Debian: xvfb): ParaView's window is not tested")
+endif ()
+
 find_program(STRATUS_MPIEXEC mpiexec)
 mark_as_advanced(STRATUS_MPIEXEC)
 if (STRATUS_MPIEXEC)
