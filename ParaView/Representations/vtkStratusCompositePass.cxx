@@ -101,14 +101,14 @@ vtkStratusCompositePass::vtkStratusCompositePass()
 
 vtkStratusCompositePass::~vtkStratusCompositePass() = default;
 
-void vtkStratusCompositePass::Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree)
+void vtkStratusCompositePass::Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree, const Tell& tell)
 {
   vtkSmartPointer<vtkStratusCompositePass>& pass = Passes[renderer];
   if (!pass) {
     pass = vtkSmartPointer<vtkStratusCompositePass>::New();
     pass->SetRenderer(renderer);
   }
-  pass->Users.emplace_back(user, agree);
+  pass->Users.push_back({ user, agree, tell });
 }
 
 void vtkStratusCompositePass::Leave(vtkRenderer* renderer, vtkPVDataRepresentation* user)
@@ -116,7 +116,7 @@ void vtkStratusCompositePass::Leave(vtkRenderer* renderer, vtkPVDataRepresentati
   const auto found = Passes.find(renderer);
   if (found != Passes.end()) {
     auto& users = found->second->Users;
-    users.erase(std::remove_if(users.begin(), users.end(), [user](const auto& other) { return other.first == user; }), users.end());
+    users.erase(std::remove_if(users.begin(), users.end(), [user](const auto& other) { return other.Shown == user; }), users.end());
   }
 }
 
@@ -190,7 +190,7 @@ void vtkStratusCompositePass::KeepBackground()
 // When a frame starts. All that decides here is the same on all ranks.
 void vtkStratusCompositePass::Begin()
 {
-  const bool visible = std::any_of(this->Users.begin(), this->Users.end(), [](const auto& user) { return user.first->GetVisibility(); });
+  const bool visible = std::any_of(this->Users.begin(), this->Users.end(), [](const auto& user) { return user.Shown->GetVisibility(); });
   this->Whole->VisibilityOff();
   this->Active = visible && !this->Renderer->GetSelector() && !this->Renderer->GetUseShadows() && this->Install();
   if (!this->Active || !this->IceT) {
@@ -199,8 +199,8 @@ void vtkStratusCompositePass::Begin()
   vtkOrderedCompositingHelper* order = this->IceT->GetUseOrderedCompositing() ? this->IceT->GetOrderedCompositingHelper() : nullptr;
   if (order && this->HasRanks()) {
     for (const auto& user : this->Users) {
-      if (user.first->GetVisibility()) {
-        user.second(this->IceT->GetController(), order->GetBoundingBoxes());
+      if (user.Shown->GetVisibility()) {
+        user.BeforePicture(this->IceT->GetController(), order->GetBoundingBoxes());
       }
     }
   }
@@ -281,6 +281,11 @@ void vtkStratusCompositePass::Render(const vtkRenderState* state)
   this->DrawScene(state, window);
   if (this->HasRanks()) {
     this->BlendRanks(window, bytes);
+    for (const auto& user : this->Users) {
+      if (user.Shown->GetVisibility()) {
+        user.AfterPicture(this->IceT->GetController());
+      }
+    }
   } else {
     this->Round(window, bytes);
   }

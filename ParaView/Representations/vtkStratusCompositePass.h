@@ -22,7 +22,6 @@
 #include "vtkWeakPointer.h"
 
 #include <functional>
-#include <utility>
 #include <vector>
 
 class vtkBoundingBox;
@@ -45,9 +44,10 @@ public:
   vtkTypeMacro(vtkStratusCompositePass, vtkRenderPass);
 
   // A representation that is drawn in the renderer, until it leaves. The pass works where one of them is visible. agree: called on all of
-  // several ranks before each picture, with the box of each rank's part, unless the representation is hidden.
+  // several ranks before each picture, with the box of each rank's part, unless the representation is hidden. tell: the same after it.
   using Agree = std::function<void(vtkMultiProcessController*, const std::vector<vtkBoundingBox>&)>;
-  static void Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree);
+  using Tell = std::function<void(vtkMultiProcessController*)>;
+  static void Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree, const Tell& tell);
   static void Leave(vtkRenderer* renderer, vtkPVDataRepresentation* user);
 
   void Render(const vtkRenderState* state) override;
@@ -76,10 +76,15 @@ private:
 
   vtkWeakPointer<vtkRenderer> Renderer;
   vtkSmartPointer<vtkRenderPass> Delegate;
-  vtkIceTCompositePass* IceT = nullptr;                          // of this frame; nullptr: there is one rank
-  std::vector<std::pair<vtkPVDataRepresentation*, Agree>> Users; // in the order in which they entered, the same on all ranks
-  bool Active = false;                                           // in this frame
-  float Background[3] = { 0.0f, 0.0f, 0.0f };                    // 0..255, whole numbers; black where it is not the same everywhere
+  vtkIceTCompositePass* IceT = nullptr; // of this frame; nullptr: there is one rank
+  struct User {
+    vtkPVDataRepresentation* Shown;
+    Agree BeforePicture;
+    Tell AfterPicture;
+  };
+  std::vector<User> Users;                    // in the order in which they entered, the same on all ranks
+  bool Active = false;                        // in this frame
+  float Background[3] = { 0.0f, 0.0f, 0.0f }; // 0..255, whole numbers; black where it is not the same everywhere
   vtkNew<vtkTextureObject> Deep;
   vtkNew<vtkOpenGLFramebufferObject> Source;
   vtkNew<vtkStratusWholeBounds> Whole;

@@ -91,8 +91,18 @@ Grid extract(vtkUnstructuredGrid* from, vtkIdList* cells)
   return grid;
 }
 
-// Lists what a block shows of what this rank owns. Returns nullptr where it lacks an array.
-Grid list_cells(vtkDataSet* leaf, int block, int rank, const stratus::Dealing& dealing)
+// Flags, or nullptr where there are none. Sets `problem` where there are too few or too many.
+vtkUnsignedCharArray* find_flags(vtkUnsignedCharArray* flags, vtkIdType wanted, const char* things, std::string& problem)
+{
+  if (flags && flags->GetNumberOfValues() != wanted) {
+    problem = "the ghost array of " + std::string(things) + " has " + std::to_string(flags->GetNumberOfValues()) + " values, there are " +
+      std::to_string(wanted);
+  }
+  return flags;
+}
+
+// Lists what a block shows of what this rank owns. Returns nullptr, and sets `problem`, where it can't be drawn.
+Grid list_cells(vtkDataSet* leaf, int block, int rank, const stratus::Dealing& dealing, std::string& problem)
 {
   const auto all = Grid::New();
   if (auto* listed = vtkUnstructuredGrid::SafeDownCast(leaf)) {
@@ -112,14 +122,18 @@ Grid list_cells(vtkDataSet* leaf, int block, int rank, const stratus::Dealing& d
   for (const std::string& name : dealing.names) {
     vtkDataArray* array = attributes(leaf)->GetArray(name.c_str());
     if (!array || array->GetNumberOfTuples() < wanted) {
+      problem = "the array \"" + name + "\" of " + (dealing.cells ? "cells" : "points") +
+        (array ? " has " + std::to_string(array->GetNumberOfTuples()) + " values, there are " + std::to_string(wanted) : " is not there");
       return nullptr;
     }
     attributes(all)->AddArray(array);
   }
   add_order(leaf, block, rank, all);
-  vtkUnsignedCharArray *cells = leaf->GetCellGhostArray(), *points = leaf->GetPointGhostArray();
-  cells = cells && cells->GetNumberOfValues() == leaf->GetNumberOfCells() ? cells : nullptr;
-  points = points && points->GetNumberOfValues() == leaf->GetNumberOfPoints() ? points : nullptr;
+  vtkUnsignedCharArray* cells = find_flags(leaf->GetCellGhostArray(), leaf->GetNumberOfCells(), "cells", problem);
+  vtkUnsignedCharArray* points = find_flags(leaf->GetPointGhostArray(), leaf->GetNumberOfPoints(), "points", problem);
+  if (!problem.empty()) {
+    return nullptr;
+  }
   if (!cells && !points) {
     return all;
   }
@@ -394,8 +408,8 @@ Grid Dealer::Join(const stratus::Dealing& dealing) const
 }
 } // namespace
 
-vtkSmartPointer<vtkUnstructuredGrid> stratus::deal_cells(
-  vtkMultiProcessController* controller, vtkDataObject* mine, const std::vector<vtkBoundingBox>& boxes, const Dealing& dealing, bool& lacks)
+vtkSmartPointer<vtkUnstructuredGrid> stratus::deal_cells(vtkMultiProcessController* controller, vtkDataObject* mine,
+  const std::vector<vtkBoundingBox>& boxes, const Dealing& dealing, std::string& problem)
 {
   std::vector<vtkDataSet*> leaves;
   if (auto* grid = vtkDataSet::SafeDownCast(mine)) {
@@ -408,13 +422,15 @@ vtkSmartPointer<vtkUnstructuredGrid> stratus::deal_cells(
     }
   }
   std::vector<Grid> blocks;
-  lacks = false;
+  problem.clear();
   for (size_t b = 0; b < leaves.size(); ++b) {
     if (leaves[b] && leaves[b]->GetNumberOfCells() > 0) {
-      Grid block = list_cells(leaves[b], static_cast<int>(b), controller->GetLocalProcessId(), dealing);
-      lacks = lacks || !block;
+      std::string why;
+      const Grid block = list_cells(leaves[b], static_cast<int>(b), controller->GetLocalProcessId(), dealing, why);
       if (block) {
         blocks.push_back(block);
+      } else {
+        problem = (leaves.size() > 1 ? "block " + std::to_string(b) + ": " : "") + why + "; it is not drawn";
       }
     }
   }

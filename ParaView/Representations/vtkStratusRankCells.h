@@ -26,7 +26,7 @@ struct Dealing {
 
 // Returns the cells that reach into this rank's box, and layers of cells about their points. mine: what this rank has, a data set or a tree
 // of them. Cells that are hidden, or that other ranks own, are left out. Points that have equal coordinates and values become one, in an
-// order that hangs on the data alone. lacks: whether a block of this rank lacked an array. Every rank of the controller must call it.
+// order that hangs on the data alone. problem: why a block of this rank is left out, or "". Every rank of the controller must call it.
 vtkSmartPointer<vtkUnstructuredGrid> deal_cells(vtkMultiProcessController* controller, vtkDataObject* mine,
-  const std::vector<vtkBoundingBox>& boxes, const Dealing& dealing, bool& lacks);
+  const std::vector<vtkBoundingBox>& boxes, const Dealing& dealing, std::string& problem);
 } // namespace stratus

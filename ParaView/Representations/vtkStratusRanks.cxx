@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusRanks.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
@@ -9,7 +10,24 @@
 #include "vtkPropCollection.h"
 #include "vtkRenderer.h"
 
+#include <algorithm>
 #include <vector>
+
+namespace {
+
+// Every rank's text, cut to fit `length` with its end.
+std::vector<std::string> gather_texts(vtkMultiProcessController* controller, const std::string& mine, size_t length)
+{
+  std::vector<char> own(length, 0), all(length * static_cast<size_t>(controller->GetNumberOfProcesses()));
+  mine.copy(own.data(), length - 1);
+  controller->AllGather(own.data(), all.data(), static_cast<vtkIdType>(length));
+  std::vector<std::string> texts;
+  for (size_t at = 0; at < all.size(); at += length) {
+    texts.emplace_back(&all[at]);
+  }
+  return texts;
+}
+} // namespace
 
 int stratus::count_ranks()
 {
@@ -32,18 +50,67 @@ bool stratus::join_bounds(vtkMultiProcessController* controller, const double mi
 
 std::string stratus::agree_on_array(vtkMultiProcessController* controller, const std::string& mine, bool& on_cells)
 {
-  constexpr size_t length = 257; // what it is of, the name, 0
-  std::vector<char> own(length, 0), all(length * static_cast<size_t>(controller->GetNumberOfProcesses()));
-  own[0] = on_cells ? 1 : 0;
-  mine.copy(&own[1], length - 2);
-  controller->AllGather(own.data(), all.data(), static_cast<vtkIdType>(length));
-  for (size_t at = 0; at < all.size(); at += length) {
-    if (all[at + 1]) {
-      on_cells = all[at] != 0;
-      return std::string(&all[at + 1]);
+  for (const std::string& other : gather_texts(controller, (on_cells ? "C" : "P") + mine, 257)) {
+    if (other.size() > 1) {
+      on_cells = other[0] == 'C';
+      return other.substr(1);
     }
   }
   return std::string();
+}
+
+std::string stratus::join_words(vtkMultiProcessController* controller, const std::string& mine, std::string& last)
+{
+  const int changed = mine != last;
+  int any = 0;
+  std::string joined;
+  controller->AllReduce(&changed, &any, 1, vtkCommunicator::MAX_OP);
+  last = mine;
+  if (any) {
+    const std::vector<std::string> said = gather_texts(controller, mine, 512);
+    for (size_t rank = 0; rank < said.size() && controller->GetLocalProcessId() == 0; ++rank) {
+      if (!said[rank].empty()) {
+        joined += (joined.empty() ? "rank " : "\nrank ") + std::to_string(rank) + ": " + said[rank];
+      }
+    }
+  }
+  return joined;
+}
+
+std::string stratus::judge_parts(vtkMultiProcessController* controller, const double mine[6])
+{
+  const size_t ranks = static_cast<size_t>(controller->GetNumberOfProcesses());
+  const size_t me = static_cast<size_t>(controller->GetLocalProcessId());
+  std::vector<double> all(6 * ranks);
+  controller->AllGather(mine, all.data(), 6);
+  vtkBoundingBox whole;
+  double filled = 0.0;
+  std::string overlaps;
+  const auto volume_of = [](const double* b) { return (b[1] - b[0]) * (b[3] - b[2]) * (b[5] - b[4]); };
+  for (size_t rank = 0; rank < ranks; ++rank) {
+    const double* other = &all[6 * rank];
+    if (!vtkMath::AreBoundsInitialized(other)) {
+      continue;
+    }
+    whole.AddBounds(other);
+    filled += volume_of(other);
+    bool overlap = rank > me && vtkMath::AreBoundsInitialized(mine);
+    for (int axis = 0; overlap && axis < 3; ++axis) {
+      const double common = std::min(mine[2 * axis + 1], other[2 * axis + 1]) - std::max(mine[2 * axis], other[2 * axis]);
+      overlap = common > 1e-6 * (other[2 * axis + 1] - other[2 * axis]);
+    }
+    if (overlap) {
+      overlaps += (overlaps.empty() ? "its part of the data overlaps that of rank " : ", ") + std::to_string(rank);
+    }
+  }
+  if (!overlaps.empty()) {
+    return overlaps + "; they are drawn one over the other";
+  }
+  double bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  if (whole.IsValid()) {
+    whole.GetBounds(bounds);
+  }
+  return me == 0 && filled < (1.0 - 1e-6) * volume_of(bounds) ? "the ranks' parts of the data leave gaps between them" : "";
 }
 
 vtkSmartPointer<vtkPlaneCollection> stratus::planes_between(const double own[6], const double whole[6], vtkMatrix4x4* matrix)

@@ -23,6 +23,14 @@ bool join_bounds(vtkMultiProcessController* controller, const double mine[6], do
 // Returns the first rank's array that is not "", and sets whether it is of cells. Names are cut after 255 bytes. Every rank must call it.
 std::string agree_on_array(vtkMultiProcessController* controller, const std::string& mine, bool& on_cells);
 
+// Returns, on rank 0, what ranks say where any says something else than the last time: a line a rank that says anything, which names it.
+// last: what this rank said, to be kept for the next call. Words are cut after 511 bytes. Every rank must call it.
+std::string join_words(vtkMultiProcessController* controller, const std::string& mine, std::string& last);
+
+// Returns what is wrong with this rank's part among those of all, whose bounds may be uninitialized: that it overlaps the part of a rank
+// behind it, or, on rank 0, that parts leave gaps. Every rank must call it.
+std::string judge_parts(vtkMultiProcessController* controller, const double mine[6]);
+
 // Returns planes in the faces of a rank's bounds that are not faces of all ranks' bounds; their normals point into the rank's part. matrix:
 // from the bounds' coordinates to the world's.
 vtkSmartPointer<vtkPlaneCollection> planes_between(const double own[6], const double whole[6], vtkMatrix4x4* matrix);

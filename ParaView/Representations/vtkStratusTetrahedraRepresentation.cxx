@@ -195,9 +195,19 @@ void vtkStratusTetrahedraRepresentation::Deal(vtkMultiProcessController* ranks, 
   dealing.cells = on_cells;
   dealing.names.push_back(this->UseSeparateOpacityArray ? this->DealtArray + "_and_opacity" : this->DealtArray);
   dealing.layers = this->Property->GetShade() ? (on_cells ? 2 : 1) : 0;
-  bool lacks = false;
-  this->Dealt = stratus::deal_cells(ranks, this->Piece, boxes, dealing, lacks);
+  this->Dealt = stratus::deal_cells(ranks, this->Piece, boxes, dealing, this->Problem);
   this->Show(this->Dealt, this->DealtArray, this->DealtCells);
+}
+
+// Lets rank 0 tell which ranks left something out. Every rank must call it.
+void vtkStratusTetrahedraRepresentation::Tell(vtkMultiProcessController* ranks)
+{
+  const bool drawn = this->Actor->GetVisibility() && this->Actor->GetMapper() == this->Mapper;
+  const std::string failed = drawn ? this->Mapper->GetLastError() : "";
+  const std::string words = stratus::join_words(ranks, failed.empty() ? this->Problem : failed + "; its part is not drawn", this->Told);
+  if (!words.empty()) {
+    vtkErrorMacro(<< words);
+  }
 }
 
 // Draws what lies in a rank's box. Faces of the box that are faces of all boxes together cut nothing, since cells beyond them are drawn,
@@ -262,10 +272,12 @@ bool vtkStratusTetrahedraRepresentation::AddToView(vtkView* view)
   render_view->GetRenderer()->AddActor(this->Actor);
   this->Panel->Enter(render_view->GetRenderer(), this);
   vtkStratusCompositePass::Enter(
-    render_view->GetRenderer(), this, [this](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>& boxes) {
+    render_view->GetRenderer(), this,
+    [this](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>& boxes) {
       this->Deal(ranks, boxes);
       this->ClipTo(boxes, ranks->GetLocalProcessId());
-    });
+    },
+    [this](vtkMultiProcessController* ranks) { this->Tell(ranks); });
   return this->Superclass::AddToView(view);
 }
 

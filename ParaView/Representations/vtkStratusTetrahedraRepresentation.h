@@ -118,6 +118,7 @@ private:
   void UpdateMapper(vtkDataObject* data);
   void Show(vtkDataObject* data, const std::string& name, bool on_cells);
   void Deal(vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>& boxes);
+  void Tell(vtkMultiProcessController* ranks);
   void ClipTo(const std::vector<vtkBoundingBox>& boxes, int rank);
 
   std::unique_ptr<stratus::SolidColor> Solid;
@@ -133,6 +134,7 @@ private:
   std::vector<double> DealtFor;
   vtkSmartPointer<vtkDataObject> DealtOf;
   std::string DealtName;
+  std::string Problem, Told; // why this rank left something out, and what it told of it last
 };
 
 #endif

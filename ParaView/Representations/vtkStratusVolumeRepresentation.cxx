@@ -141,12 +141,26 @@ int vtkStratusVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey*
 // Finds the bounds of all ranks' data, by which a crop is set, and the range of a solid colour's ramp. Every rank must call it.
 void vtkStratusVolumeRepresentation::ShareBounds()
 {
+  const double nobody[6] = { 1.0, -1.0, 1.0, -1.0, 1.0, -1.0 };
   std::copy_n(this->DataBounds, 6, this->WholeBounds);
   if (stratus::count_ranks() > 1) {
-    stratus::join_bounds(vtkMultiProcessController::GetGlobalController(), this->DataBounds, this->WholeBounds);
+    vtkMultiProcessController* ranks = vtkMultiProcessController::GetGlobalController();
+    stratus::join_bounds(ranks, this->DataBounds, this->WholeBounds);
+    // Of composite data a rank has several boxes.
+    this->Problem = stratus::judge_parts(ranks, vtkDataSet::SafeDownCast(this->Cache) ? this->DataBounds : nobody);
     if (this->Solid->IsOpen()) {
       this->Solid->JoinRange(vtkMultiProcessController::GetGlobalController());
     }
+  }
+}
+
+// Lets rank 0 tell which ranks drew nothing, and which parts don't lie side by side. Every rank must call it.
+void vtkStratusVolumeRepresentation::Tell(vtkMultiProcessController* ranks)
+{
+  const std::string failed = this->Actor->GetVisibility() ? this->GetMapper()->GetLastError() : "";
+  const std::string words = stratus::join_words(ranks, failed.empty() ? this->Problem : failed + "; its part is not drawn", this->Told);
+  if (!words.empty()) {
+    vtkErrorMacro(<< words);
   }
 }
 
@@ -309,8 +323,10 @@ bool vtkStratusVolumeRepresentation::AddToView(vtkView* view)
   if (auto* render_view = vtkPVRenderView::SafeDownCast(view)) {
     vtkRenderer* renderer = render_view->GetRenderer();
     this->Panel->Enter(renderer, this);
-    vtkStratusCompositePass::Enter(renderer, this,
-      [this, renderer](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>&) { this->AgreeOnSampling(renderer, ranks); });
+    vtkStratusCompositePass::Enter(
+      renderer, this,
+      [this, renderer](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>&) { this->AgreeOnSampling(renderer, ranks); },
+      [this](vtkMultiProcessController* ranks) { this->Tell(ranks); });
   }
   return this->Superclass::AddToView(view);
 }

@@ -120,6 +120,7 @@ private:
   void ApplySampling();
   void ShareBounds();
   vtkMTimeType GetSamplingTime();
+  void Tell(vtkMultiProcessController* ranks);
   void EndAtBorders(bool end);
   void GatherWhole(vtkMultiProcessController* ranks);
   bool MeasureWhole(vtkRenderer* renderer, vtkMultiProcessController* ranks);
@@ -135,6 +136,7 @@ private:
   double WholeBounds[6];             // of all ranks
   vtkMTimeType AgreedFor = 0;        // of what the ranks have agreed on last
   double Agreed[3] = { 0., 0., 0. }; // sampling, sample distance, cell error
+  std::string Problem, Told;         // what is wrong with this rank's part, and what was told of it last
   bool EndsAtBorders = false;
   vtkMTimeType EndedFor = 0;         // of the data
   vtkSmartPointer<vtkDataSet> Whole; // of all ranks' pieces, on rank 0
