@@ -204,7 +204,11 @@ void vtkStratusTetrahedraRepresentation::Tell(vtkMultiProcessController* ranks)
 {
   const bool drawn = this->Actor->GetVisibility() && this->Actor->GetMapper() == this->Mapper;
   const std::string failed = drawn ? this->Mapper->GetLastError() : "";
-  const std::string words = stratus::join_words(ranks, failed.empty() ? this->Problem : failed + "; its part is not drawn", this->Told);
+  const std::string words = stratus::join_words(ranks,
+    !failed.empty()            ? failed + "; its part is not drawn"
+      : !this->Problem.empty() ? this->Problem
+                               : this->Refusal,
+    this->Told);
   if (!words.empty()) {
     vtkErrorMacro(<< words);
   }
@@ -317,6 +321,9 @@ void vtkStratusTetrahedraRepresentation::SetTermination(double opacity)
 void vtkStratusTetrahedraRepresentation::SetDevice(const char* device)
 {
   this->Mapper->SetDevice(device);
+  const char* used = this->Mapper->GetDevice(); // a device that is not there is refused, and the last stays
+  const bool same = std::string(device ? device : "") == (used ? used : "");
+  this->Refusal = same ? "" : std::string("there is no device \"") + device + "\" here, \"" + (used ? used : "") + "\" draws";
 }
 
 void vtkStratusTetrahedraRepresentation::SetShade(bool on)

@@ -134,6 +134,7 @@ private:
   std::vector<double> DealtFor;
   vtkSmartPointer<vtkDataObject> DealtOf;
   std::string DealtName;
+  std::string Refusal;       // of a device that is not there
   std::string Problem, Told; // why this rank left something out, and what it told of it last
 };
 

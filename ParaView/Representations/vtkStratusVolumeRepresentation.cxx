@@ -158,7 +158,11 @@ void vtkStratusVolumeRepresentation::ShareBounds()
 void vtkStratusVolumeRepresentation::Tell(vtkMultiProcessController* ranks)
 {
   const std::string failed = this->Actor->GetVisibility() ? this->GetMapper()->GetLastError() : "";
-  const std::string words = stratus::join_words(ranks, failed.empty() ? this->Problem : failed + "; its part is not drawn", this->Told);
+  const std::string words = stratus::join_words(ranks,
+    !failed.empty()            ? failed + "; its part is not drawn"
+      : !this->Problem.empty() ? this->Problem
+                               : this->Refusal,
+    this->Told);
   if (!words.empty()) {
     vtkErrorMacro(<< words);
   }
@@ -435,6 +439,9 @@ void vtkStratusVolumeRepresentation::SetTermination(double opacity)
 void vtkStratusVolumeRepresentation::SetDevice(const char* device)
 {
   this->GetSettings()->SetDevice(device);
+  const char* used = this->GetSettings()->GetDevice(); // a device that is not there is refused, and the last stays
+  const bool same = std::string(device ? device : "") == (used ? used : "");
+  this->Refusal = same ? "" : std::string("there is no device \"") + device + "\" here, \"" + (used ? used : "") + "\" draws";
 }
 
 #define SUM_OF_BLOCKS(getter)                                                                                                              \

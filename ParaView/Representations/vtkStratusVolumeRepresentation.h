@@ -136,6 +136,7 @@ private:
   double WholeBounds[6];             // of all ranks
   vtkMTimeType AgreedFor = 0;        // of what the ranks have agreed on last
   double Agreed[3] = { 0., 0., 0. }; // sampling, sample distance, cell error
+  std::string Refusal;               // of a device that is not there
   std::string Problem, Told;         // what is wrong with this rank's part, and what was told of it last
   bool EndsAtBorders = false;
   vtkMTimeType EndedFor = 0;         // of the data
