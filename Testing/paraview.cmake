@@ -59,6 +59,10 @@ if (STRATUS_MPIEXEC)
     "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview_ranks")
   stratus_test_needs(paraview_ranks NOTHING)
   set_tests_properties(paraview_ranks PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin" PROCESSORS 2)
+  stratus_add_test(paraview_bad_ranks paraview ${stratus_display} "${CMAKE_CURRENT_SOURCE_DIR}/ParaView/test_bad_ranks" "${paraview}/usr/bin/pvbatch"
+    "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview_bad_ranks")
+  stratus_test_needs(paraview_bad_ranks NOTHING)
+  set_tests_properties(paraview_bad_ranks PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin" PROCESSORS 2)
 
   stratus_add_test(paraview_server paraview ${stratus_display} "${CMAKE_CURRENT_SOURCE_DIR}/ParaView/test_server" "${paraview}/usr/bin"
     "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview_server")

@@ -32,6 +32,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <new>
 
 namespace {
 
@@ -265,14 +266,20 @@ void vtkStratusCompositePass::Render(const vtkRenderState* state)
   this->Whole->VisibilityOff();
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(state->GetRenderer()->GetRenderWindow());
   int prepared = this->Active && this->Prepare(window);
-  if (this->Active && this->HasRanks()) {
+  const bool ranks = this->Active && this->HasRanks();
+  const bool room = !ranks || !prepared || this->MakeRoom();
+  if (ranks) {
     int all = 0;
+    prepared = prepared && room;
     this->IceT->GetController()->AllReduce(&prepared, &all, 1, vtkCommunicator::MIN_OP);
     prepared = all;
   }
   if (!prepared) {
     this->Delegate->Render(state);
     this->NumberOfRenderedProps = this->Delegate->GetNumberOfRenderedProps();
+    if (ranks) {
+      this->TellProblem(room ? "" : "there is not enough memory to blend in 16 bits; ranks blend in 8");
+    }
     return;
   }
   vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
@@ -280,7 +287,7 @@ void vtkStratusCompositePass::Render(const vtkRenderState* state)
   frame->AddColorAttachment(0, this->Deep);
   this->DrawScene(state, window);
   if (this->HasRanks()) {
-    this->BlendRanks(window, bytes);
+    this->TellProblem(this->BlendRanks(window, bytes) ? "" : "there is not enough memory to blend; the last picture stays");
     for (const auto& user : this->Users) {
       if (user.Shown->GetVisibility()) {
         user.AfterPicture(this->IceT->GetController());
@@ -327,11 +334,35 @@ void vtkStratusCompositePass::DrawScene(const vtkRenderState* state, vtkOpenGLRe
   this->NumberOfRenderedProps = state->GetPropArrayCount();
 }
 
+// Makes room for what ranks share. Returns false where there is no memory.
+bool vtkStratusCompositePass::MakeRoom()
+{
+  const size_t count = static_cast<size_t>(this->Deep->GetWidth()) * this->Deep->GetHeight();
+  try {
+    this->Layers.resize(2);
+    this->Layers[0].resize(4 * count);
+    this->Layers[1].resize(4 * count);
+    this->Depths.resize(count);
+    this->Least.resize(count);
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+  return true;
+}
+
+// Lets rank 0 tell what any rank lacks. Every rank must call it. problem: of this rank, or "".
+void vtkStratusCompositePass::TellProblem(const std::string& problem)
+{
+  const std::string words = stratus::join_words(this->IceT->GetController(), problem, this->Told);
+  if (!words.empty()) {
+    vtkErrorMacro(<< words);
+  }
+}
+
 void vtkStratusCompositePass::Read(vtkOpenGLRenderWindow* window, std::vector<unsigned short>& picture)
 {
   vtkOpenGLState* state = window->GetState();
   const int width = static_cast<int>(this->Deep->GetWidth()), height = static_cast<int>(this->Deep->GetHeight());
-  picture.resize(4 * static_cast<size_t>(width) * static_cast<size_t>(height));
   state->PushReadFramebufferBinding();
   window->GetRenderFramebuffer()->Bind(GL_READ_FRAMEBUFFER);
   window->GetRenderFramebuffer()->ActivateReadBuffer(0);
@@ -350,8 +381,6 @@ void vtkStratusCompositePass::ShareSurfaces(vtkOpenGLRenderWindow* window)
   vtkOpenGLState* state = window->GetState();
   const int width = static_cast<int>(this->Deep->GetWidth()), height = static_cast<int>(this->Deep->GetHeight());
   const vtkIdType count = static_cast<vtkIdType>(width) * height;
-  this->Layers.resize(1);
-  this->Depths.resize(static_cast<size_t>(count));
   state->PushReadFramebufferBinding();
   frame->Bind(GL_READ_FRAMEBUFFER);
   state->vtkglPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -362,11 +391,11 @@ void vtkStratusCompositePass::ShareSurfaces(vtkOpenGLRenderWindow* window)
   int any[2] = { 0, 0 }; // a depth buffer that can't be written, opaque surfaces
   controller->AllReduce(opaque, any, 2, vtkCommunicator::MAX_OP);
   if (any[0] || !any[1]) {
+    this->Layers.pop_back();
     return;
   }
-  std::vector<float> least(this->Depths.size());
+  std::vector<float>& least = this->Least;
   controller->AllReduce(this->Depths.data(), least.data(), count, vtkCommunicator::MIN_OP);
-  this->Layers.resize(2);
   this->Read(window, this->Layers[1]);
   for (size_t pixel = 0; pixel < least.size(); ++pixel) {
     if (this->Depths[pixel] > least[pixel]) {
@@ -399,8 +428,9 @@ void vtkStratusCompositePass::Round(vtkOpenGLRenderWindow* window, vtkTextureObj
   state->PopReadFramebufferBinding();
 }
 
-// Gives the frame buffer its bytes back: on rank 0 the picture of all ranks, on the others none.
-void vtkStratusCompositePass::BlendRanks(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes)
+// Gives the frame buffer its bytes back: on rank 0 the picture of all ranks, on the others none. Where a rank lacks memory, the last
+// picture stays; returns whether this one had it.
+bool vtkStratusCompositePass::BlendRanks(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes)
 {
   vtkOpenGLFramebufferObject* frame = window->GetRenderFramebuffer();
   vtkOpenGLState* state = window->GetState();
@@ -410,10 +440,13 @@ void vtkStratusCompositePass::BlendRanks(vtkOpenGLRenderWindow* window, vtkTextu
 
   vtkMultiProcessController* controller = this->IceT->GetController();
   const std::vector<int> order = this->IceT->GetOrderedCompositingHelper()->ComputeSortOrder(this->Renderer->GetActiveCamera());
-  stratus::blend_ranks(controller, order, size, this->Layers, this->Background, this->Bytes);
-  this->Bytes.resize(this->Layers[0].size(), 0);
+  const bool room = stratus::blend_ranks(controller, order, size, this->Layers, this->Background, this->Bytes);
+  if (this->Bytes.size() != 4 * static_cast<size_t>(size[0]) * static_cast<size_t>(size[1])) {
+    return room;
+  }
   bytes->Activate();
   state->vtkglPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size[0], size[1], GL_RGBA, GL_UNSIGNED_BYTE, this->Bytes.data());
   bytes->Deactivate();
+  return room;
 }

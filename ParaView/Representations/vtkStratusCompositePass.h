@@ -22,6 +22,7 @@
 #include "vtkWeakPointer.h"
 
 #include <functional>
+#include <string>
 #include <vector>
 
 class vtkBoundingBox;
@@ -69,9 +70,11 @@ private:
   bool Prepare(vtkOpenGLRenderWindow* window);
   void DrawScene(const vtkRenderState* state, vtkOpenGLRenderWindow* window);
   void ShareSurfaces(vtkOpenGLRenderWindow* window);
+  bool MakeRoom();
+  void TellProblem(const std::string& problem);
   void Read(vtkOpenGLRenderWindow* window, std::vector<unsigned short>& picture);
   void Round(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes);
-  void BlendRanks(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes);
+  bool BlendRanks(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes);
   bool HasRanks() const;
 
   vtkWeakPointer<vtkRenderer> Renderer;
@@ -94,5 +97,6 @@ private:
   vtkNew<vtkOpenGLFXAAFilter> FXAA;
   std::vector<std::vector<unsigned short>> Layers; // of this frame: what is translucent, and opaque surfaces
   std::vector<unsigned char> Bytes;
-  std::vector<float> Depths;
+  std::vector<float> Depths, Least;
+  std::string Told; // of what this rank lacked
 };

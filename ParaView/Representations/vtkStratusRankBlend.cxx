@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace {
 
@@ -41,15 +42,12 @@ Rectangle find_shown(const std::vector<unsigned short>& picture, const int size[
   return shown;
 }
 
-std::vector<unsigned short> cut(const std::vector<unsigned short>& picture, int width, const Rectangle& part)
+void cut(const std::vector<unsigned short>& picture, int width, const Rectangle& part, std::vector<unsigned short>& values)
 {
-  std::vector<unsigned short> values;
-  values.reserve(part.values());
   for (int y = part.y0; y < part.y1 && part.x0 < part.x1; ++y) {
     const auto row = picture.begin() + 4 * static_cast<ptrdiff_t>(y) * width;
     values.insert(values.end(), row + 4 * static_cast<ptrdiff_t>(part.x0), row + 4 * static_cast<ptrdiff_t>(part.x1));
   }
-  return values;
 }
 
 // Puts a part of a picture behind what is there.
@@ -82,7 +80,7 @@ void round_over(const std::vector<float>& sums, const float background[3], std::
 }
 } // namespace
 
-void stratus::blend_ranks(vtkMultiProcessController* controller, const std::vector<int>& order, const int size[2],
+bool stratus::blend_ranks(vtkMultiProcessController* controller, const std::vector<int>& order, const int size[2],
   const std::vector<std::vector<unsigned short>>& layers, const float background[3], std::vector<unsigned char>& bytes)
 {
   const int ranks = controller->GetNumberOfProcesses(), me = controller->GetLocalProcessId(), width = size[0], height = size[1];
@@ -93,8 +91,39 @@ void stratus::blend_ranks(vtkMultiProcessController* controller, const std::vect
   }
   controller->AllGather(&mine[0].x0, &shown[0].x0, 4 * static_cast<vtkIdType>(count));
 
+  const int first = first_row(me, ranks, height), last = first_row(me + 1, ranks, height);
+  std::vector<size_t> begins(shown.size() + 1, 0);
+  size_t most = 0; // values that go to one rank
+  for (size_t part = 0; part < shown.size(); ++part) {
+    begins[part + 1] = begins[part] + shown[part].rows(first, last).values();
+  }
+  for (int owner = 0; owner < ranks; ++owner) {
+    size_t values = 0;
+    for (const Rectangle& part : mine) {
+      values += part.rows(first_row(owner, ranks, height), first_row(owner + 1, ranks, height)).values();
+    }
+    most = std::max(most, values);
+  }
   std::vector<vtkIdType> lengths(static_cast<size_t>(ranks)), offsets(static_cast<size_t>(ranks));
-  std::vector<unsigned short> parts;
+  std::vector<unsigned short> parts, sent;
+  std::vector<float> sums;
+  std::vector<unsigned char> rounded, whole;
+  bool room = true;
+  try {
+    sent.reserve(most);
+    parts.resize(begins.back());
+    sums.assign(4 * static_cast<size_t>(width) * static_cast<size_t>(last - first), 0.0f);
+    rounded.resize(sums.size());
+    whole.assign(4 * static_cast<size_t>(width) * static_cast<size_t>(height), 0);
+  } catch (const std::bad_alloc&) {
+    room = false;
+  }
+  const int own_room = room;
+  int all_room = 0;
+  controller->AllReduce(&own_room, &all_room, 1, vtkCommunicator::MIN_OP);
+  if (!all_room) {
+    return room;
+  }
   for (int owner = 0; owner < ranks; ++owner) {
     const int from = first_row(owner, ranks, height), to = first_row(owner + 1, ranks, height);
     vtkIdType all = 0;
@@ -106,24 +135,13 @@ void stratus::blend_ranks(vtkMultiProcessController* controller, const std::vect
       offsets[rank] = all;
       all += lengths[rank];
     }
-    std::vector<unsigned short> sent;
+    sent.clear();
     for (size_t layer = 0; layer < count; ++layer) {
-      const std::vector<unsigned short> part = cut(layers[layer], width, mine[layer].rows(from, to));
-      sent.insert(sent.end(), part.begin(), part.end());
+      cut(layers[layer], width, mine[layer].rows(from, to), sent);
     }
-    std::vector<unsigned short> got(owner == me ? static_cast<size_t>(all) : 0);
-    controller->GatherV(sent.data(), got.data(), static_cast<vtkIdType>(sent.size()), lengths.data(), offsets.data(), owner);
-    if (owner == me) {
-      parts.swap(got);
-    }
+    controller->GatherV(sent.data(), parts.data(), static_cast<vtkIdType>(sent.size()), lengths.data(), offsets.data(), owner);
   }
 
-  const int first = first_row(me, ranks, height), last = first_row(me + 1, ranks, height);
-  std::vector<float> sums(4 * static_cast<size_t>(width) * static_cast<size_t>(last - first), 0.0f);
-  std::vector<size_t> begins(shown.size() + 1, 0);
-  for (size_t part = 0; part < shown.size(); ++part) {
-    begins[part + 1] = begins[part] + shown[part].rows(first, last).values();
-  }
   for (size_t layer = 0; layer < count; ++layer) {
     for (const int rank : order) {
       const size_t part = static_cast<size_t>(rank) * count + layer;
@@ -133,13 +151,13 @@ void stratus::blend_ranks(vtkMultiProcessController* controller, const std::vect
     }
   }
 
-  std::vector<unsigned char> rounded(sums.size());
   round_over(sums, background, rounded);
   for (int rank = 0; rank < ranks; ++rank) {
     const size_t r = static_cast<size_t>(rank);
     offsets[r] = 4 * static_cast<vtkIdType>(width) * first_row(rank, ranks, height);
     lengths[r] = 4 * static_cast<vtkIdType>(width) * first_row(rank + 1, ranks, height) - offsets[r];
   }
-  bytes.assign(me == 0 ? 4 * static_cast<size_t>(width) * static_cast<size_t>(height) : 0, 0);
-  controller->GatherV(rounded.data(), bytes.data(), static_cast<vtkIdType>(rounded.size()), lengths.data(), offsets.data(), 0);
+  controller->GatherV(rounded.data(), whole.data(), static_cast<vtkIdType>(rounded.size()), lengths.data(), offsets.data(), 0);
+  bytes.swap(whole);
+  return room;
 }

@@ -12,6 +12,8 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <memory>
+#include <new>
 
 namespace {
 
@@ -197,6 +199,12 @@ void gather_hidden(const Gathering& pieces, vtkDataSet* piece, bool cells, vtkDa
   }
 }
 
+bool has_room(double bytes)
+{
+  const std::unique_ptr<char[]> trial(new (std::nothrow) char[static_cast<size_t>(bytes)]);
+  return trial != nullptr;
+}
+
 vtkSmartPointer<vtkDataSet> make_whole(const Gathering& pieces, vtkDataSet* piece, const double* first, bool root)
 {
   int extent[6];
@@ -242,10 +250,14 @@ vtkSmartPointer<vtkDataSet> stratus::gather_whole(vtkMultiProcessController* con
     bytes += values * first[FIXED + 2 * i + 1] * vtkDataArray::GetDataTypeSize(static_cast<int>(first[FIXED + 2 * i]));
   }
   gathered = bytes <= static_cast<double>(most);
+  const bool root = controller->GetLocalProcessId() == 0;
+  const int room = gathered && has_room(root ? 2.0 * bytes + 4.0 * values : values); // what is gathered and what it becomes; flags
+  int all_room = 0;
+  controller->AllReduce(&room, &all_room, 1, vtkCommunicator::MIN_OP);
+  gathered = all_room != 0;
   if (!gathered) {
     return nullptr;
   }
-  const bool root = controller->GetLocalProcessId() == 0;
   if (mine[0] == NONE) {
     piece = nullptr;
   }

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 
 vtkStandardNewMacro(vtkStratusTetrahedraMapper);
 
@@ -63,7 +64,13 @@ void vtkStratusTetrahedraMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   const auto start = std::chrono::steady_clock::now();
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent, nullptr);
   std::string error;
-  if (this->Internal->Render(ren, vol, error)) {
+  bool drawn = false;
+  try {
+    drawn = this->Internal->Render(ren, vol, error);
+  } catch (const std::bad_alloc&) {
+    error = "there is not enough memory for the picture";
+  }
+  if (drawn) {
     this->Internal->LastError.clear();
   } else if (!error.empty() && error != this->Internal->LastError) {
     this->Internal->LastError = error; // reported once, not with every picture

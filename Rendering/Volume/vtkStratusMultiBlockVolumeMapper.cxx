@@ -26,6 +26,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -431,7 +432,11 @@ void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* 
     mappers[0]->Render(renderer, volume);
     error = mappers[0]->GetLastError();
   } else if (!blocks.empty()) {
-    this->Internal->Render(renderer, volume, error);
+    try {
+      this->Internal->Render(renderer, volume, error);
+    } catch (const std::bad_alloc&) {
+      error = "there is not enough memory for the picture";
+    }
   }
   if (!error.empty() && error != this->Internal->Error && mappers.size() != 1) {
     vtkErrorMacro(<< error << "; nothing is drawn");

@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <utility>
 
 vtkStandardNewMacro(vtkStratusVolumeMapper);
@@ -36,7 +37,11 @@ void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   const auto start = std::chrono::steady_clock::now();
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent, nullptr);
   std::string error;
-  this->Internal->Render(ren, vol, error);
+  try {
+    this->Internal->Render(ren, vol, error);
+  } catch (const std::bad_alloc&) {
+    error = "there is not enough memory for the picture";
+  }
   std::swap(error, this->Internal->LastError);
   if (!this->Internal->LastError.empty() && this->Internal->LastError != error) { // reported once, not with every picture
     vtkErrorMacro(<< this->Internal->LastError << "; nothing is drawn");
@@ -47,7 +52,11 @@ void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 
 bool vtkStratusVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3])
 {
-  return this->Internal->Measure(renderer, volume, choice);
+  try {
+    return this->Internal->Measure(renderer, volume, choice);
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
 }
 
 void vtkStratusVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
