@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusCompositePass.h"
 
+#include "vtkStratusGL.h"
 #include "vtkStratusRankBlend.h"
 #include "vtkStratusRanks.h"
 
@@ -26,8 +27,6 @@
 #include "vtkRenderer.h"
 #include "vtkTranslucentPass.h"
 #include "vtkVolumetricPass.h"
-
-#include "vtk_glew.h"
 
 #include <algorithm>
 #include <cmath>
