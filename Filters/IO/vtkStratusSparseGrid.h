@@ -73,7 +73,9 @@ public:
     std::fill_n(this->Background, 3, T(0));
     const int64_t side = std::max({ this->High[0] - this->Low[0], this->High[1] - this->Low[1], this->High[2] - this->Low[2] }) + 1;
     this->SetCube(this->Low, side, value);
-    std::copy(value, value + this->Components, this->Background);
+    for (int c = 0; c < this->Components; ++c) { // gcc 14 takes a copy of one component for one of three
+      this->Background[c] = value[c];
+    }
   }
 
   // Sets the cube of `size` voxels a side at `first` to one value.
