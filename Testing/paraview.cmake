@@ -68,4 +68,16 @@ if (STRATUS_MPIEXEC)
     "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview_server")
   stratus_test_needs(paraview_server NOTHING)
   set_tests_properties(paraview_server PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin" PROCESSORS 2)
+
+  # A simulation that draws itself: a project of its own, too.
+  set(in_situ_build "${CMAKE_BINARY_DIR}/in_situ")
+  stratus_add_test(paraview_in_situ_build paraview "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}/Examples/in-situ" "${in_situ_build}"
+    --build-generator "${CMAKE_GENERATOR}" --build-noclean --build-project StratusInSitu
+    --build-options "-DParaView_DIR=${paraview}${paraview_cmake}" "-DPython3_EXECUTABLE=/usr/bin/python3")
+  stratus_test_needs(paraview_in_situ_build NOTHING)
+  set_tests_properties(paraview_in_situ_build PROPERTIES FIXTURES_REQUIRED paraview FIXTURES_SETUP paraview_in_situ)
+  stratus_add_test(paraview_in_situ paraview ${stratus_display} "${CMAKE_CURRENT_SOURCE_DIR}/ParaView/test_in_situ" "${in_situ_build}/plume-in-situ"
+    "${paraview}/usr/bin/pvbatch" "${plugin_build}/lib/paraview-5.11/plugins/Stratus/Stratus.so" "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview_in_situ")
+  stratus_test_needs(paraview_in_situ NOTHING)
+  set_tests_properties(paraview_in_situ PROPERTIES FIXTURES_REQUIRED "paraview;paraview_plugin;paraview_in_situ" PROCESSORS 2)
 endif ()
