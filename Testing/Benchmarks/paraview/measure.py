@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures one scene for `stratus-bench paraview`, which tells what the rows mean:
-mpiexec -n RANKS pvbatch --sym measure.py PLUGIN|- SCENE.json ROWS PICTURES SIZE REPEATS"""
+mpiexec -n RANKS pvbatch --sym measure.py PLUGIN|- SCENE.json ROWS PICTURES SIZE REPEATS CUTS. CUTS: 0, or one rank draws the pieces of an
+image that is cut into so many along each axis, one after the other, in place of everything else."""
 import json
 import math
 import os
@@ -13,7 +14,7 @@ from paraview import simple
 from paraview.vtk import vtkCommonCore, vtkIOImage, vtkParallelCore
 from paraview.vtk.util.numpy_support import vtk_to_numpy
 
-plugin, path, rows_path, pictures, size, repeats = sys.argv[1:4] + [sys.argv[4], int(sys.argv[5]), int(sys.argv[6])]
+plugin, path, rows_path, pictures, size, repeats, cuts = sys.argv[1:5] + [int(word) for word in sys.argv[5:8]]
 scene = json.load(open(path, encoding="utf-8"))
 name = os.path.splitext(os.path.basename(path))[0]
 controller = vtkParallelCore.vtkMultiProcessController.GetGlobalController()
@@ -167,6 +168,54 @@ def run(method, representation):
     simple.Delete(reader)
 
 
+def rectangle():
+    """Pixels of the smallest rectangle that holds what shows, which is what a rank sends."""
+    file = os.path.join(pictures, f"{name}-piece.png")
+    simple.SaveScreenshot(file, view, ImageResolution=[size, size], TransparentBackground=0)
+    lit = pixels(file).max(axis=1).reshape(size, size) > 0
+    rows_, columns = lit.any(axis=1).nonzero()[0], lit.any(axis=0).nonzero()[0]
+    return 0 if not len(rows_) else int((rows_[-1] - rows_[0] + 1) * (columns[-1] - columns[0] + 1))
+
+
+def run_pieces():
+    """Each piece alone, by a step of one voxel, so that samples can be added up."""
+    reader = simple.XMLImageDataReader(FileName=[scene["path"]])
+    reader.UpdatePipeline()
+    last = [reader.GetDataInformation().GetExtent()[2 * a + 1] for a in range(3)]
+    taken, sent, spent = [], [], []  # of the whole and then of each piece, by view
+    places = [(i, j, k) for i in range(cuts) for j in range(cuts) for k in range(cuts)]
+    for place in [None] + places:
+        piece = reader
+        if place:
+            piece = simple.ExtractSubset(Input=reader, VOI=[edge for a in range(3) for edge in (last[a] * place[a] // cuts, last[a] * (place[a] + 1) // cuts)])
+        shown = simple.Show(piece, view, "UniformGridRepresentation")
+        simple.ColorBy(shown, ("POINTS", scene["array"]))
+        simple.GetColorTransferFunction(scene["array"]).RGBPoints = scene["color"]
+        simple.GetOpacityTransferFunction(scene["array"]).Points = points_of(scene["opacity"])
+        shown.SetScalarBarVisibility(view, False)
+        shown.SetRepresentationType("Stratus Volume")
+        shown.ScalarOpacityUnitDistance = scene["unit"][0]
+        shown.StratusSampling, shown.StratusSampleDistance = "Midpoint", scene["step"][0]
+        views = []
+        for number in range(VIEWS):
+            place_camera(number)
+            draw()
+            _, cpu = timed(draw)
+            views.append((samples_taken(shown), rectangle(), cpu[0]))
+        for values, column in (taken, 0), (sent, 1), (spent, 2):
+            values.append([view_[column] for view_ in views])
+        simple.Delete(shown)
+        if place:
+            simple.Delete(piece)
+    method = f"stratus:pieces-{len(places)}"
+    for what, values, unit in ("samples", taken, "1"), ("pixels_sent", sent, "1"), ("cpu_ms", spent, "ms"):
+        whole, pieces = numpy.array(values[0]), numpy.array(values[1:])
+        rows.append(f"{method},whole_{what},{numpy.median(whole):.9g},{unit}")
+        rows.append(f"{method},sum_{what},{numpy.median(pieces.sum(axis=0)):.9g},{unit}")
+        rows.append(f"{method},most_{what},{numpy.median(pieces.max(axis=0)):.9g},{unit}")
+    rows.append(f"{method},pieces_that_show,{numpy.median((numpy.array(sent[1:]) > 0).sum(axis=0)):.9g},1")
+
+
 if plugin != "-":
     simple.LoadPlugin(plugin, ns=vars(simple))
 simple._DisableFirstRenderCameraReset()
@@ -174,8 +223,11 @@ view = simple.CreateView("RenderView")
 view.ViewSize = [size, size]
 view.UseColorPaletteForBackground, view.Background = 0, [0, 0, 0]
 view.OrientationAxesVisibility = view.UseFXAA = 0
-run("stratus", "Stratus Volume")
-run("paraview:volume", "Volume")
+if cuts:
+    run_pieces()
+else:
+    run("stratus", "Stratus Volume")
+    run("paraview:volume", "Volume")
 if rank == 0:
     with open(rows_path, "w", encoding="utf-8") as out:
         out.write("\n".join(rows + ["end"]) + "\n")

@@ -33,6 +33,8 @@ const char* const help = R"(stratus-bench paraview [options]
                         grid of tetrahedra (.vtu); default: cloud, plume, ../shared/data/isabel_02.vti, bluntfin, post
   --ranks N,...         (default 1,2,4)
   --size N              N x N pixels (default 512)
+  --pieces N            measure in place of all this one rank that draws the N x N x N pieces of each image, one after the other, N within
+                        2..8: what so many ranks would have to do
   --repeats N           frames of each view (default 3)
   --csv FILE            tidy rows as in stratus-bench volume (default: the standard output)
   --append              rows of other scenes that the file has stay
@@ -46,6 +48,10 @@ alone in a frame; a waiting rank spins, which counts. samples: a frame's over al
 alone, the median over the views. rank_difference255: the largest difference of any channel in any view to one rank's picture, if 1 is among
 the ranks, which come in rising order; load: of the machine in the last minute before, per core.
 
+stratus:pieces-N: N pieces, each drawn alone with a step of one voxel. whole_, sum_ and most_ of samples, cpu_ms and pixels_sent (the rectangle
+that holds what shows, 8 bytes a pixel over ranks): of the whole, all pieces together, and the piece with the most, medians over the views.
+pieces_that_show: median.
+
 Functions of grids of tetrahedra are `ramp` of stratus-bench tetra, and half as opaque after the edit. Each rank has its share of the cores
 as threads (OMP_NUM_THREADS, LP_NUM_THREADS of software OpenGL), at least one. A scene whose file is absent is left out, which is told. A
 method that cannot be measured has a row `failed`, and the exit status is 1.
@@ -55,7 +61,7 @@ struct options {
   std::vector<std::string> scenes;
   std::vector<int> ranks = { 1, 2, 4 };
   std::string paraview = "/usr", plugin, csv = "-", pictures;
-  int size = 512, repeats = 3;
+  int size = 512, repeats = 3, cuts = 0;
   bool append = false;
 };
 
@@ -93,6 +99,8 @@ options parse(int argc, char* argv[])
       o.size = number_of(word, value, 16, 4096);
     } else if (word == "--repeats") {
       o.repeats = number_of(word, value, 1, 1000);
+    } else if (word == "--pieces") {
+      o.cuts = number_of(word, value, 2, 8);
     } else if (word == "--paraview") {
       o.paraview = value;
     } else if (word == "--plugin") {
@@ -110,6 +118,9 @@ options parse(int argc, char* argv[])
   }
   if (!o.plugin.empty() && access(o.plugin.c_str(), R_OK) != 0) {
     throw failure("--plugin: " + o.plugin + " cannot be read");
+  }
+  if (o.cuts > 0) {
+    o.ranks = { 1 };
   }
   if (o.ranks.empty()) {
     throw failure("--ranks names no number");
@@ -152,13 +163,13 @@ struct written_scene {
 };
 
 void describe(const std::string& path, const std::string& data, const std::string& array, const transfer& first,
-  const std::vector<double>& edited, const double bounds[6], int up_axis)
+  const std::vector<double>& edited, const double bounds[6], double voxel, int up_axis)
 {
   std::ofstream file(path);
   file << "{\"path\": \"" << data << "\", \"array\": \"" << array << "\", \"up\": " << up_axis
-       << ",\n \"bounds\": " << list_of(std::vector<double>(bounds, bounds + 6)) << ", \"unit\": " << list_of({ first.unit_distance })
-       << ",\n \"opacity\": " << list_of(first.opacity) << ",\n \"edited\": " << list_of(edited)
-       << ",\n \"color\": " << list_of(first.color) << "}\n";
+       << ",\n \"bounds\": " << list_of(std::vector<double>(bounds, bounds + 6)) << ", \"step\": " << list_of({ voxel })
+       << ", \"unit\": " << list_of({ first.unit_distance }) << ",\n \"opacity\": " << list_of(first.opacity)
+       << ",\n \"edited\": " << list_of(edited) << ",\n \"color\": " << list_of(first.color) << "}\n";
   file.close();
   if (!file) {
     throw failure("cannot write " + path);
@@ -190,7 +201,7 @@ bool write_scene(stratus_context* context, const std::string& source, const std:
     const std::string data = folder + '/' + mesh.name + ".vtu";
     write_data<vtkXMLUnstructuredGridWriter>(data, mesh.grid.Get());
     out = { mesh.name, folder + '/' + mesh.name + ".json" };
-    describe(out.path, data, mesh.grid->GetPointData()->GetScalars()->GetName(), first, edited, mesh.bounds, 2);
+    describe(out.path, data, mesh.grid->GetPointData()->GetScalars()->GetName(), first, edited, mesh.bounds, 0.0, 2);
     return true;
   }
   if (source.find('/') != std::string::npos && !std::ifstream(source)) {
@@ -204,7 +215,7 @@ bool write_scene(stratus_context* context, const std::string& source, const std:
   const std::string data = folder + '/' + s.name + ".vti";
   write_data<vtkXMLImageDataWriter>(data, s.image.Get());
   out = { s.name, folder + '/' + s.name + ".json" };
-  describe(out.path, data, s.image->GetPointData()->GetScalars()->GetName(), s.first, s.edited.opacity, s.bounds, s.up_axis);
+  describe(out.path, data, s.image->GetPointData()->GetScalars()->GetName(), s.first, s.edited.opacity, s.bounds, s.voxel, s.up_axis);
   return true;
 }
 
@@ -264,7 +275,7 @@ void measure(const options& o, const written_scene& s, int ranks, const std::str
   // Open MPI binds one or two ranks to a core each unless it is told otherwise.
   const int status = run_program({ "mpiexec", "--bind-to", "none", "--oversubscribe", "-n", count, o.paraview + "/bin/pvbatch", "--sym",
                                    STRATUS_BENCH_PARAVIEW_SCRIPT, o.plugin.empty() ? "-" : std::filesystem::absolute(o.plugin).string(),
-                                   s.path, out, pictures, std::to_string(o.size), std::to_string(o.repeats) },
+                                   s.path, out, pictures, std::to_string(o.size), std::to_string(o.repeats), std::to_string(o.cuts) },
     std::max(1, cores / ranks));
   std::vector<row> found;
   if (!read_rows(out, s.name, found)) {
@@ -313,6 +324,9 @@ int paraview_main(int argc, char* argv[])
   for (const std::string& source : o.scenes) {
     written_scene s;
     if (write_scene(context, source, folder.path, s)) {
+      if (o.cuts > 0 && !std::ifstream(folder.path + '/' + s.name + ".vti")) {
+        throw failure("--pieces cuts images, and " + s.name + " is none");
+      }
       for (const int ranks : o.ranks) {
         measure(o, s, ranks, o.pictures.empty() ? folder.path : std::filesystem::absolute(o.pictures).string(), rows);
       }
