@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""pvbatch with the plugin: AMR looks as `stratus render` draws it, cut by a slice and a crop too; a state file and a Python trace bring it back; what
-is not AMR of boxes that overlap is told.
+"""pvbatch with the plugin: AMR looks as `stratus render` draws it, cut by a slice and a crop too, and a state file brings it back.
 pvbatch test_refined.py PLUGIN STRATUS COMPARE-PICTURES FOLDER, in the repository's root."""
 import os
 import sys
