@@ -9,6 +9,7 @@
 #include "vtkPlaneCollection.h"
 #include "vtkPropCollection.h"
 #include "vtkRenderer.h"
+#include "vtkVolumeMapper.h"
 
 #include <algorithm>
 #include <vector>
@@ -75,6 +76,21 @@ std::string stratus::join_words(vtkMultiProcessController* controller, const std
     }
   }
   return joined;
+}
+
+std::string stratus::choose_words(
+  vtkMultiProcessController* controller, const std::string& failed, const std::string& problem, const std::string& refusal, int mode)
+{
+  const bool projects = mode >= vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND && mode <= vtkVolumeMapper::ADDITIVE_BLEND;
+  if (!failed.empty()) {
+    return failed + "; its part is not drawn";
+  }
+  if (!problem.empty() || !refusal.empty()) {
+    return problem.empty() ? refusal : problem;
+  }
+  return projects && controller->GetLocalProcessId() == 0
+    ? "each rank shows the maximum, minimum, average or sum of its own part of a ray, laid over the others, not that of the whole ray"
+    : "";
 }
 
 std::string stratus::judge_parts(vtkMultiProcessController* controller, const double mine[6])

@@ -27,6 +27,11 @@ std::string agree_on_array(vtkMultiProcessController* controller, const std::str
 // last: what this rank said, to be kept for the next call. Words are cut after 511 bytes. Every rank must call it.
 std::string join_words(vtkMultiProcessController* controller, const std::string& mine, std::string& last);
 
+// Returns what a rank has to say: why its picture failed, else what is wrong with its part, else which device was refused, else, on rank 0,
+// that projections of several ranks don't join. mode: one of vtkVolumeMapper's blend modes.
+std::string choose_words(
+  vtkMultiProcessController* controller, const std::string& failed, const std::string& problem, const std::string& refusal, int mode);
+
 // Returns what is wrong with this rank's part among those of all, whose bounds may be uninitialized: that it overlaps the part of a rank
 // behind it, or, on rank 0, that parts leave gaps. Every rank must call it.
 std::string judge_parts(vtkMultiProcessController* controller, const double mine[6]);

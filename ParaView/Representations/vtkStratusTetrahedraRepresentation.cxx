@@ -204,11 +204,8 @@ void vtkStratusTetrahedraRepresentation::Tell(vtkMultiProcessController* ranks)
 {
   const bool drawn = this->Actor->GetVisibility() && this->Actor->GetMapper() == this->Mapper;
   const std::string failed = drawn ? this->Mapper->GetLastError() : "";
-  const std::string words = stratus::join_words(ranks,
-    !failed.empty()            ? failed + "; its part is not drawn"
-      : !this->Problem.empty() ? this->Problem
-                               : this->Refusal,
-    this->Told);
+  const std::string mine = stratus::choose_words(ranks, failed, this->Problem, this->Refusal, this->Mapper->GetBlendMode());
+  const std::string words = stratus::join_words(ranks, mine, this->Told);
   if (!words.empty()) {
     vtkErrorMacro(<< words);
   }

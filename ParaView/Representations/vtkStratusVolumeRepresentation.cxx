@@ -158,11 +158,10 @@ void vtkStratusVolumeRepresentation::ShareBounds()
 void vtkStratusVolumeRepresentation::Tell(vtkMultiProcessController* ranks)
 {
   const std::string failed = this->Actor->GetVisibility() ? this->GetMapper()->GetLastError() : "";
-  const std::string words = stratus::join_words(ranks,
-    !failed.empty()            ? failed + "; its part is not drawn"
-      : !this->Problem.empty() ? this->Problem
-                               : this->Refusal,
-    this->Told);
+  const bool hits = this->GetSettings()->GetRenderMode() == vtkStratusVolumeMapper::FIRST_HIT_MODE;
+  const std::string mine =
+    stratus::choose_words(ranks, failed, this->Problem, this->Refusal, hits ? 0 : this->VolumeMapper->GetBlendMode());
+  const std::string words = stratus::join_words(ranks, mine, this->Told);
   if (!words.empty()) {
     vtkErrorMacro(<< words);
   }
