@@ -74,6 +74,10 @@ set(stratus_python OFF)
 if (Python3_FOUND AND Python3_Development.Module_FOUND)
   set(stratus_python ON)
   set(python_folder "lib/python3/dist-packages")
+  if (SKBUILD) # a wheel is what is installed, and nothing else
+    set(python_folder ".")
+  endif ()
+  set(STRATUS_VTK_PYTHON_PACKAGE "vtkmodules" CACHE STRING "Package of VTK's Python modules, which builds of others may have renamed")
   vtk_module_wrap_python(
     MODULES ${stratus_modules}
     TARGET Stratus::PythonModules
@@ -90,13 +94,14 @@ if (Python3_FOUND AND Python3_Development.Module_FOUND)
   endforeach ()
   set(stratus_package "${CMAKE_BINARY_DIR}/${python_folder}/stratus")
   configure_file(Rendering/Python/__init__.py.in "${stratus_package}/__init__.py" @ONLY)
+  configure_file(Rendering/Python/_show.py.in "${stratus_package}/_show.py" @ONLY)
   # Arrays and pictures are taken and made as stratus_volume does.
-  set(stratus_package_files Rendering/Python/_show.py Python/stratus_volume/_picture.py Python/stratus_volume/_values.py)
+  set(stratus_package_files Python/stratus_volume/_picture.py Python/stratus_volume/_values.py)
   foreach (file IN LISTS stratus_package_files)
     get_filename_component(name "${file}" NAME)
     configure_file("${file}" "${stratus_package}/${name}" COPYONLY)
   endforeach ()
-  install(FILES "${stratus_package}/__init__.py" ${stratus_package_files} DESTINATION "${python_folder}/stratus" COMPONENT python)
+  install(FILES "${stratus_package}/__init__.py" "${stratus_package}/_show.py" ${stratus_package_files} DESTINATION "${python_folder}/stratus" COMPONENT python)
 else ()
   message(STATUS "No Python wrapping: VTK's or Python's development files are missing")
 endif ()

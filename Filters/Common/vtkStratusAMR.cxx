@@ -5,6 +5,7 @@
 #include "vtkStratusAMRLeaves.h"
 #include "stratus.h"
 #include "vtkStratusArrays.h"
+#include "vtkStratusVersions.h"
 
 #include "vtkAMRBox.h"
 #include "vtkCellData.h"
@@ -58,7 +59,7 @@ bool FindRatios(vtkOverlappingAMR* amr, std::vector<std::array<int, 3>>& ratios,
 }
 
 // Checks that a box is where the levels' lattice says, and gives its cells.
-bool FindBox(vtkOverlappingAMR* amr, unsigned int level, unsigned int id, vtkUniformGrid* grid, Box& box, std::string& error)
+bool FindBox(vtkOverlappingAMR* amr, unsigned int level, unsigned int id, vtkStratusAMRGrid* grid, Box& box, std::string& error)
 {
   double spacing[3], origin[3];
   int dimensions[3];
@@ -92,7 +93,7 @@ struct Source {
   Box Where;
 };
 
-bool FindSource(vtkUniformGrid* grid, const std::string& name, bool cells, Source& source, std::string& error)
+bool FindSource(vtkStratusAMRGrid* grid, const std::string& name, bool cells, Source& source, std::string& error)
 {
   vtkDataSetAttributes* data = cells ? static_cast<vtkDataSetAttributes*>(grid->GetCellData()) : grid->GetPointData();
   const vtkIdType count = cells ? grid->GetNumberOfCells() : grid->GetNumberOfPoints();
@@ -206,8 +207,8 @@ vtkMTimeType vtkStratusAMR::GetTime(vtkUniformGridAMR* amr)
 {
   vtkMTimeType time = amr->GetMTime();
   for (unsigned int level = 0; level < amr->GetNumberOfLevels(); ++level) {
-    for (unsigned int id = 0; id < amr->GetNumberOfDataSets(level); ++id) {
-      if (vtkUniformGrid* grid = amr->GetDataSet(level, id)) {
+    for (unsigned int id = 0; id < vtkStratusNumberOfGrids(amr, level); ++id) {
+      if (vtkStratusAMRGrid* grid = vtkStratusGridOf(amr, level, id)) {
         time = std::max({ time, grid->GetMTime(), grid->GetPointData()->GetMTime(), grid->GetCellData()->GetMTime() });
       }
     }
@@ -232,8 +233,8 @@ bool vtkStratusAMR::GetBounds(vtkUniformGridAMR* amr, int piece, int pieces, dou
     for (size_t axis = 0; axis < 3; ++axis) {
       cell[axis] = level == ratios.size() ? 2 : cell[axis] * ratios[level][axis];
     }
-    for (unsigned int id = 0; id < overlapping->GetNumberOfDataSets(level); ++id) {
-      vtkUniformGrid* grid = overlapping->GetDataSet(level, id);
+    for (unsigned int id = 0; id < vtkStratusNumberOfGrids(overlapping, level); ++id) {
+      vtkStratusAMRGrid* grid = vtkStratusGridOf(overlapping, level, id);
       Box box;
       if (!grid || grid->GetNumberOfPoints() == 0 || !FindBox(overlapping, level, id, grid, box, unused)) {
         continue;
@@ -286,8 +287,8 @@ bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, bool nea
   std::vector<Source> sources;
   int type = VTK_VOID, components = 0;
   for (unsigned int level = 0; level < amr->GetNumberOfLevels(); ++level) {
-    for (unsigned int id = 0; id < amr->GetNumberOfDataSets(level); ++id) {
-      vtkUniformGrid* grid = amr->GetDataSet(level, id);
+    for (unsigned int id = 0; id < vtkStratusNumberOfGrids(amr, level); ++id) {
+      vtkStratusAMRGrid* grid = vtkStratusGridOf(amr, level, id);
       if (!grid || grid->GetNumberOfPoints() == 0) {
         continue;
       }

@@ -4,6 +4,8 @@
 
 #include "vtkCellArray.h"
 #include "vtkIdTypeArray.h"
+#include "vtkUniformGrid.h"
+#include "vtkUniformGridAMR.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkVersionMacros.h"
@@ -50,3 +52,26 @@ inline std::array<vtkAbstractArray*, 4> vtkStratusFaceArrays(vtkUnstructuredGrid
   return { grid->GetFaces(), grid->GetFaceLocations(), nullptr, nullptr };
 #endif
 }
+
+// The grids of a level of AMR: their number, and each, null where another process has it.
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+using vtkStratusAMRGrid = vtkImageData;
+inline unsigned int vtkStratusNumberOfGrids(vtkUniformGridAMR* amr, unsigned int level)
+{
+  return amr->GetNumberOfBlocks(level);
+}
+inline vtkStratusAMRGrid* vtkStratusGridOf(vtkUniformGridAMR* amr, unsigned int level, unsigned int index)
+{
+  return amr->GetDataSetAsImageData(level, index);
+}
+#else
+using vtkStratusAMRGrid = vtkUniformGrid;
+inline unsigned int vtkStratusNumberOfGrids(vtkUniformGridAMR* amr, unsigned int level)
+{
+  return amr->GetNumberOfDataSets(level);
+}
+inline vtkStratusAMRGrid* vtkStratusGridOf(vtkUniformGridAMR* amr, unsigned int level, unsigned int index)
+{
+  return amr->GetDataSet(level, index);
+}
+#endif
