@@ -110,5 +110,16 @@ say("case cells-again")
 scene.shown.StratusCellsBlendMode = "Composite"
 lines.append(f"cells-again {scene.lit('cells-again')}")
 say("case end")
+
+# Leaves and cells have numbers among all ranks; rank 1 has no cells.
+source = simple.TrivialProducer()
+source.GetClientSideObject().SetOutput(vtkCommonDataModel.vtkUnstructuredGrid() if rank == 1 else cells(part()))
+parts = simple.StratusPartition(Input=source, LeafCells=100)
+parts.UpdatePipeline()
+data = parts.GetClientSideObject().GetOutputDataObject(0).GetCellData()
+with open(os.path.join(folder, f"numbers-{rank}"), "w") as file:
+    for name in "StratusGlobalLeaf", "StratusGlobalOriginalCell":
+        numbers = numpy.unique(vtk_to_numpy(data.GetArray(name))) if data.HasArray(name) else []
+        print(name, *([numbers[0], numbers[-1], len(numbers)] if len(numbers) else "---"), file=file)
 if rank == 0:
     open(os.path.join(folder, "bad-pictures"), "w").write("\n".join(lines) + "\n")
