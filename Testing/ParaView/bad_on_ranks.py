@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pieces that don't go together, on several ranks: pvbatch --sym bad_on_ranks.py PLUGIN FOLDER, by mpiexec. Rank 0 writes FOLDER/bad-pictures,
-a line a case: its name and how many pixels are lit. What is told goes to the output."""
+"""Pieces that don't go together, on several ranks: pvbatch --sym bad_on_ranks.py PLUGIN FOLDER, by mpiexec. Rank 0 writes
+FOLDER/bad-pictures, a line a case: its name and how many pixels are lit. What is told goes to the output."""
 import os
 import sys
 
