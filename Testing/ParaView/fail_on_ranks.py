@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rank 1 fails: pvbatch --sym fail_on_ranks.py PLUGIN FOLDER HOW [REPRESENTATION], by mpiexec. HOW: device (the rank sees no OpenCL device),
-memory (it may take next to none), between (it is killed between two frames), during (within one), leave (it ends its script with an error)."""
+"""Rank 1 fails: pvbatch --sym fail_on_ranks.py PLUGIN FOLDER HOW [REPRESENTATION], by mpiexec. HOW: device (the rank sees no OpenCL
+device), memory (it may take next to none), between (it is killed between two frames), during (within one), leave (it ends its script with
+an error)."""
 import os
 import resource
 import signal
