@@ -103,10 +103,12 @@ def orbit(method, shown=None):
     for number, ms in enumerate(frames):
         add(method, f"frame_ms/{number}", ms, "ms")
     add(method, "frame_cpu_ms", statistics.median(spent), "ms")
+    add(method, "most_rank_cpu_ms", statistics.median(max(view_) for view_ in of_ranks), "ms")
     for r in range(ranks):
         add(method, f"rank_cpu_ms/{r}", statistics.median(view_[r] for view_ in of_ranks), "ms")
     if samples:
         add(method, "samples", statistics.median(sum(view_) for view_ in samples), "1")
+        add(method, "most_rank_samples", statistics.median(max(view_) for view_ in samples), "1")
         for r in range(ranks):
             add(method, f"rank_samples/{r}", statistics.median(view_[r] for view_ in samples), "1")
     if differences:

@@ -45,8 +45,9 @@ is black, without FXAA, axes and annotation; a frame is a whole Render() to its 
 median of its repeats; first_ms: from the choice of the representation; edit_ms: from a change of the opacity function to the next picture,
 median over the views. frame_cpu_ms and edit_cpu_ms: processor time, user and system, of all ranks together, and rank_cpu_ms/R of rank R
 alone in a frame; a waiting rank spins, which counts. samples: a frame's over all ranks, median (cells: segments), rank_samples/R of rank R
-alone, the median over the views. rank_difference255: the largest difference of any channel in any view to one rank's picture, if 1 is among
-the ranks, which come in rising order; load: of the machine in the last minute before, per core.
+alone, the median over the views; most_rank_samples and most_rank_cpu_ms of the rank with the most in each view. rank_difference255: the
+largest difference of any channel in any view to one rank's picture, if 1 is among the ranks, which come in rising order; load: of the
+machine in the last minute before, per core.
 
 stratus:pieces-N: N pieces, each drawn alone with a step of one voxel. whole_, sum_ and most_ of samples, cpu_ms and pixels_sent (the rectangle
 that holds what shows, 8 bytes a pixel over ranks): of the whole, all pieces together, and the piece with the most, medians over the views.
