@@ -153,6 +153,7 @@ bool vtkStratusCompositePass::HasRanks() const
 // Puts this pass around ParaView's default pass, unless it is there.
 bool vtkStratusCompositePass::Install()
 {
+  this->IceT = nullptr;
   vtkRenderPass* outer = this->Renderer->GetPass();
   while (auto* image = vtkImageProcessingPass::SafeDownCast(outer)) {
     outer = image->GetDelegatePass();
@@ -192,8 +193,9 @@ void vtkStratusCompositePass::Begin()
 {
   const bool visible = std::any_of(this->Users.begin(), this->Users.end(), [](const auto& user) { return user.Shown->GetVisibility(); });
   this->Whole->VisibilityOff();
-  this->Active = visible && !this->Renderer->GetSelector() && !this->Renderer->GetUseShadows() && this->Install();
-  if (!this->Active || !this->IceT) {
+  const bool installed = visible && !this->Renderer->GetSelector() && this->Install();
+  this->Active = installed && !this->Renderer->GetUseShadows();
+  if (!visible || this->Renderer->GetSelector() || !this->IceT) {
     return;
   }
   vtkOrderedCompositingHelper* order = this->IceT->GetUseOrderedCompositing() ? this->IceT->GetOrderedCompositingHelper() : nullptr;
@@ -205,7 +207,7 @@ void vtkStratusCompositePass::Begin()
     }
   }
   const int* tiles = this->IceT->GetTileDimensions();
-  this->Active = order && tiles[0] == 1 && tiles[1] == 1;
+  this->Active = this->Active && order && tiles[0] == 1 && tiles[1] == 1;
   if (this->Active && this->HasRanks()) {
     this->IceT->SetRenderEmptyImages(true); // every rank must come to Render()
     this->ShareBounds();
