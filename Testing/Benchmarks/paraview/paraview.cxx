@@ -49,9 +49,9 @@ alone, the median over the views; most_rank_samples and most_rank_cpu_ms of the 
 largest difference of any channel in any view to one rank's picture, if 1 is among the ranks, which come in rising order; load: of the
 machine in the last minute before, per core.
 
-stratus:pieces-N: N pieces, each drawn alone with a step of one voxel. whole_, sum_ and most_ of samples, cpu_ms and pixels_sent (the rectangle
-that holds what shows, 8 bytes a pixel over ranks): of the whole, all pieces together, and the piece with the most, medians over the views.
-pieces_that_show: median.
+stratus:pieces-N: N pieces, each drawn alone with a step of one voxel. whole_, sum_ and most_ of samples, cpu_ms and pixels_sent (the
+rectangle that holds what shows, 8 bytes a pixel over ranks): of the whole, all pieces together, and the piece with the most, medians over
+the views. pieces_that_show: median.
 
 Functions of grids of tetrahedra are `ramp` of stratus-bench tetra, and half as opaque after the edit. Each rank has its share of the cores
 as threads (OMP_NUM_THREADS, LP_NUM_THREADS of software OpenGL), at least one. A scene whose file is absent is left out, which is told. A
