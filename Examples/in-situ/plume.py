@@ -40,4 +40,5 @@ def catalyst_execute(info):
     if info.cycle % every == 0:
         plume.UpdatePipeline(info.time)
         view.ViewTime = info.time
-        simple.SaveScreenshot(os.path.join(folder, f"plume-{info.cycle:04d}.png"), view, ImageResolution=[400, 300], TransparentBackground=0)
+        picture = os.path.join(folder, f"plume-{info.cycle:04d}.png")
+        simple.SaveScreenshot(picture, view, ImageResolution=[400, 300], TransparentBackground=0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""pvbatch in_situ_again.py PICTURE: what plume-in-situ wrote at its end (STRATUS_RAW, float32 on 97 x 49 x 49 points), drawn on one rank as its
-own script does, beside the PICTURE that it drew of the same step on several ranks: each pixel may differ by 1 of 255."""
+"""pvbatch in_situ_again.py PICTURE: what plume-in-situ wrote at its end (STRATUS_RAW, float32 on 97 x 49 x 49 points), drawn on one rank as
+its own script does, beside the PICTURE that it drew of the same step on several ranks: each pixel may differ by 1 of 255."""
 import os
 import sys
 
@@ -23,8 +23,8 @@ def pixels(path):
 
 
 simple._DisableFirstRenderCameraReset()
-source = simple.ImageReader(FileNames=[os.environ["STRATUS_RAW"]], DataScalarType="float", DataByteOrder="LittleEndian", FileDimensionality="3",
-                            DataExtent=[0, 96, 0, 48, 0, 48], ScalarArrayName="concentration")
+source = simple.ImageReader(FileNames=[os.environ["STRATUS_RAW"]], DataScalarType="float", DataByteOrder="LittleEndian",
+                            FileDimensionality="3", DataExtent=[0, 96, 0, 48, 0, 48], ScalarArrayName="concentration")
 source.UpdatePipeline()
 view = plume.show(source)
 again = os.path.splitext(picture)[0] + "-again.png"
@@ -33,6 +33,6 @@ drawn, wanted = pixels(picture), pixels(again)
 lit = (abs(wanted - wanted[0]).max(axis=1) > 20).reshape(300, 400)
 halves = lit[:, :200].sum(), lit[:, 200:].sum()  # about what each of two ranks has
 difference = abs(drawn - wanted).max()
-print(f"in situ beside its data drawn on one rank: differs by {difference} of 255, {halves[0]} and {halves[1]} pixels are lit on either side")
+print(f"in situ beside its data drawn on one rank: differs by {difference} of 255, {halves[0]} and {halves[1]} pixels are lit on the sides")
 sys.stdout.flush()
 os._exit(0 if difference <= 1 and min(halves) > 2000 else 1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What test_window runs in the Python shell of ParaView's window: write_series() makes the data that the session opens, and look() keeps a
-picture of the whole window and a line in FOLDER/looks.json that tells what the active source is shown as. FOLDER is STRATUS_WINDOW_FOLDER."""
+picture of the whole window and a line in looks.json that tells what the active source is shown as. The folder is STRATUS_WINDOW_FOLDER."""
 import json
 import os
 import shutil
@@ -42,7 +42,8 @@ def look():
     source = simple.GetActiveSource() or next(iter(simple.GetSources().values()))  # a state that is loaded has no active one
     shown = simple.GetDisplayProperties(source, view)
     told = {"representation": shown.Representation, "array": shown.ColorArrayName[1], "camera": list(view.CameraPosition),
-            "opacity": list(shown.ScalarOpacityFunction.Points), "unit": shown.ScalarOpacityUnitDistance, "samples": shown.StratusSamplesTaken,
+            "opacity": list(shown.ScalarOpacityFunction.Points), "unit": shown.ScalarOpacityUnitDistance,
+            "samples": shown.StratusSamplesTaken,
             "reason": str(shown.StratusReason), "time": simple.GetAnimationScene().AnimationTime}
     with open(looks, "a", encoding="utf-8") as file:
         file.write(json.dumps(told, default=str) + "\n")

@@ -189,7 +189,8 @@ def run_pieces():
     for place in [None] + places:
         piece = reader
         if place:
-            piece = simple.ExtractSubset(Input=reader, VOI=[edge for a in range(3) for edge in (last[a] * place[a] // cuts, last[a] * (place[a] + 1) // cuts)])
+            edges = [last[a] * (place[a] + end) // cuts for a in range(3) for end in (0, 1)]
+            piece = simple.ExtractSubset(Input=reader, VOI=edges)
         shown = simple.Show(piece, view, "UniformGridRepresentation")
         simple.ColorBy(shown, ("POINTS", scene["array"]))
         simple.GetColorTransferFunction(scene["array"]).RGBPoints = scene["color"]
