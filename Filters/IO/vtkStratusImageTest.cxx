@@ -1,32 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusImageTest.h"
 
-#ifdef STRATUS_EXR
-#include "vtkStratusEXRReader.h"
-#include "vtkStratusEXRWriter.h"
-#endif
+#include "vtkStratusPictureFile.h"
+#include "vtkStratusSimilarity.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkDataArray.h"
-#include "vtkErrorCode.h"
-#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkImageReader2.h"
 #include "vtkImageReader2Factory.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPNGWriter.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -36,77 +27,6 @@ vtkStandardNewMacro(vtkStratusImageTest);
 
 namespace {
 using Stop = std::runtime_error;
-
-// ---- pictures
-
-bool EndsWith(const std::string& path, const std::string& end)
-{
-  std::string last = path.size() < end.size() ? "" : path.substr(path.size() - end.size());
-  std::transform(last.begin(), last.end(), last.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return last == end;
-}
-
-// Errors of readers become a sentence of the comparison, so that they are not printed twice.
-class Listener
-{
-public:
-  explicit Listener(vtkObject* object)
-  {
-    this->Command->SetClientData(&this->Text);
-    this->Command->SetCallback([](vtkObject*, unsigned long, void* text, void* message) {
-      if (message && static_cast<std::string*>(text)->empty()) {
-        *static_cast<std::string*>(text) = static_cast<const char*>(message);
-      }
-    });
-    object->AddObserver(vtkCommand::ErrorEvent, this->Command);
-  }
-  std::string Text;
-
-private:
-  vtkNew<vtkCallbackCommand> Command;
-};
-
-// VTK puts "ERROR: In file, line N\nclass (address): " before a message.
-std::string BareMessage(const std::string& text)
-{
-  const size_t at = text.find("): ");
-  std::string bare = at == std::string::npos ? text : text.substr(at + 3);
-  while (!bare.empty() && std::isspace(static_cast<unsigned char>(bare.back()))) {
-    bare.pop_back();
-  }
-  return bare;
-}
-
-vtkSmartPointer<vtkImageData> ReadPicture(const std::string& path)
-{
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw Stop("there is no file " + path);
-  }
-  vtkSmartPointer<vtkImageAlgorithm> reader;
-  if (EndsWith(path, ".exr")) {
-#ifdef STRATUS_EXR
-    vtkNew<vtkStratusEXRReader> exr;
-    exr->SetFileName(path.c_str());
-    reader = exr;
-#else
-    throw Stop("can't read " + path + ": this is built without OpenEXR");
-#endif
-  } else {
-    const auto usual = vtkSmartPointer<vtkImageReader2>::Take(vtkImageReader2Factory::CreateImageReader2(path.c_str()));
-    if (!usual) {
-      throw Stop("can't read " + path + ": it is of no kind that VTK reads as an image, and no .exr");
-    }
-    usual->SetFileName(path.c_str());
-    reader = usual;
-  }
-  const Listener listener(reader);
-  reader->Update();
-  if (reader->GetErrorCode() != vtkErrorCode::NoError || !listener.Text.empty()) {
-    throw Stop(listener.Text.empty() ? "can't read " + path : BareMessage(listener.Text));
-  }
-  return reader->GetOutput();
-}
 
 vtkDataArray* ColorsOf(vtkImageData* picture, const std::string& what)
 {
@@ -213,62 +133,6 @@ std::string CompareBits(vtkImageData* a, vtkImageData* b, std::vector<bool>& dif
   }
   return "";
 }
-
-// ---- structural similarity
-
-constexpr int Window = 11;
-
-std::array<double, Window> WindowWeights()
-{
-  std::array<double, Window> weights;
-  double sum = 0.0;
-  for (int i = 0; i < Window; ++i) {
-    const double at = (i - Window / 2) / 1.5;
-    sum += weights[static_cast<size_t>(i)] = std::exp(-0.5 * at * at);
-  }
-  for (double& weight : weights) {
-    weight /= sum;
-  }
-  return weights;
-}
-
-// Weighted means over all windows within the picture: of `value(pixel)`, first along x, then along y.
-template <typename Value> std::vector<double> WindowMeans(int width, int height, Value value)
-{
-  const std::array<double, Window> weights = WindowWeights();
-  const auto columns = static_cast<size_t>(width - Window + 1), rows = static_cast<size_t>(height - Window + 1);
-  std::vector<double> along(columns * static_cast<size_t>(height)), means(columns * rows);
-  for (size_t y = 0; y < static_cast<size_t>(height); ++y) {
-    for (size_t x = 0; x < columns; ++x) {
-      for (size_t i = 0; i < Window; ++i) {
-        along[y * columns + x] += weights[i] * value(y * static_cast<size_t>(width) + x + i);
-      }
-    }
-  }
-  for (size_t y = 0; y < rows; ++y) {
-    for (size_t i = 0; i < Window; ++i) {
-      for (size_t x = 0; x < columns; ++x) {
-        means[y * columns + x] += weights[i] * along[(y + i) * columns + x];
-      }
-    }
-  }
-  return means;
-}
-
-double Similarity(const std::vector<double>& a, const std::vector<double>& b, int width, int height)
-{
-  const auto means = [&](auto value) { return WindowMeans(width, height, value); };
-  const std::vector<double> of_a = means([&a](size_t i) { return a[i]; }), of_b = means([&b](size_t i) { return b[i]; });
-  const std::vector<double> of_aa = means([&a](size_t i) { return a[i] * a[i]; }), of_bb = means([&b](size_t i) { return b[i] * b[i]; });
-  const std::vector<double> of_ab = means([&a, &b](size_t i) { return a[i] * b[i]; });
-  constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
-  double sum = 0.0;
-  for (size_t i = 0; i < of_a.size(); ++i) {
-    const double product = of_a[i] * of_b[i], squares = of_a[i] * of_a[i] + of_b[i] * of_b[i];
-    sum += (2.0 * product + c1) * (2.0 * (of_ab[i] - product) + c2) / ((squares + c1) * (of_aa[i] + of_bb[i] - squares + c2));
-  }
-  return sum / static_cast<double>(of_a.size());
-}
 } // namespace
 
 struct vtkStratusImageTest::vtkInternals {
@@ -338,7 +202,7 @@ void vtkStratusImageTest::Load()
     if (!image && (!file || !file[0])) {
       throw Stop(std::string("there is no ") + what);
     }
-    return image ? vtkSmartPointer<vtkImageData>(image) : ReadPicture(file);
+    return image ? vtkSmartPointer<vtkImageData>(image) : vtkStratusReadPicture(file);
   };
   own.Judged = load(own.Image, this->FileName, "image");
   own.Held = load(own.Baseline, this->BaselineFileName, "baseline");
@@ -389,13 +253,13 @@ void vtkStratusImageTest::Measure()
     this->RootMeanSquare = std::sqrt(squares / (static_cast<double>(components) * static_cast<double>(this->NumberOfLitPixels)));
   }
   if (this->LeastSSIM != -2.0) {
-    if (size[0] < Window || size[1] < Window) {
+    if (size[0] < vtkStratusSimilarityWindow || size[1] < vtkStratusSimilarityWindow) {
       throw Stop(
         "the pictures have " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " pixels, structural similarity needs 11 x 11");
     }
     this->SSIM = 0.0;
     for (size_t c = 0; c < components; ++c) {
-      this->SSIM += Similarity(a.Planes[c], b.Planes[c], size[0], size[1]) / static_cast<double>(components);
+      this->SSIM += vtkStratusSimilarity(a.Planes[c], b.Planes[c], size[0], size[1]) / static_cast<double>(components);
     }
   }
 }
@@ -464,31 +328,13 @@ bool vtkStratusImageTest::Compare()
 
 bool vtkStratusImageTest::Write(vtkImageData* image, const char* path)
 {
-  const std::string name = path ? path : "";
-  const auto write = [this, image, &name](auto* writer) {
-    const Listener listener(writer);
-    writer->SetFileName(name.c_str());
-    writer->SetInputData(image);
-    writer->Write();
-    if (writer->GetErrorCode() != vtkErrorCode::NoError || !listener.Text.empty()) {
-      vtkErrorMacro(<< (listener.Text.empty() ? "can't write " + name : BareMessage(listener.Text)));
-      return false;
-    }
+  try {
+    vtkStratusWritePicture(image, path ? path : "");
     return true;
-  };
-  if (EndsWith(name, ".png")) {
-    return write(vtkNew<vtkPNGWriter>().Get());
-  }
-  if (EndsWith(name, ".exr")) {
-#ifdef STRATUS_EXR
-    return write(vtkNew<vtkStratusEXRWriter>().Get());
-#else
-    vtkErrorMacro(<< "can't write " << name << ": this is built without OpenEXR");
+  } catch (const std::exception& error) {
+    vtkErrorMacro(<< error.what());
     return false;
-#endif
   }
-  vtkErrorMacro(<< "can't write '" << name << "': its name must end in .png or .exr");
-  return false;
 }
 
 bool vtkStratusImageTest::WriteDifference(const char* path)
@@ -500,7 +346,7 @@ bool vtkStratusImageTest::WriteDifference(const char* path)
   }
   const Colors a = PlanesOf(ColorsOf(own.Judged, "the image")), b = PlanesOf(ColorsOf(own.Held, "the baseline"));
   const size_t colors = a.Planes.size() - a.HasAlpha, components = colors + (a.HasAlpha && b.HasAlpha);
-  const bool floats = EndsWith(path ? path : "", ".exr");
+  const bool floats = vtkStratusEndsWith(path ? path : "", ".exr");
   const auto shown = static_cast<int>(floats ? components : colors);
   vtkSmartPointer<vtkDataArray> array;
   array.TakeReference(vtkDataArray::CreateDataArray(floats ? VTK_FLOAT : VTK_UNSIGNED_CHAR));
@@ -537,9 +383,9 @@ bool vtkStratusImageTest::WriteImage(const char* path)
       if (!this->FileName || !this->FileName[0]) {
         throw Stop("there is no image");
       }
-      image = ReadPicture(this->FileName);
+      image = vtkStratusReadPicture(this->FileName);
     }
-    if (EndsWith(path ? path : "", ".exr")) {
+    if (vtkStratusEndsWith(path ? path : "", ".exr")) {
       return this->Write(image, path);
     }
     vtkDataArray* colors = ColorsOf(image, "the image");
