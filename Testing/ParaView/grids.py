@@ -69,8 +69,8 @@ def rectilinear():
     return fill(grid)
 
 
-def image(cells=False):
-    """Even in all axes, with a ripple that bends within a few voxels; cells: its array is of cells."""
+def image(cells=False, ripple=9):
+    """Even in all axes, with a ripple that bends within a few voxels; cells: its array is of cells; ripple: how often it turns."""
     counts = (61, 47, 33)
     grid = vtkCommonDataModel.vtkImageData()
     grid.SetDimensions(*counts)
@@ -80,7 +80,7 @@ def image(cells=False):
     places = numpy.stack(numpy.meshgrid(*[o + s * (numpy.arange(m) + (0.5 if cells else 0)) for o, s, m in
                                           zip(grid.GetOrigin(), grid.GetSpacing(), n)], indexing="ij"), axis=-1)
     u = (places - [120, 2, 18]) / [18, 20, 12]
-    hill = numpy.clip(1 - (u**2).sum(axis=-1) + 0.2 * numpy.sin(9 * u[..., 0]) * numpy.cos(8 * u[..., 1]), 0, None)
+    hill = numpy.clip(1 - (u**2).sum(axis=-1) + 0.2 * numpy.sin(ripple * u[..., 0]) * numpy.cos(8 * u[..., 1]), 0, None)
     array = numpy_to_vtk(numpy.ascontiguousarray(hill.reshape(-1, order="F")), deep=True)
     array.SetName("hill")
     (grid.GetCellData() if cells else grid.GetPointData()).AddArray(array)
@@ -130,9 +130,10 @@ def unstructured(grid):
 
 def write_all(folder):
     """Returns the names of four files: levels.vtr, hills.vts, cells.vtu (the cells of hills.vts) and parts.vtm (blocks of levels.vtr).
-    Also writes even.vti; refined.vthb, which is AMR; boxes.vti, whose values are of cells; and two.vti, of two cells."""
-    for name, cells in ("even.vti", False), ("boxes.vti", True):
-        write(image(cells), vtkIOXML.vtkXMLImageDataWriter(), folder, name)
+    Also writes even.vti, and early.vti before it in time; refined.vthb, which is AMR; boxes.vti, whose values are of cells; and two.vti, of
+    two cells."""
+    for name, made in ("even.vti", image()), ("early.vti", image(ripple=25)), ("boxes.vti", image(cells=True)):
+        write(made, vtkIOXML.vtkXMLImageDataWriter(), folder, name)
     write(refined(), vtkIOXML.vtkXMLUniformGridAMRWriter(), folder, "refined.vthb")
     two = vtkCommonDataModel.vtkImageData()
     two.SetDimensions(3, 2, 2)
