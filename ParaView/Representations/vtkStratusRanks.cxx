@@ -2,6 +2,11 @@
 #include "vtkStratusRanks.h"
 
 #include "vtkBoundingBox.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkInformation.h"
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
@@ -28,12 +33,26 @@ std::vector<std::string> gather_texts(vtkMultiProcessController* controller, con
   }
   return texts;
 }
+
+bool has_array(vtkDataObject* data, int of, const char* name)
+{
+  auto* blocks = vtkCompositeDataSet::SafeDownCast(data);
+  auto* grid = vtkDataSet::SafeDownCast(data);
+  const std::vector<vtkDataSet*> grids = blocks ? vtkCompositeDataSet::GetDataSets(blocks) : std::vector<vtkDataSet*>(grid ? 1 : 0, grid);
+  return std::any_of(grids.begin(), grids.end(), [of, name](vtkDataSet* block) { return block->GetAttributes(of)->GetArray(name); });
+}
 } // namespace
 
 int stratus::count_ranks()
 {
   vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
   return controller ? controller->GetNumberOfProcesses() : 1;
+}
+
+int stratus::get_rank()
+{
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  return controller ? controller->GetLocalProcessId() : 0;
 }
 
 bool stratus::join_bounds(vtkMultiProcessController* controller, const double mine[6], double whole[6])
@@ -149,6 +168,21 @@ vtkSmartPointer<vtkPlaneCollection> stratus::planes_between(const double own[6],
     }
   }
   return planes;
+}
+
+bool stratus::lost_array(vtkInformation* array, vtkDataObject* now, vtkDataObject* before)
+{
+  const char* name = array ? array->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  const bool cells = array && array->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  const int of = cells ? vtkDataObject::CELL : vtkDataObject::POINT;
+  const bool chosen = name && name[0];
+  const int mine[3] = { now && now->GetNumberOfElements(vtkDataObject::CELL) > 0, chosen && has_array(now, of, name),
+    chosen && has_array(before, of, name) };
+  int any[3] = { mine[0], mine[1], mine[2] };
+  if (count_ranks() > 1) {
+    vtkMultiProcessController::GetGlobalController()->AllReduce(mine, any, 3, vtkCommunicator::MAX_OP);
+  }
+  return any[0] && !any[1] && any[2];
 }
 
 bool stratus::has_translucent(vtkRenderer* renderer)

@@ -6,6 +6,8 @@
 
 #include <string>
 
+class vtkDataObject;
+class vtkInformation;
 class vtkMatrix4x4;
 class vtkMultiProcessController;
 class vtkPlaneCollection;
@@ -15,6 +17,9 @@ namespace stratus {
 
 // How many ranks there are: 1 without MPI.
 int count_ranks();
+
+// This one's number, 0 without MPI.
+int get_rank();
 
 // Gives the bounds about those of all ranks, each of which may be uninitialized. Returns false, and leaves `whole`, if all are. Every rank
 // of the controller must call it.
@@ -39,6 +44,11 @@ std::string judge_parts(vtkMultiProcessController* controller, const double mine
 // Returns planes in the faces of a rank's bounds that are not faces of all ranks' bounds; their normals point into the rank's part. matrix:
 // from the bounds' coordinates to the world's.
 vtkSmartPointer<vtkPlaneCollection> planes_between(const double own[6], const double whole[6], vtkMatrix4x4* matrix);
+
+// Whether no rank's data have the array that is shown, while the data of before had it. False where no rank has data now, or none was
+// chosen. array: its name and association, as an algorithm is told them; now, before: this rank's data, or nullptr. Every rank must call
+// it.
+bool lost_array(vtkInformation* array, vtkDataObject* now, vtkDataObject* before);
 
 // Whether any visible prop of the renderer has translucent surfaces.
 bool has_translucent(vtkRenderer* renderer);

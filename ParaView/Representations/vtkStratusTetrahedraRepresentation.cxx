@@ -80,17 +80,19 @@ int vtkStratusTetrahedraRepresentation::RequestData(vtkInformation* request, vtk
   // A rank without data, a client for one, shows the outline of what the others draw.
   this->Actor->SetEnableLOD(data ? 0 : 1);
   if (data) {
+    const vtkSmartPointer<vtkDataObject> before = this->Cache;
     this->FindArray(data);
     this->Cache = Copy(data);
+    this->KeepIfLost(before);
     if (this->UseSeparateOpacityArray) {
       this->AppendOpacityComponent(vtkDataSet::SafeDownCast(this->Cache));
     }
-    bounds_of(data, this->DataBounds);
+    bounds_of(this->Cache, this->DataBounds);
     if (vtkMath::AreBoundsInitialized(this->DataBounds)) {
       this->OutlineSource->SetBounds(this->DataBounds);
       this->OutlineSource->Update();
     }
-    this->DataSize = data->GetActualMemorySize();
+    this->DataSize = this->Cache->GetActualMemorySize();
   } else {
     this->Cache = vtkSmartPointer<vtkUnstructuredGrid>::New();
   }
@@ -234,6 +236,9 @@ void vtkStratusTetrahedraRepresentation::SetInputArrayToProcess(int index, int p
 {
   if (index == 0) {
     this->Solid->Choose(association, name);
+    if (this->Lost) {
+      this->MarkModified(); // the data may have this one
+    }
   }
   this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
 }
@@ -251,6 +256,20 @@ void vtkStratusTetrahedraRepresentation::SetScalarOpacity(vtkPiecewiseFunction* 
 void vtkStratusTetrahedraRepresentation::SetSolidColor(double red, double green, double blue)
 {
   this->Solid->SetColor(red, green, blue);
+}
+
+// Keeps the data of before where the new ones of all ranks lack the array that is shown, as a step in time may. Every rank must call it.
+void vtkStratusTetrahedraRepresentation::KeepIfLost(vtkDataObject* before)
+{
+  vtkInformation* array = this->GetInputArrayInformation(0);
+  const bool lost = stratus::lost_array(array, this->Cache, before);
+  if (lost) {
+    this->Cache = before;
+  }
+  if (lost && !this->Lost && stratus::get_rank() == 0) {
+    vtkErrorMacro("the data have no array '" << array->Get(vtkDataObject::FIELD_NAME()) << "' any more; the last data that had it stay");
+  }
+  this->Lost = lost;
 }
 
 // Chooses an array of the data where ParaView has chosen none.

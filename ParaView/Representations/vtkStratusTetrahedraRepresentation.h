@@ -114,6 +114,7 @@ private:
   void operator=(const vtkStratusTetrahedraRepresentation&) = delete;
 
   void FindArray(vtkDataObject* data);
+  void KeepIfLost(vtkDataObject* before);
   const char* GetShownArray(bool& on_cells);
   void UpdateMapper(vtkDataObject* data);
   void Show(vtkDataObject* data, const std::string& name, bool on_cells);
@@ -134,6 +135,7 @@ private:
   std::vector<double> DealtFor;
   vtkSmartPointer<vtkDataObject> DealtOf;
   std::string DealtName;
+  bool Lost = false;         // whether data of before are shown, because those of now lack the array
   std::string Refusal;       // of a device that is not there
   std::string Problem, Told; // why this rank left something out, and what it told of it last
 };

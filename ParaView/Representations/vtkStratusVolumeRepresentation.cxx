@@ -85,8 +85,10 @@ int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInfo
   if (!data) {
     return this->Superclass::RequestData(request, input, output);
   }
+  const vtkSmartPointer<vtkDataObject> before = this->Cache;
   this->TakeData(data);
   this->FindArray(this->Cache);
+  this->KeepIfLost(before);
   if (this->UseSeparateOpacityArray) {
     if (auto* grid = vtkDataSet::SafeDownCast(this->Cache)) {
       this->AppendOpacityComponent(grid);
@@ -291,6 +293,9 @@ void vtkStratusVolumeRepresentation::SetInputArrayToProcess(int index, int port,
 {
   if (index == 0) {
     this->Solid->Choose(association, name);
+    if (this->Lost) {
+      this->MarkModified(); // the data may have this one
+    }
   }
   this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
 }
@@ -308,6 +313,20 @@ void vtkStratusVolumeRepresentation::SetScalarOpacity(vtkPiecewiseFunction* func
 void vtkStratusVolumeRepresentation::SetSolidColor(double red, double green, double blue)
 {
   this->Solid->SetColor(red, green, blue);
+}
+
+// Keeps the data of before where the new ones of all ranks lack the array that is shown, as a step in time may. Every rank must call it.
+void vtkStratusVolumeRepresentation::KeepIfLost(vtkDataObject* before)
+{
+  vtkInformation* array = this->GetInputArrayInformation(0);
+  const bool lost = stratus::lost_array(array, this->Cache, before);
+  if (lost) {
+    this->Cache = before;
+  }
+  if (lost && !this->Lost && stratus::get_rank() == 0) {
+    vtkErrorMacro("the data have no array '" << array->Get(vtkDataObject::FIELD_NAME()) << "' any more; the last data that had it stay");
+  }
+  this->Lost = lost;
 }
 
 // Chooses an array of the data where ParaView has chosen none.

@@ -115,6 +115,7 @@ private:
   vtkStratusMultiBlockVolumeMapper* GetMapper();
   vtkStratusVolumeMapper* GetSettings();
   void FindArray(vtkDataObject* data);
+  void KeepIfLost(vtkDataObject* before);
   void TakeData(vtkDataObject* data);
   void ApplyBlendMode();
   void ApplySampling();
@@ -136,6 +137,7 @@ private:
   double WholeBounds[6];             // of all ranks
   vtkMTimeType AgreedFor = 0;        // of what the ranks have agreed on last
   double Agreed[3] = { 0., 0., 0. }; // sampling, sample distance, cell error
+  bool Lost = false;                 // whether data of before are shown, because those of now lack the array
   std::string Refusal;               // of a device that is not there
   std::string Problem, Told;         // what is wrong with this rank's part, and what was told of it last
   bool EndsAtBorders = false;

@@ -27,12 +27,13 @@ def array(name, values):
     return made
 
 
-def part(name="hill", first=None, last=None, ghosts=None):
-    """This rank's part of an image: cells first..last-1 along x. name: of its array. ghosts: the length of its ghost array."""
+def part(name="hill", first=None, last=None, ghosts=None, height=1):
+    """This rank's part of an image: cells first..last-1 along x. name: of its array. ghosts: the length of its ghost array. height: along y,
+    of SIDE cells."""
     first = rank * SIDE if first is None else first
     last = (rank + 1) * SIDE if last is None else last
     image = vtkCommonDataModel.vtkImageData()
-    image.SetExtent(first, last, 0, SIDE, 0, SIDE)
+    image.SetExtent(first, last, 0, int(height * SIDE), 0, SIDE)
     image.GetPointData().AddArray(array(name, numpy.linspace(0.5, 1, image.GetNumberOfPoints())))
     if ghosts is not None:
         image.GetCellData().AddArray(array("vtkGhostType", numpy.zeros(ghosts, numpy.uint8)))
@@ -54,12 +55,15 @@ class Scene:
         self.source = simple.TrivialProducer()
         self.put(data)
         self.shown = simple.Show(self.source, self.view, representation)
-        simple.ColorBy(self.shown, ("POINTS", "hill"))
-        look, fade = simple.GetColorTransferFunction("hill"), simple.GetOpacityTransferFunction("hill")
-        look.RGBPoints, fade.Points = [0, 1, 1, 1, 1, 1, 1, 1], [0, 0.2, 0.5, 0, 1, 0.2, 0.5, 0]
+        self.color("hill")
         self.shown.SetRepresentationType("Stratus Volume")
         self.shown.ScalarOpacityUnitDistance = 1
         self.view.CameraPosition, self.view.CameraFocalPoint = [15, 5, 70], [15, 5, 5]
+
+    def color(self, name):
+        simple.ColorBy(self.shown, ("POINTS", name))
+        look, fade = simple.GetColorTransferFunction(name), simple.GetOpacityTransferFunction(name)
+        look.RGBPoints, fade.Points = [0, 1, 1, 1, 1, 1, 1, 1], [0, 0.2, 0.5, 0, 1, 0.2, 0.5, 0]
 
     def put(self, data):
         producer = self.source.GetClientSideObject()
@@ -85,11 +89,11 @@ def say(words):
 
 
 other = "hill" if rank != 1 else "dale"  # rank 1 lacks the array
-CASES = [("right", lambda: part(), "image"), ("lacks", lambda: part(other), "image"), ("all-lack", lambda: part("dale"), "image"),
+CASES = [("right", lambda: part(), "image"), ("all-lack", lambda: part("dale", height=0.5), "image"), ("lacks", lambda: part(other), "image"),
          ("cut-ghosts", lambda: part(ghosts=7 if rank == 1 else SIDE**3), "image"),
          ("overlap", lambda: part(last=(rank + 1) * SIDE + (3 if rank == 0 else 0)), "image"),
          ("gap", lambda: part(last=(rank + 1) * SIDE - (3 if rank == 1 else 0)), "image"),
-         ("cells-right", lambda: cells(part()), "cells"), ("cells-lack", lambda: cells(part(other)), "cells"),
+         ("cells-right", lambda: cells(part()), "cells"), ("cells-all-lack", lambda: cells(part("dale", height=0.5)), "cells"), ("cells-lack", lambda: cells(part(other)), "cells"),
          ("cells-cut-ghosts", lambda: cells(part(ghosts=7 if rank == 1 else SIDE**3)), "cells")]
 lines = []
 for name, make, kind in CASES:
@@ -102,6 +106,11 @@ for name, make, kind in CASES:
         scene.put(make())
     lines.append(f"{name} {scene.lit(name)}")
     scene.lit(name)  # what was told is not told again
+    if name.endswith("all-lack"):  # the array that they have can be chosen
+        say(f"case {name}-chosen")
+        scene.color("dale")
+        lines.append(f"{name}-chosen {scene.lit(name + '-chosen')}")
+        scene.shown.ColorArrayName = ["POINTS", "hill"]
 say("case cells-maximum")
 scene.put(cells(part()))
 scene.shown.StratusCellsBlendMode = "Maximum Intensity"
