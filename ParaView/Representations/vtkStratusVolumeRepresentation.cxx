@@ -26,6 +26,7 @@
 #include "vtkPVRenderView.h"
 #include "vtkPlaneCollection.h"
 #include "vtkPolyDataMapper.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkRenderer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
@@ -37,6 +38,15 @@
 namespace {
 // Rank 0 takes pieces of up to so many bytes to ask which step a picture of the whole needs.
 constexpr vtkIdType WHOLE_BYTES = vtkIdType(1) << 28;
+
+double mean_spacing(const double bounds[6], const double extent[6])
+{
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    sum += (bounds[2 * axis + 1] - bounds[2 * axis]) / std::max(extent[2 * axis + 1] - extent[2 * axis], 1.0);
+  }
+  return sum / 3.0;
+}
 } // namespace
 
 vtkStandardNewMacro(vtkStratusVolumeRepresentation);
@@ -244,6 +254,50 @@ bool vtkStratusVolumeRepresentation::MeasureWhole(vtkRenderer* renderer, vtkMult
   return this->Gathered && told[3] != 0.0;
 }
 
+// Lets a function of two variables go over the ranges of all ranks' data. Gradients are in mean spacings, which on a rectilinear grid are
+// other ones in each piece. Every rank must call it.
+void vtkStratusVolumeRepresentation::ShareTransfer2D(vtkMultiProcessController* ranks)
+{
+  double all[4] = { 0.0, -1.0, 0.0, -1.0 };
+  if (!this->UseTransfer2D) {
+    this->GetMapper()->SetTransfer2DRanges(all);
+    return;
+  }
+  vtkStratusVolumeMapper* settings = this->GetSettings();
+  const bool cells = this->VolumeMapper->GetScalarMode() == VTK_SCALAR_MODE_USE_CELL_FIELD_DATA;
+  const int mode = settings->GetVectorMode();
+  const char* names[2] = { this->VolumeMapper->GetArrayName(), settings->GetTransfer2DYAxisArray() };
+  double least[4], mine[4] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX }; // upper ends have their sign changed
+  auto* piece = vtkDataSet::SafeDownCast(this->Cache);
+  for (int i = 0; i < 2 && piece; ++i) {
+    vtkDataArray* array = names[i] ? piece->GetAttributes(cells ? vtkDataObject::CELL : vtkDataObject::POINT)->GetArray(names[i]) : nullptr;
+    const bool vector = array && i == 0 && array->GetNumberOfComponents() > 1;
+    const int component = !vector ? 0 : mode == vtkStratusVolumeMapper::MAGNITUDE ? -1 : settings->GetVectorComponent();
+    if (array && component < array->GetNumberOfComponents()) {
+      double range[2];
+      array->GetFiniteRange(range, component);
+      mine[2 * i] = range[0];
+      mine[2 * i + 1] = -range[1];
+    }
+  }
+  ranks->AllReduce(mine, least, 4, vtkCommunicator::MIN_OP);
+  for (int i = 0; i < 4 && least[i / 2 * 2] <= -least[i / 2 * 2 + 1]; ++i) {
+    all[i] = i % 2 ? -least[i] : least[i];
+  }
+  double bounds[6] = { 1.0, -1.0, 1.0, -1.0, 1.0, -1.0 }, extent[6] = { 1.0, -1.0, 1.0, -1.0, 1.0, -1.0 }, whole_bounds[6], whole[6];
+  auto* rectilinear = vtkRectilinearGrid::SafeDownCast(piece);
+  if (rectilinear && rectilinear->GetNumberOfPoints() > 0) {
+    rectilinear->GetBounds(bounds);
+    std::copy_n(rectilinear->GetExtent(), 6, extent);
+  }
+  const bool any = stratus::join_bounds(ranks, bounds, whole_bounds) && stratus::join_bounds(ranks, extent, whole);
+  if (any && !names[1] && vtkMath::AreBoundsInitialized(bounds)) {
+    all[2] = 0.0;
+    all[3] = 0.25 * (all[1] > all[0] ? all[1] - all[0] : 1.0) * mean_spacing(bounds, extent) / mean_spacing(whole_bounds, whole);
+  }
+  this->GetMapper()->SetTransfer2DRanges(all);
+}
+
 // Takes the sampling that serves all ranks: that of the whole, where rank 0 has it. Else the rule that is asked for where the field bends
 // most, and of it the shortest step and the least error. Settings of the user's own stay. Every rank must call it.
 void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks)
@@ -252,6 +306,7 @@ void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkM
     this->ApplySampling();
     return;
   }
+  this->ShareTransfer2D(ranks);
   const bool open_rule = this->Sampling == vtkStratusVolumeMapper::AUTO_SAMPLING;
   const int mine[2] = { this->GetSamplingTime() > this->AgreedFor, stratus::has_translucent(renderer) };
   int any[2] = { 0, 0 };

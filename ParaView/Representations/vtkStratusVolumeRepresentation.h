@@ -125,6 +125,7 @@ private:
   void EndAtBorders(bool end);
   void GatherWhole(vtkMultiProcessController* ranks);
   bool MeasureWhole(vtkRenderer* renderer, vtkMultiProcessController* ranks);
+  void ShareTransfer2D(vtkMultiProcessController* ranks);
   void AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks);
 
   std::unique_ptr<stratus::SolidColor> Solid;

@@ -94,6 +94,7 @@ public:
   vtkStratusJointPicture Picture;
   std::string Error, Warning;
   bool IsRefined = false; // whether the input is AMR
+  double Transfer2DRanges[4] = { 0., -1., 0., -1. };
 
 private:
   bool OnProgress();
@@ -300,6 +301,7 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   to->SetNumberOfThreads(settings->GetNumberOfThreads());
   to->SetAudit(settings->GetAudit());
   to->SetCountSamples(settings->GetCountSamples());
+  std::copy_n(this->Transfer2DRanges, 4, to->Internal->Transfer2DRanges);
 }
 
 // Asks each block's mapper what it draws.
@@ -458,6 +460,8 @@ bool vtkStratusMultiBlockVolumeMapper::MeasureSampling(vtkRenderer* renderer, vt
 {
   if (whole) {
     this->Internal->Configure(this, this->Internal->Whole);
+    const double own[4] = { 0.0, -1.0, 0.0, -1.0 };
+    std::copy_n(own, 4, this->Internal->Whole->Internal->Transfer2DRanges);
     this->Internal->Whole->SetInputDataObject(whole);
     this->Internal->Whole->SetDevice(this->Internal->Settings->GetDevice());
     return this->Internal->Whole->MeasureSampling(renderer, volume, choice);
@@ -465,6 +469,14 @@ bool vtkStratusMultiBlockVolumeMapper::MeasureSampling(vtkRenderer* renderer, vt
   std::string unused, error;
   this->Internal->Configure(this, this->Internal->Find(this, volume, unused, error));
   return error.empty() && this->Internal->Measure(renderer, volume, choice);
+}
+
+void vtkStratusMultiBlockVolumeMapper::SetTransfer2DRanges(const double ranges[4])
+{
+  if (!std::equal(ranges, ranges + 4, this->Internal->Transfer2DRanges)) {
+    std::copy_n(ranges, 4, this->Internal->Transfer2DRanges);
+    this->Modified();
+  }
 }
 
 vtkStratusVolumeMapper* vtkStratusMultiBlockVolumeMapper::GetSettings()

@@ -62,6 +62,12 @@ public:
   //@}
 
   /**
+   * Set what the columns and rows of a two-dimensional function cover: first and last value, and first and last of the second variable, as
+   * of data that this input is a part of. Where the first is greater than the last, as by default, each block's own data tell.
+   */
+  void SetTransfer2DRanges(const double ranges[4]);
+
+  /**
    * Get the number of blocks of the last picture.
    */
   int GetNumberOfBlocks();

@@ -59,6 +59,7 @@ public:
   std::string LastError; // of the last picture, reported already; empty: none
   double DrawMilliseconds = 0.0;
   double UsedCoarseness = 1.0;
+  double Transfer2DRanges[4] = { 0., -1., 0., -1. }; // of a function's columns and rows in place of the data's; empty: of the data
 
 private:
   // How coarsely the picture is drawn: the factor of the sample distance, and the pixels between rays.

@@ -96,11 +96,16 @@ bool vtkStratusVolumeMapper::Internals::SetTransfer2D(
   }
   double range[2], other[2];
   array->GetFiniteRange(range, component);
+  const double* set = this->Transfer2DRanges;
+  std::copy_n(set, set[0] <= set[1] ? 2 : 0, range);
   const double extent = range[1] > range[0] ? range[1] - range[0] : 1.0; // a volume of one value, or of none, has the first column
   other[0] = 0.0;
   other[1] = 0.25 * extent;
   if (second) {
     second->GetFiniteRange(other, 0);
+  }
+  std::copy_n(set + 2, set[2] <= set[3] ? 2 : 0, other);
+  if (second) {
     other[1] = other[1] > other[0] ? other[1] : other[0] + 1.0;
   }
   const bool any = range[0] <= range[1];
