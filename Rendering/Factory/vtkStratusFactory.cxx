@@ -4,6 +4,10 @@
 #include "vtkStratusFactoryTetrahedraMapper.h"
 #include "vtkStratusFactoryVolumeMapper.h"
 
+#include "vtkAbstractVolumeMapper.h"
+#include "vtkAlgorithmOutput.h"
+#include "vtkCallbackCommand.h"
+#include "vtkNew.h"
 #include "vtkVersion.h"
 
 #include <cstdio>
@@ -34,6 +38,27 @@ const char* vtkStratusFactory::GetVTKSourceVersion() VTK_FUTURE_CONST
 const char* vtkStratusFactory::GetDescription() VTK_FUTURE_CONST
 {
   return "Stratus's mappers in place of VTK's";
+}
+
+void vtkStratusTakeInput(vtkAbstractVolumeMapper* own, vtkAbstractVolumeMapper* of_vtk)
+{
+  if (own->GetNumberOfInputConnections(0) != 1 || own->GetInputConnection(0, 0) != of_vtk->GetInputConnection(0, 0)) {
+    own->SetInputConnection(of_vtk->GetInputConnection(0, 0));
+  }
+  own->SetScalarMode(of_vtk->GetScalarMode());
+  if (of_vtk->GetArrayAccessMode() == VTK_GET_ARRAY_BY_ID) {
+    own->SelectScalarArray(of_vtk->GetArrayId());
+  } else {
+    own->SelectScalarArray(of_vtk->GetArrayName());
+  }
+  own->SetArrayAccessMode(of_vtk->GetArrayAccessMode());
+  own->SetClippingPlanes(of_vtk->GetClippingPlanes());
+}
+
+void vtkStratusKeepQuiet(vtkAbstractVolumeMapper* own)
+{
+  vtkNew<vtkCallbackCommand> hears; // an error that somebody hears is not printed
+  own->AddObserver(vtkCommand::ErrorEvent, hears);
 }
 
 void vtkStratusSayWhyNot(const std::string& reason)

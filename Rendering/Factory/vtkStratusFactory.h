@@ -11,6 +11,8 @@
 #define VTK_FUTURE_CONST
 #endif
 
+class vtkAbstractVolumeMapper;
+
 class vtkStratusFactory : public vtkObjectFactory
 {
 public:
@@ -28,6 +30,12 @@ private:
   vtkStratusFactory(const vtkStratusFactory&) = delete;
   void operator=(const vtkStratusFactory&) = delete;
 };
+
+// Gives our mapper the input of VTK's, the array that is drawn and the clipping planes.
+void vtkStratusTakeInput(vtkAbstractVolumeMapper* own, vtkAbstractVolumeMapper* of_vtk);
+
+// Prints no error of our mapper: VTK's draws then.
+void vtkStratusKeepQuiet(vtkAbstractVolumeMapper* own);
 
 // Says on the standard error, once for equal reasons of all mappers, why VTK's mapper draws in place of ours.
 void vtkStratusSayWhyNot(const std::string& reason);

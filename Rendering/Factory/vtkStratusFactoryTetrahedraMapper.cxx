@@ -4,8 +4,6 @@
 #include "vtkStratusFactory.h"
 #include "vtkStratusTetrahedraMapper.h"
 
-#include "vtkAlgorithmOutput.h"
-#include "vtkCallbackCommand.h"
 #include "vtkObjectFactory.h"
 
 vtkStandardNewMacro(vtkStratusFactoryTetrahedraMapper);
@@ -13,8 +11,7 @@ vtkStandardNewMacro(vtkStratusFactoryTetrahedraMapper);
 vtkStratusFactoryTetrahedraMapper::vtkStratusFactoryTetrahedraMapper()
 {
   this->Own->SetComponentMixingToMean(); // as VTK's mappers do
-  vtkNew<vtkCallbackCommand> hears;      // an error that somebody hears is not printed: VTK's mapper draws then
-  this->Own->AddObserver(vtkCommand::ErrorEvent, hears);
+  vtkStratusKeepQuiet(this->Own);
 }
 
 vtkStratusFactoryTetrahedraMapper::~vtkStratusFactoryTetrahedraMapper() = default;
@@ -24,18 +21,8 @@ void vtkStratusFactoryTetrahedraMapper::Render(vtkRenderer* renderer, vtkVolume*
   vtkStratusTetrahedraMapper* own = this->Own;
   std::string reason = this->GetNumberOfInputConnections(0) == 1 ? "" : "there is no input";
   if (reason.empty()) {
-    if (own->GetNumberOfInputConnections(0) != 1 || own->GetInputConnection(0, 0) != this->GetInputConnection(0, 0)) {
-      own->SetInputConnection(this->GetInputConnection(0, 0));
-    }
-    own->SetScalarMode(this->ScalarMode);
-    if (this->ArrayAccessMode == VTK_GET_ARRAY_BY_ID) {
-      own->SelectScalarArray(this->ArrayId);
-    } else {
-      own->SelectScalarArray(this->ArrayName);
-    }
-    own->SetArrayAccessMode(this->ArrayAccessMode);
+    vtkStratusTakeInput(own, this);
     own->SetBlendMode(this->BlendMode);
-    own->SetClippingPlanes(this->ClippingPlanes);
     own->Render(renderer, volume);
     reason = own->GetLastError();
   }

@@ -4,8 +4,6 @@
 #include "vtkStratusFactory.h"
 #include "vtkStratusVolumeMapper.h"
 
-#include "vtkAlgorithmOutput.h"
-#include "vtkCallbackCommand.h"
 #include "vtkImageData.h"
 #include "vtkObjectFactory.h"
 #include "vtkShaderProperty.h"
@@ -20,9 +18,7 @@ vtkStratusFactoryVolumeMapper::vtkStratusFactoryVolumeMapper()
   // What these two mean to VTK's mappers, since the program was written for them.
   this->Own->SetGradientOpacityDistance(-1.0);
   this->Own->SetComponentMixingToMean();
-  // An error that somebody hears is not printed: VTK's mapper draws then.
-  vtkNew<vtkCallbackCommand> hears;
-  this->Own->AddObserver(vtkCommand::ErrorEvent, hears);
+  vtkStratusKeepQuiet(this->Own);
 }
 
 vtkStratusFactoryVolumeMapper::~vtkStratusFactoryVolumeMapper() = default;
@@ -51,22 +47,12 @@ std::string vtkStratusFactoryVolumeMapper::FindHindrance(vtkVolume* volume)
 void vtkStratusFactoryVolumeMapper::TakeSettings()
 {
   vtkStratusVolumeMapper* own = this->Own;
-  if (own->GetNumberOfInputConnections(0) != 1 || own->GetInputConnection(0, 0) != this->GetInputConnection(0, 0)) {
-    own->SetInputConnection(this->GetInputConnection(0, 0));
-  }
-  own->SetScalarMode(this->ScalarMode);
-  if (this->ArrayAccessMode == VTK_GET_ARRAY_BY_ID) {
-    own->SelectScalarArray(this->ArrayId);
-  } else {
-    own->SelectScalarArray(this->ArrayName);
-  }
-  own->SetArrayAccessMode(this->ArrayAccessMode);
+  vtkStratusTakeInput(own, this);
   own->SetBlendMode(this->BlendMode);
   own->SetAverageIPScalarRange(this->AverageIPScalarRange);
   own->SetCropping(this->Cropping);
   own->SetCroppingRegionPlanes(this->CroppingRegionPlanes);
   own->SetCroppingRegionFlags(this->CroppingRegionFlags);
-  own->SetClippingPlanes(this->ClippingPlanes);
   // Steps are left to the tolerance: a program sets them for the sake of the picture or of speed, of which each has its own way here.
   own->SetAutoAdjustSampleDistances(this->AutoAdjustSampleDistances);
   own->SetImageSampleDistance(this->ImageSampleDistance);
