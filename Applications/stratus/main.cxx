@@ -137,15 +137,25 @@ void info(const cli::options& o)
   }
 }
 
-void devices()
+// Each OpenCL device with its number.
+std::vector<std::string> device_names()
 {
-  const int count = stratus_device_count();
-  for (int i = 0; i < count; ++i) {
+  std::vector<std::string> names;
+  for (int i = 0; i < stratus_device_count(); ++i) {
     char name[256];
     stratus_device_name(i, name, sizeof name);
-    std::printf("%d  %s\n", i, name);
+    names.push_back(cli::format("%d  %s", i, name));
   }
-  if (count == 0) {
+  return names;
+}
+
+void devices()
+{
+  const std::vector<std::string> names = device_names();
+  for (const std::string& name : names) {
+    std::printf("%s\n", name.c_str());
+  }
+  if (names.empty()) {
     std::printf("no OpenCL device; the host draws\n");
   }
 }
@@ -167,13 +177,11 @@ void version()
   row("built with", formats.empty() ? "VTK's own file formats alone" : formats.substr(2));
   const cli::context core("host", 0);
   row("host", stratus_context_device(core));
-  const int count = stratus_device_count();
-  for (int i = 0; i < count; ++i) {
-    char name[256];
-    stratus_device_name(i, name, sizeof name);
-    row("OpenCL", cli::format("%d  %s", i, name));
+  const std::vector<std::string> names = device_names();
+  for (const std::string& name : names) {
+    row("OpenCL", name);
   }
-  if (count == 0) {
+  if (names.empty()) {
     row("OpenCL", "no device");
   }
 }
