@@ -41,6 +41,23 @@ bool has_array(vtkDataObject* data, int of, const char* name)
   const std::vector<vtkDataSet*> grids = blocks ? vtkCompositeDataSet::GetDataSets(blocks) : std::vector<vtkDataSet*>(grid ? 1 : 0, grid);
   return std::any_of(grids.begin(), grids.end(), [of, name](vtkDataSet* block) { return block->GetAttributes(of)->GetArray(name); });
 }
+
+// Whether no rank's data have the array that is shown, while the data of before had it. False where no rank has data now, or none was
+// chosen. Every rank must call it.
+bool lost_array(vtkInformation* array, vtkDataObject* now, vtkDataObject* before)
+{
+  const char* name = array ? array->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  const bool cells = array && array->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  const int of = cells ? vtkDataObject::CELL : vtkDataObject::POINT;
+  const bool chosen = name && name[0];
+  const int mine[3] = { now && now->GetNumberOfElements(vtkDataObject::CELL) > 0, chosen && has_array(now, of, name),
+    chosen && has_array(before, of, name) };
+  int any[3] = { mine[0], mine[1], mine[2] };
+  if (stratus::count_ranks() > 1) {
+    vtkMultiProcessController::GetGlobalController()->AllReduce(mine, any, 3, vtkCommunicator::MAX_OP);
+  }
+  return any[0] && !any[1] && any[2];
+}
 } // namespace
 
 int stratus::count_ranks()
@@ -170,19 +187,16 @@ vtkSmartPointer<vtkPlaneCollection> stratus::planes_between(const double own[6],
   return planes;
 }
 
-bool stratus::lost_array(vtkInformation* array, vtkDataObject* now, vtkDataObject* before)
+std::string stratus::keep_if_lost(vtkInformation* array, vtkSmartPointer<vtkDataObject>& now, vtkDataObject* before, bool& lost)
 {
-  const char* name = array ? array->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  const bool cells = array && array->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
-  const int of = cells ? vtkDataObject::CELL : vtkDataObject::POINT;
-  const bool chosen = name && name[0];
-  const int mine[3] = { now && now->GetNumberOfElements(vtkDataObject::CELL) > 0, chosen && has_array(now, of, name),
-    chosen && has_array(before, of, name) };
-  int any[3] = { mine[0], mine[1], mine[2] };
-  if (count_ranks() > 1) {
-    vtkMultiProcessController::GetGlobalController()->AllReduce(mine, any, 3, vtkCommunicator::MAX_OP);
+  const bool was = lost;
+  lost = lost_array(array, now, before);
+  if (lost) {
+    now = before;
   }
-  return any[0] && !any[1] && any[2];
+  return lost && !was && get_rank() == 0
+    ? std::string("the data have no array '") + array->Get(vtkDataObject::FIELD_NAME()) + "' any more; the last data that had it stay"
+    : "";
 }
 
 bool stratus::has_translucent(vtkRenderer* renderer)

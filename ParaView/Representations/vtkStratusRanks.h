@@ -45,10 +45,10 @@ std::string judge_parts(vtkMultiProcessController* controller, const double mine
 // from the bounds' coordinates to the world's.
 vtkSmartPointer<vtkPlaneCollection> planes_between(const double own[6], const double whole[6], vtkMatrix4x4* matrix);
 
-// Whether no rank's data have the array that is shown, while the data of before had it. False where no rank has data now, or none was
-// chosen. array: its name and association, as an algorithm is told them; now, before: this rank's data, or nullptr. Every rank must call
-// it.
-bool lost_array(vtkInformation* array, vtkDataObject* now, vtkDataObject* before);
+// Keeps the data of before where the new ones of all ranks lack the array that is shown, as a step in time may. array: its name and
+// association, as an algorithm is told them; now, before: this rank's data, or nullptr; lost: whether the last call kept them, and whether
+// this one does. Returns, on rank 0 and once, what is to be said. Every rank must call it.
+std::string keep_if_lost(vtkInformation* array, vtkSmartPointer<vtkDataObject>& now, vtkDataObject* before, bool& lost);
 
 // Whether any visible prop of the renderer has translucent surfaces.
 bool has_translucent(vtkRenderer* renderer);

@@ -83,7 +83,10 @@ int vtkStratusTetrahedraRepresentation::RequestData(vtkInformation* request, vtk
     const vtkSmartPointer<vtkDataObject> before = this->Cache;
     this->FindArray(data);
     this->Cache = Copy(data);
-    this->KeepIfLost(before);
+    const std::string words = stratus::keep_if_lost(this->GetInputArrayInformation(0), this->Cache, before, this->Lost);
+    if (!words.empty()) {
+      vtkErrorMacro(<< words);
+    }
     if (this->UseSeparateOpacityArray) {
       this->AppendOpacityComponent(vtkDataSet::SafeDownCast(this->Cache));
     }
@@ -256,20 +259,6 @@ void vtkStratusTetrahedraRepresentation::SetScalarOpacity(vtkPiecewiseFunction* 
 void vtkStratusTetrahedraRepresentation::SetSolidColor(double red, double green, double blue)
 {
   this->Solid->SetColor(red, green, blue);
-}
-
-// Keeps the data of before where the new ones of all ranks lack the array that is shown, as a step in time may. Every rank must call it.
-void vtkStratusTetrahedraRepresentation::KeepIfLost(vtkDataObject* before)
-{
-  vtkInformation* array = this->GetInputArrayInformation(0);
-  const bool lost = stratus::lost_array(array, this->Cache, before);
-  if (lost) {
-    this->Cache = before;
-  }
-  if (lost && !this->Lost && stratus::get_rank() == 0) {
-    vtkErrorMacro("the data have no array '" << array->Get(vtkDataObject::FIELD_NAME()) << "' any more; the last data that had it stay");
-  }
-  this->Lost = lost;
 }
 
 // Chooses an array of the data where ParaView has chosen none.

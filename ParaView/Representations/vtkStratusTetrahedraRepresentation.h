@@ -114,7 +114,6 @@ private:
   void operator=(const vtkStratusTetrahedraRepresentation&) = delete;
 
   void FindArray(vtkDataObject* data);
-  void KeepIfLost(vtkDataObject* before);
   const char* GetShownArray(bool& on_cells);
   void UpdateMapper(vtkDataObject* data);
   void Show(vtkDataObject* data, const std::string& name, bool on_cells);

@@ -98,7 +98,10 @@ int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInfo
   const vtkSmartPointer<vtkDataObject> before = this->Cache;
   this->TakeData(data);
   this->FindArray(this->Cache);
-  this->KeepIfLost(before);
+  const std::string words = stratus::keep_if_lost(this->GetInputArrayInformation(0), this->Cache, before, this->Lost);
+  if (!words.empty()) {
+    vtkErrorMacro(<< words);
+  }
   if (this->UseSeparateOpacityArray) {
     if (auto* grid = vtkDataSet::SafeDownCast(this->Cache)) {
       this->AppendOpacityComponent(grid);
@@ -368,20 +371,6 @@ void vtkStratusVolumeRepresentation::SetScalarOpacity(vtkPiecewiseFunction* func
 void vtkStratusVolumeRepresentation::SetSolidColor(double red, double green, double blue)
 {
   this->Solid->SetColor(red, green, blue);
-}
-
-// Keeps the data of before where the new ones of all ranks lack the array that is shown, as a step in time may. Every rank must call it.
-void vtkStratusVolumeRepresentation::KeepIfLost(vtkDataObject* before)
-{
-  vtkInformation* array = this->GetInputArrayInformation(0);
-  const bool lost = stratus::lost_array(array, this->Cache, before);
-  if (lost) {
-    this->Cache = before;
-  }
-  if (lost && !this->Lost && stratus::get_rank() == 0) {
-    vtkErrorMacro("the data have no array '" << array->Get(vtkDataObject::FIELD_NAME()) << "' any more; the last data that had it stay");
-  }
-  this->Lost = lost;
 }
 
 // Chooses an array of the data where ParaView has chosen none.

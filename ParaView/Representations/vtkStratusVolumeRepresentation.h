@@ -115,7 +115,6 @@ private:
   vtkStratusMultiBlockVolumeMapper* GetMapper();
   vtkStratusVolumeMapper* GetSettings();
   void FindArray(vtkDataObject* data);
-  void KeepIfLost(vtkDataObject* before);
   void TakeData(vtkDataObject* data);
   void ApplyBlendMode();
   void ApplySampling();
