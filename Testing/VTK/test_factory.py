@@ -7,6 +7,9 @@ import shutil
 import subprocess
 import sys
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Python"))
+from checking import check, done
+
 import numpy
 
 SIZE = 200, 160
@@ -114,14 +117,6 @@ if "--draw" in sys.argv:
 
 folder = os.path.join(sys.argv[1] if len(sys.argv) > 1 else ".", "factory")
 os.makedirs(folder, exist_ok=True)
-failures = 0
-
-
-def check(condition, what):
-    global failures
-    if not condition:
-        failures += 1
-        print("does not hold:", what)
 
 
 def run(name, *options, autoload=None):
@@ -130,9 +125,9 @@ def run(name, *options, autoload=None):
     environment.pop("VTK_AUTOLOAD_PATH", None)
     if autoload:
         environment["VTK_AUTOLOAD_PATH"] = autoload
-    done = subprocess.run([sys.executable, __file__, "--draw", path, *options], env=environment, capture_output=True, text=True)
-    check(done.returncode == 0, done.stderr)
-    return dict(numpy.load(path)), done.stderr
+    ran = subprocess.run([sys.executable, __file__, "--draw", path, *options], env=environment, capture_output=True, text=True)
+    check(ran.returncode == 0, ran.stderr)
+    return dict(numpy.load(path)), ran.stderr
 
 
 if not os.path.isdir(FACTORY):
@@ -169,4 +164,4 @@ without = subprocess.run([sys.executable, "-c", f"import ctypes; f = ctypes.CDLL
                          capture_output=True, text=True)
 check("none" in without.stdout and "are for VTK 9." in without.stderr and "VTK's own draw" in without.stderr, f"{without}")
 print("; ".join(f"{name} {apart(of_ours[name], of_vtk[name])}" for name in of_vtk if not name.endswith(".class")), "of 255 between ours and VTK's")
-sys.exit(1 if failures else 0)
+done()

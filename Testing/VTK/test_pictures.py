@@ -6,25 +6,20 @@ import random
 import struct
 import sys
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Python"))
+from checking import check, done
+
 import numpy
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 import stratus
 
-failures = 0
 folder = os.path.join(sys.argv[1] if len(sys.argv) > 1 else ".", "pictures")
 os.makedirs(folder, exist_ok=True)
 if not hasattr(stratus, "vtkStratusEXRReader"):
     print("SKIPPED: built without OpenEXR")
     sys.exit(77)
-
-
-def check(condition, what):
-    global failures
-    if not condition:
-        failures += 1
-        print("does not hold:", what)
 
 
 def told(thing):
@@ -288,4 +283,4 @@ refuses()
 measures()
 files()
 refuses_pictures()
-sys.exit(1 if failures else 0)
+done()
