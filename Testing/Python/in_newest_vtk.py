@@ -5,6 +5,8 @@ import os
 import subprocess
 import sys
 
+from checking import check, done
+
 import numpy
 import pyvista
 from cvista.util.numpy_support import vtk_to_numpy
@@ -13,15 +15,7 @@ from cvista.vtkCommonCore import vtkVersion
 import stratus
 
 folder, build = sys.argv[1:3]
-failures = 0
 print("VTK", vtkVersion.GetVTKVersion(), "pyvista", pyvista.__version__)
-
-
-def check(condition, what):
-    global failures
-    if not condition:
-        failures += 1
-        print("does not hold:", what)
 
 
 # The same array by the package for Debian's VTK, in a process of its own.
@@ -35,10 +29,10 @@ last = mapper.GetLastImage().GetPointData()
 numpy.savez(sys.argv[1], shown=shown, **{name: to_numpy(last.GetArray(name)) for name in ("RGBA", "Depth")})
 """
 before = os.path.join(folder, "debian.npz")
-done = subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24 -noreset", "/usr/bin/python3", "-c",
+debians = subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24 -noreset", "/usr/bin/python3", "-c",
                        "from vtkmodules.util.numpy_support import vtk_to_numpy as to_numpy\n" + SHOW, before],
                       env=dict(os.environ, PYTHONPATH=os.path.join(build, "lib", "python3", "dist-packages")), capture_output=True, text=True)
-check(done.returncode == 0, done.stderr)
+check(debians.returncode == 0, debians.stderr)
 sys.argv[1] = os.path.join(folder, "newest.npz")
 exec("to_numpy = vtk_to_numpy\n" + SHOW)
 old, new = numpy.load(before), numpy.load(sys.argv[1])
@@ -84,4 +78,4 @@ factory = os.path.join(os.path.dirname(stratus.__file__), "stratus", "factory")
 told = subprocess.run([sys.executable, "-c", "import cvista.vtkRenderingVolumeOpenGL2; from cvista.vtkRenderingVolume import vtkGPUVolumeRayCastMapper as mapper; "
                        "print(mapper().GetClassName())"], env=dict(os.environ, VTK_AUTOLOAD_PATH=factory), capture_output=True, text=True)
 check("vtkStratusFactoryVolumeMapper" in told.stdout, f"the object factory: {told}")
-sys.exit(1 if failures else 0)
+done()
