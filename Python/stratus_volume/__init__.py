@@ -5,18 +5,29 @@ show(data)                a picture that notebooks show
 render(data)              RGBA and depth as floats, and counters
 render_tetrahedra(points, tetrahedra, values)
 turn(data)                a film of the data as it turns
+view(data)                a picture in a notebook that the mouse turns
+render_several(items)     volumes and meshes that overlap, as one medium
+slab(center, normal, thickness)  the clip planes of a thick slice
 Volume, Tetrahedra        the same again and again, from other sides, without building anew
 distance_field(data)      distances to the voxels whose values show
 Tree, first_hits          the first of these voxels along rays
+partition, VisibilityOrder  meshes cut into leaves, and the order in which cells hide one another
+Octree                    which of many boxes a camera sees
 """
+from ._cells import Partition, VisibilityOrder, partition
 from ._core import Cancelled, Context, DeviceError, Unsupported, devices
 from ._core import version as __version__
 from ._draw import render, render_tetrahedra, show, turn
+from ._media import slab
+from ._notebook import View, view
+from ._octree import Octree, Visible
 from ._picture import Film, Picture, Rendering
+from ._several import render_several
 from ._tetrahedra import Tetrahedra
 from ._values import NothingShown
 from ._volume import Volume
 from ._voxels import Hits, Tree, distance_field, first_hits
 
-__all__ = ["Cancelled", "Context", "DeviceError", "Film", "Hits", "NothingShown", "Picture", "Rendering", "Tetrahedra", "Tree", "Unsupported", "Volume",
-           "devices", "distance_field", "first_hits", "render", "render_tetrahedra", "show", "turn"]
+__all__ = ["Cancelled", "Context", "DeviceError", "Film", "Hits", "NothingShown", "Octree", "Partition", "Picture", "Rendering", "Tetrahedra", "Tree",
+           "Unsupported", "View", "VisibilityOrder", "Visible", "Volume", "devices", "distance_field", "first_hits", "partition", "render",
+           "render_several", "render_tetrahedra", "show", "slab", "turn", "view"]

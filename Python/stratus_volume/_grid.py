@@ -14,12 +14,13 @@ _CELL_HIDDEN = c.CONSTANTS["STRATUS_GHOST_HIDDEN_CELL"]
 
 
 class Grid:
-    """Values on a grid. `values` has the axes slow, middle, fast. `world` tells which world axis each index runs along, fast first, and `own`
-    which axis of the caller's array it is."""
+    """Values on a grid. `values` has the axes slow, middle, fast and, of several components, these. `world` tells which world axis each index
+    runs along, fast first, and `own` which axis of the caller's array it is. `spreads` has one Spread for each component."""
 
     def __init__(self, values, mask, spacing, origin, world=(0, 1, 2), direction=None, coordinates=(None, None, None), cell_centered=False,
                  flags=None, own=(2, 1, 0)):
-        self.own = own
+        self.own, self.matrix = own, None
+        self.components = values.shape[3] if values.ndim == 4 else 1
         self.mask, self.flags, self.world, self.cell_centered = mask, flags, world, cell_centered
         self.spacing, self.origin, self.coordinates = spacing, origin, coordinates
         self.direction = direction or [1.0 if world[own] == axis else 0.0 for axis in range(3) for own in range(3)]
@@ -29,31 +30,37 @@ class Grid:
             self.ghosts = flags
             by_flags = flags & (_CELL_HIDDEN if cell_centered else _POINT_HIDDEN) != 0
             hidden = by_flags if hidden is None else hidden | by_flags
-        shown = visible(values.reshape(-1), None if hidden is None else hidden.reshape(-1))
-        self.nothing, self.spread = None, None
+        rows = values.reshape(-1) if values.ndim == 3 else values.reshape(-1, self.components)
+        shown = visible(rows, None if hidden is None else hidden.reshape(-1))
+        self.nothing, self.spreads, self.spread = None, [], None
         if shown.size == 0:
             masked = 0 if hidden is None else int(hidden.sum())
-            self.nothing = none_visible(values.size, masked, values.size - masked)
+            self.nothing = none_visible(len(rows), masked, len(rows) - masked)
         else:
-            self.spread = Spread(shown)
+            self.spreads = [Spread(each) for each in ([shown] if shown.ndim == 1 else shown.T)]
+            self.spread = self.spreads[0]
         self.values = values if mask is None or self.nothing else self._without_hidden(values)
         self._scaled = (0, self.values)
         self.revision = 0
 
     def _without_hidden(self, values):
         """What is masked has no say in ranges and tables: floats become NaN; integers a value of the others, hidden by a flag."""
+        mask = self.mask if values.ndim == 3 else self.mask[..., None]
         if values.dtype.kind == "f":
-            return numpy.where(self.mask, values.dtype.type(numpy.nan), values)
+            return numpy.where(mask, values.dtype.type(numpy.nan), values)
         flag = _CELL_HIDDEN if self.cell_centered else _POINT_HIDDEN
         own = self.mask.astype(numpy.uint8) * numpy.uint8(flag)
         self.ghosts = numpy.ascontiguousarray(own if self.ghosts is None else own | self.ghosts)
-        if values.min() < self.spread.low or values.max() > self.spread.high:
-            return numpy.where(self.mask, values.dtype.type(self.spread.low), values)
+        low, high = (numpy.array([getattr(each, end) for each in self.spreads]) for end in ("low", "high"))
+        of_each = values.reshape(-1, self.components)
+        if (of_each.min(axis=0) < low).any() or (of_each.max(axis=0) > high).any():
+            return numpy.where(mask, (low if values.ndim == 4 else low[0]).astype(values.dtype), values)
         return values
 
     def power(self, points=None):
         """The power of 2 by which values are scaled, for a function with points of its own by these where they are much smaller."""
-        return self.spread.power(points) if self.values.dtype.kind == "f" else 0
+        largest = max(self.spreads, key=lambda each: max(abs(each.low), abs(each.high)))
+        return largest.power(points) if self.values.dtype.kind == "f" else 0
 
     def view(self, power):
         """The core's view of the values times 2**-power. It is valid as long as this object, and until the next call."""
@@ -65,10 +72,12 @@ class Grid:
             self._scaled = (power, values)
         volume = library.stratus_volume_default()
         volume.values, volume.type, volume.value_stride = address(values), type_of(values), stride
-        volume.dimensions[:] = values.shape[::-1]
+        volume.dimensions[:], volume.components = values.shape[2::-1], self.components
         volume.origin[:], volume.direction[:] = self.origin, self.direction
         volume.cell_centered = int(self.cell_centered)
         volume.revision = self.revision
+        if self.matrix is not None:
+            volume.matrix[:] = self.matrix
         if self.ghosts is not None:
             setattr(volume, "cell_ghosts" if self.cell_centered else "point_ghosts", address(self.ghosts))
         for own in range(3):
@@ -85,6 +94,10 @@ class Grid:
         """An array of the grid's shape with its axes in the order of the caller's array."""
         return values.transpose([2 - self.own.index(axis) for axis in range(3)])
 
+    def in_memory(self, given):
+        """An array of the caller's axes with the axes slow, middle, fast: as_given backwards."""
+        return given.transpose(self.own[::-1])
+
     def crop(self, box):
         """Bounds along the grid's axes of bounds along the world's."""
         result = [0.0] * 6
@@ -98,10 +111,12 @@ class Grid:
 
 def _strided(values):
     """Returns values and the distance of two along the fastest axis, in values, of a copy where rows do not follow each other evenly."""
-    step, count, size = values.strides[-1], values.shape, values.itemsize
-    if step > 0 and step % size == 0 and values.strides[1] == step * count[2] and values.strides[0] == step * count[2] * count[1]:
+    step, count, size = values.strides[2], values.shape, values.itemsize
+    components = count[3] if values.ndim == 4 else 1
+    even = step > 0 and step % size == 0 and values.strides[1] == step * count[2] and values.strides[0] == step * count[2] * count[1]
+    if even and (components == 1 or values.strides[3] == size and step >= components * size):
         return values, step // size
-    return numpy.ascontiguousarray(values), 1
+    return numpy.ascontiguousarray(values), components
 
 
 def _axes(axes):
@@ -113,16 +128,21 @@ def _axes(axes):
 def _of_array(array, spacing, origin, axes, coordinates=None):
     mask = mask_of(array)
     values = native(array)
-    if values.ndim != 3 or min(values.shape) < 2:
-        raise ValueError(f"the array's shape is {values.shape}, it must have three axes of at least 2 values")
+    most = c.CONSTANTS["STRATUS_COMPONENTS_MAX"]
+    if values.ndim not in (3, 4) or min(values.shape[:3]) < 2 or values.ndim == 4 and not 1 <= values.shape[3] <= most:
+        raise ValueError(f"the array's shape is {values.shape}, it must have three axes of at least 2 values, and may have a last one of 1 to {most} "
+                         "components")
+    if values.ndim == 4:
+        mask = None if mask is None else mask.any(axis=3)
+        values = values[..., 0] if values.shape[3] == 1 else values
     worlds = _axes(axes)
     spacing = numbers((1, 1, 1) if spacing is None else spacing, 3, "spacing")
     origin = numbers((0, 0, 0) if origin is None else origin, 3, "origin")
     if min(spacing) <= 0:
         raise ValueError(f"spacing is {spacing}, each must be above 0")
     # The axis along which memory runs fastest is the core's first, whatever the array calls it.
-    order = sorted(range(3), key=lambda axis: -values.strides[axis]) if min(values.strides) > 0 else [0, 1, 2]
-    values = values.transpose(order)
+    order = sorted(range(3), key=lambda axis: -values.strides[axis]) if min(values.strides[:3]) > 0 else [0, 1, 2]
+    values = values.transpose([*order, 3][:values.ndim])
     mask = None if mask is None else mask.transpose(order)
     world = tuple(worlds[axis] for axis in reversed(order))
     own = tuple(reversed(order))
@@ -161,6 +181,28 @@ def _of_xarray(data, spacing, origin, axes):
     return _of_array(values, spacing, origin, axes, coordinates)
 
 
+def chosen(values, component, name):
+    """A VTK array's values, of several components the one that is asked for, or rows of all."""
+    if values.ndim == 1:
+        if component not in (None, 0, "all"):
+            raise ValueError(f"component is {component!r}, but {name!r} has 1")
+        return values
+    count, most = values.shape[1], c.CONSTANTS["STRATUS_COMPONENTS_MAX"]
+    choices = f"0..{count - 1}" + (" or 'all'" if count <= most else "")
+    if component is None:
+        raise ValueError(f"{name!r} has {count} components; choose by component=, {choices}")
+    if isinstance(component, str) and component == "all" and count <= most:
+        return values
+    if isinstance(component, str) or component != int(component) or not 0 <= component < count:
+        raise ValueError(f"component is {component!r}, it must be in {choices}")
+    return values[:, int(component)]
+
+
+def _shaped(values, shape):
+    """A VTK array's values, or rows of components, along the grid's axes."""
+    return native(values).reshape([*shape, *values.shape[1:]])
+
+
 def _of_vtk(data, scalars, component):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     points, cells = data.GetPointData(), data.GetCellData()
@@ -175,13 +217,7 @@ def _of_vtk(data, scalars, component):
         array = cells.GetScalars() if cell_centered else points.GetScalars()
         if array is None:
             raise ValueError("the grid has no active scalars, neither of points nor of cells; name them by scalars=")
-    values = vtk_to_numpy(array)
-    if values.ndim == 2:
-        if component is None:
-            raise ValueError(f"{array.GetName()!r} has {values.shape[1]} components; choose one by component=, 0..{values.shape[1] - 1}")
-        if not 0 <= component < values.shape[1]:
-            raise ValueError(f"component is {component}, it must be in 0..{values.shape[1] - 1}")
-        values = values[:, component]
+    values = chosen(vtk_to_numpy(array), component, array.GetName())
     shape = [max(1, n - 1) if cell_centered else n for n in data.GetDimensions()][::-1]
     attributes = cells if cell_centered else points
     flags = attributes.GetArray("vtkGhostType")
@@ -189,13 +225,28 @@ def _of_vtk(data, scalars, component):
     if data.IsA("vtkRectilinearGrid"):
         places = [numpy.ascontiguousarray(vtk_to_numpy(each), numpy.float64) for each in
                   (data.GetXCoordinates(), data.GetYCoordinates(), data.GetZCoordinates())]
-        return Grid(native(values).reshape(shape), None, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), coordinates=places, cell_centered=cell_centered, flags=flags)
+        return Grid(_shaped(values, shape), None, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), coordinates=places, cell_centered=cell_centered, flags=flags)
     extent, origin = data.GetExtent(), [0.0, 0.0, 0.0]
     data.TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], origin)
     matrix = data.GetDirectionMatrix()
     direction = [matrix.GetElement(row, column) for row in range(3) for column in range(3)]
-    return Grid(native(values).reshape(shape), None, list(data.GetSpacing()), tuple(origin), direction=direction, cell_centered=cell_centered,
+    return Grid(_shaped(values, shape), None, list(data.GetSpacing()), tuple(origin), direction=direction, cell_centered=cell_centered,
                 flags=flags)
+
+
+def affine(matrix):
+    """The 16 numbers, row by row, of an affine matrix (4, 4), which may be VTK's; None stands for none."""
+    if matrix is None:
+        return None
+    wanted = "it must be (4, 4) finite numbers, the last row 0, 0, 0, 1, that leave a volume its thickness"
+    rows = [[matrix.GetElement(row, column) for column in range(4)] for row in range(4)] if hasattr(matrix, "GetElement") else matrix
+    try:
+        own = numpy.asarray(rows, numpy.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"matrix is {matrix!r}, {wanted}") from None
+    if own.shape != (4, 4) or not numpy.isfinite(own).all() or list(own[3]) != [0, 0, 0, 1] or numpy.linalg.det(own[:3, :3]) == 0:
+        raise ValueError(f"matrix is {matrix!r}, {wanted}")
+    return own.reshape(-1)
 
 
 def grid_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None):

@@ -8,11 +8,25 @@ import numpy
 from . import _declarations as c
 from . import _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library, type_of
+from ._grid import affine, chosen
+from ._look import Image, crop_box, set_contours, set_planes, value_interval
+from ._media import explain_each, functions_of, materials_of
 from ._values import (Spread, explain, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled, unit_length,
                       visible, warn)
-from ._volume import Image, Transfer, crop_box, set_contours, set_planes, set_shading, value_interval
 
 _TETRA = 10  # VTK's number of the cell
+
+
+def listed(points, tetrahedra):
+    """Returns points as float64 (n, 3) and tetrahedra as int32 (m, 4), checked."""
+    points, cells = native(points, "points"), numpy.asarray(tetrahedra)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ValueError(f"points has the shape {points.shape}, it must be (n, 3)")
+    if cells.ndim != 2 or cells.shape[1] != 4 or cells.dtype.kind not in "iu":
+        raise ValueError(f"tetrahedra has the shape {cells.shape} and type {cells.dtype}, it must be (m, 4) whole numbers")
+    if cells.size and not (0 <= cells.min() and cells.max() < len(points)):
+        raise ValueError(f"tetrahedra has the numbers {cells.min()}..{cells.max()}, they must be in 0..{len(points) - 1}")
+    return numpy.ascontiguousarray(points, numpy.float64), numpy.ascontiguousarray(cells, numpy.int32)
 
 
 class Tetrahedra:
@@ -21,23 +35,26 @@ class Tetrahedra:
     points      float64 (n, 3), finite; of a curvilinear grid float64 or float32 (nk, nj, ni, 3). Or a vtkUnstructuredGrid or
                 vtkStructuredGrid, pyvista's too, which has the rest; cells that are no tetrahedra are divided into such by VTK
     tetrahedra  int32 (m, 4), numbers of points, in any orientation; None of a curvilinear grid
-    values      of the points or of the cells, one each, of any type that Volume takes; masked, NaN and infinite ones hide their cells
+    values      of the points or of the cells, one each, of any type that Volume takes; masked, NaN and infinite ones hide their cells. One more
+                axis, the last, has 2 to 4 components of each
     scalars     name of the array of a VTK data set; default: its active scalars
-    device, threads  see Volume
+    component   which of several components of it, from 0, or "all" of 2 to 4
+    device, threads, matrix  see Volume
 
     Memory is not copied where types are the named ones and arrays are contiguous.
     """
 
-    def __init__(self, points, tetrahedra=None, values=None, scalars=None, device=None, threads=None):
+    def __init__(self, points, tetrahedra=None, values=None, scalars=None, device=None, threads=None, matrix=None, component=None):
         if hasattr(points, "IsA") and hasattr(points, "GetPointData"):
             if tetrahedra is not None or values is not None:
                 raise ValueError("a data set of VTK has its own tetrahedra and values: leave these out")
-            points, tetrahedra, values = _of_vtk(points, scalars)
-        elif scalars is not None:
-            raise ValueError("scalars chooses among the arrays of a VTK data set; arrays have none")
+            points, tetrahedra, values = _of_vtk(points, scalars, component)
+        elif scalars is not None or component is not None:
+            raise ValueError("scalars and component choose among the arrays of a VTK data set; arrays have none")
         if values is None:
             raise TypeError("values is None, it must be one for each point or for each cell")
         self._set_points(points, tetrahedra)
+        self._place(matrix)
         self._set_values(values)
         self.context = context_of(device, threads)
         self._caster = Owned(self.context, library.stratus_tetra_caster_destroy)
@@ -53,43 +70,50 @@ class Tetrahedra:
             self.points = numpy.ascontiguousarray(points, numpy.float32 if points.dtype == numpy.float32 else numpy.float64)
             self.cells, self.shapes = None, (points.shape[:3], tuple(n - 1 for n in points.shape[:3]))
         else:
-            if points.ndim != 2 or points.shape[1] != 3:
-                raise ValueError(f"points has the shape {points.shape}, it must be (n, 3)")
-            cells = numpy.asarray(tetrahedra)
-            if cells.ndim != 2 or cells.shape[1] != 4 or cells.dtype.kind not in "iu":
-                raise ValueError(f"tetrahedra has the shape {cells.shape} and type {cells.dtype}, it must be (m, 4) whole numbers")
-            if cells.size and not (0 <= cells.min() and cells.max() < len(points)):
-                raise ValueError(f"tetrahedra has the numbers {cells.min()}..{cells.max()}, they must be in 0..{len(points) - 1}")
-            self.points = numpy.ascontiguousarray(points, numpy.float64)
-            self.cells = numpy.ascontiguousarray(cells, numpy.int32)
-            self.shapes = ((len(points),), (len(cells),))
+            self.points, self.cells = listed(points, tetrahedra)
+            self.shapes = ((len(self.points),), (len(self.cells),))
+
+    def _place(self, matrix):
+        self.matrix = affine(matrix)
         finite = self.points.reshape(-1, 3)
         finite = finite[numpy.isfinite(finite).all(axis=1)]
+        if self.matrix is not None:
+            rows = self.matrix.reshape(4, 4)
+            finite = finite @ rows[:3, :3].T + rows[:3, 3]
         ends = (finite.min(axis=0), finite.max(axis=0)) if len(finite) else (numpy.zeros(3), numpy.zeros(3))
         self.bounds = tuple(float(end[axis]) for axis in range(3) for end in ends)
 
     def _set_values(self, values):
         mask, own = mask_of(values), native(values, "values")
-        if own.shape not in self.shapes:
-            raise ValueError(f"values has the shape {own.shape}, it must be that of the points, {self.shapes[0]}, or of the cells, {self.shapes[1]}")
+        most = c.CONSTANTS["STRATUS_COMPONENTS_MAX"]
+        several = own.shape not in self.shapes and own.ndim > 0 and own.shape[:-1] in self.shapes and 1 <= own.shape[-1] <= most
+        if own.shape not in self.shapes and not several:
+            raise ValueError(f"values has the shape {own.shape}, it must be that of the points, {self.shapes[0]}, or of the cells, {self.shapes[1]}, "
+                             f"and may have a last axis of 1 to {most} components")
+        self.components = own.shape[-1] if several else 1
+        if several and mask is not None:
+            mask = mask.any(axis=-1)
         # Where there are as many cells as points, values belong to points.
-        self.of_cells = own.shape != self.shapes[0]
-        shown = visible(own.reshape(-1), None if mask is None else mask.reshape(-1))
-        self.nothing, self.spread, self.hidden = None, None, None
+        self.of_cells = own.shape[:own.ndim - several] != self.shapes[0]
+        shown = visible(own.reshape(-1, self.components) if several else own.reshape(-1), None if mask is None else mask.reshape(-1))
+        self.nothing, self.spreads, self.spread, self.hidden = None, [], None, None
         if shown.size == 0:
-            masked = 0 if mask is None else int(mask.sum())
-            self.nothing = none_visible(own.size, masked, own.size - masked)
+            count, masked = own.size // self.components, 0 if mask is None else int(mask.sum())
+            self.nothing = none_visible(count, masked, count - masked)
             return
-        self.spread = Spread(shown)
+        self.spreads = [Spread(each) for each in (shown.T if several else [shown])]
+        self.spread = self.spreads[0]
         if mask is not None:
+            where = mask[..., None] if several else mask
             if own.dtype.kind == "f":
-                own = numpy.where(mask, own.dtype.type(numpy.nan), own)
+                own = numpy.where(where, own.dtype.type(numpy.nan), own)
             else:
-                own = numpy.where(mask, own.dtype.type(self.spread.low), own)
+                low = numpy.array([each.low for each in self.spreads])
+                own = numpy.where(where, (low if several else low[0]).astype(own.dtype), own)
                 self.hidden = numpy.ascontiguousarray(mask if self.of_cells else self._touched(mask)).reshape(-1).view(numpy.uint8)
         self.values, self.power = numpy.ascontiguousarray(own), 0
         if own.dtype.kind == "f":
-            self.power = power_of(max(abs(self.spread.low), abs(self.spread.high)))
+            self.power = power_of(max(abs(end) for each in self.spreads for end in (each.low, each.high)))
             if self.power:
                 self.values = scaled(own, self.power)
 
@@ -113,48 +137,81 @@ class Tetrahedra:
             mesh.point_count, mesh.cell_count, mesh.vertices = len(self.points), len(self.cells), address(self.cells)
         setattr(mesh, "float_points" if self.points.dtype == numpy.float32 else "points", address(self.points))
         mesh.values, mesh.type, mesh.cell_values = address(self.values), type_of(self.values), int(self.of_cells)
+        mesh.components = mesh.value_stride = self.components
+        if self.matrix is not None:
+            mesh.matrix[:] = self.matrix
         mesh.hidden = address(self.hidden)
         return mesh
 
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", method="auto", tolerance=None,
-               shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, opaque_depth=None, progress=None):
+               shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, opaque_depth=None, progress=None,
+               dependent=False, weights=None, mean_components=False):
         """Draws a picture and returns a Rendering: rgba, depth, counters. `render` tells the parameters.
 
         method  march from cell to cell, project sorted cells, or auto, the one that should cost less
         mode    composite, maximum, minimum, average, additive or isosurface
         """
         size = pixels(size)
-        options = library.stratus_tetra_options_default()
+        image, report = Image(size, opaque_depth), c.stratus_tetra_report()
+        with self.context.lock:
+            asked = AskedOfCells(self, opacity, color, unit_distance, mode, method, tolerance, shade, gradient_opacity, contours, crop, clip_planes,
+                                 average_range, dependent, weights, mean_components)
+            if not self.nothing:
+                view = _view.make(self.context, camera, self.bounds, size)
+                self.context.call(library.stratus_tetra_caster_render, self._caster.pointer, ctypes.byref(asked.mesh), asked.functions,
+                                  ctypes.byref(view), ctypes.byref(asked.options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
+        asked.explain(image.rgba, report.rays)
+        return image.rendering(as_dict(report))
+
+
+class AskedOfCells:
+    """What the core is told of a mesh for one picture, with all that this points to. Made and used with the context's lock held."""
+
+    def __init__(self, drawn, opacity=None, color=None, unit_distance=None, mode="composite", method="auto", tolerance=None, shade=False,
+                 gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, dependent=False, weights=None,
+                 mean_components=False):
+        self.drawn, self.mode, self.options = drawn, mode, library.stratus_tetra_options_default()
+        options = self.options
         options.mode = choice(mode, "stratus_tetra_mode", "STRATUS_TETRA_", "mode")
         options.method = choice(method, "stratus_tetra_method", "STRATUS_TETRA_METHOD_", "method")
         if tolerance is not None:
             options.tolerance = number(tolerance, "tolerance")
-        set_shading(options, shade)
+        options.dependent, options.mean_components = int(bool(dependent)), int(bool(mean_components))
+        self._materials = materials_of(options, shade, drawn.components)
         set_planes(options, clip_planes, c.CONSTANTS["STRATUS_TETRA_CLIP_PLANES_MAX"])
         if crop is not None:
             options.crop, options.crop_bounds[:] = 1, crop_box(crop)
         if unit_distance is not None:
             positive(unit_distance, "unit_distance")
-        image, report = Image(size, opaque_depth), c.stratus_tetra_report()
-        own = own_points(opacity)
-        if self.nothing:
-            warn(self.nothing)
-            return image.rendering(as_dict(report))
-        contours = set_contours(options, contours, self.power, c.CONSTANTS["STRATUS_TETRA_CONTOURS_MAX"])
+        if drawn.nothing:
+            if drawn.components == 1:
+                own_points(opacity)
+            return
+        self._wanted = functions_of(drawn, opacity, color, gradient_opacity, weights, dependent, None)
+        for each in self._wanted:
+            own_points(each.opacity)
+        self._contours = set_contours(options, contours, drawn.power, c.CONSTANTS["STRATUS_TETRA_CONTOURS_MAX"])
         if average_range is not None:
-            options.average_range[:] = value_interval(average_range, "average_range", self.power)
-        length = math.hypot(*(self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3)))
-        unit = unit_length(unit_distance, length)
-        transfer = Transfer(opacity, color, self.spread, self.power, unit, gradient_opacity)
-        with self.context.lock:
-            view, mesh = _view.make(self.context, camera, self.bounds, size), self._mesh()
-            self.context.call(library.stratus_tetra_caster_render, self._caster.pointer, ctypes.byref(mesh), ctypes.byref(transfer.struct),
-                              ctypes.byref(view), ctypes.byref(options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
-        explain(image.rgba, transfer.points, self.spread, self.power, own is None, mode, unit, report.rays, contours)
-        return image.rendering(as_dict(report))
+            options.average_range[:] = value_interval(average_range, "average_range", drawn.power)
+        self.bounds = drawn.bounds
+        self.unit = unit_length(unit_distance, math.hypot(*(self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3))))
+        self.transfers = [each.transfer(drawn.power, self.unit) for each in self._wanted]
+        self.functions = (c.stratus_transfer * len(self.transfers))(*(each.struct for each in self.transfers))
+        self.mesh = drawn._mesh()
+
+    def explain(self, rgba, rays=None):
+        """Warns once where a picture shows nothing of the mesh."""
+        drawn = self.drawn
+        if drawn.nothing:
+            warn(drawn.nothing)
+        elif len(self.transfers) > 1 or self._wanted[0].name:
+            explain_each(rgba, self._wanted, self.transfers, drawn.power, self.unit)
+        else:
+            explain(rgba, self.transfers[0].points, drawn.spread, drawn.power, own_points(self._wanted[0].opacity) is None, self.mode, self.unit,
+                    rays, self._contours)
 
 
-def _of_vtk(data, scalars):
+def _of_vtk(data, scalars, component):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     if data.IsA("vtkUnstructuredGrid"):
         # The one is not there in VTK 9.1, the other warns from 9.6 on.
@@ -176,9 +233,7 @@ def _of_vtk(data, scalars):
     if array is None:
         names = [each.GetArrayName(n) for each in (points_data, cells_data) for n in range(each.GetNumberOfArrays())]
         raise ValueError(f"scalars is {scalars!r}, it must be one of {names}")
-    values = vtk_to_numpy(array)
-    if values.ndim != 1:
-        raise ValueError(f"{array.GetName()!r} has {values.shape[1]} components, values must have one")
+    values = chosen(vtk_to_numpy(array), component, array.GetName())
     flags = cells_data.GetArray("vtkGhostType")
     if data.IsA("vtkUnstructuredGrid"):
         if flags is not None:
@@ -189,7 +244,8 @@ def _of_vtk(data, scalars):
     shape = [extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in (2, 1, 0)]
     if flags is not None and not of_cells:
         raise ValueError("the grid has blanked cells, but values of points: blank by NaN values instead")
-    values = values.reshape([n - of_cells for n in shape])
+    values = values.reshape([*(n - of_cells for n in shape), *values.shape[1:]])
     if flags is not None:
-        values = numpy.ma.masked_array(values, vtk_to_numpy(flags).reshape(values.shape) != 0)
+        hidden = vtk_to_numpy(flags).reshape(values.shape[:3]) != 0
+        values = numpy.ma.masked_array(values, hidden if values.ndim == 3 else numpy.broadcast_to(hidden[..., None], values.shape))
     return points.reshape(*shape, 3), None, values

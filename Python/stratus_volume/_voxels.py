@@ -63,6 +63,8 @@ def _prepared(data, lower, upper, options):
     if options:
         raise TypeError(f"unknown: {', '.join(sorted(options))}")
     grid = grid_of(data, **known)
+    if grid.components > 1:
+        raise ValueError(f"the values have {grid.components} components, effective voxels are of 1: choose one by array[..., 0] or component=")
     power = 0 if grid.nothing else grid.power([value for value in (lower, upper) if is_number(value) and numpy.isfinite(value)] or None)
     is_vtk = hasattr(data, "GetPointData")
     return grid, context, _between(grid.values if is_vtk else data, lower, upper, power), power, progress

@@ -45,7 +45,7 @@ def types():
     check(apart(solid, render((field > 0.5).astype(numpy.uint8), opacity=[(0, 0), (1, 0.6)], **exact)) == 0, "bool")
     for name in "complex64", "longdouble", object, "M8[s]", "V4":
         refuse(TypeError, "bool, int8", render, numpy.zeros((4, 4, 4), name))
-    for shape in (8, 8), (8, 1, 8), (0, 8, 8), (2, 2, 2, 2):
+    for shape in (8, 8), (8, 1, 8), (0, 8, 8), (2, 2, 2, 5), (1, 2, 2, 2), (2, 2, 2, 2, 2):
         refuse(ValueError, str(shape), render, numpy.zeros(shape))
     refuse(ValueError, "spacing", render, field, spacing=(1, 0, 1))
     refuse(TypeError, "spacing", render, field, spacing=2)
@@ -273,7 +273,11 @@ def vtk():
     image.GetPointData().SetScalars(vectors)
     refuse(ValueError, "2 components", render, image)
     check(apart(render(image, component=0, opacity=points, **exact), wanted) == 0, "a component")
-    refuse(ValueError, "0..1", render, image, component=2)
+    refuse(ValueError, "0..1 or 'all'", render, image, component=2)
+    look = dict(opacity=[points, [(0, 0), (1, 0.1)]], color=[(1, 0, 0), (0, 0, 1)])
+    both = numpy.stack([single, 1 - single], axis=3)
+    check(apart(render(image, component="all", **look, **exact), render(both, spacing=(1, 1.5, 0.8), origin=(8, 3, 7), **look, **exact)) == 0,
+          "all components")
     refuse(TypeError, "vtkPolyData", render, vtkPolyData())
     refuse(ValueError, "no active scalars", render, vtkImageData())
 

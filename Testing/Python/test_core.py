@@ -293,7 +293,18 @@ def missing():
                 check("ImportError" in ended.stderr and "libgomp1" in ended.stderr, f"without OpenMP's runtime, its package: {ended.stderr}")
 
 
+def notebooks():
+    """What a view says where ipywidgets is missing; in_notebook.py turns one."""
+    found = sys.modules.get("ipywidgets")
+    sys.modules["ipywidgets"] = None  # stands for one that is not installed
+    refuse(ImportError, "pip install ipywidgets", stratus_volume.view, field)
+    del sys.modules["ipywidgets"]
+    if found:
+        sys.modules["ipywidgets"] = found
+
+
 contexts()
+notebooks()
 pictures()
 planes_and_crops()
 cameras()

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What pictures of volumes and of cells are asked for alike: functions, light, planes, contours, and the picture's own buffers."""
+import math
+
+import numpy
+
+from . import _declarations as c
+from ._core import address, library
+from ._picture import Rendering
+from ._values import functions, is_number, number, numbers, pairs, scaled_point
+
+_SHADING = ("ambient", "diffuse", "specular", "specular_power")
+
+
+class Transfer:
+    """The core's transfer function with the arrays that it points to. `color_spread` tells of the values that have the colours, where these
+    are another component's."""
+
+    def __init__(self, opacity, color, spread, power, unit_distance, gradient=None, color_spread=None, weight=1.0):
+        self.points, colors = functions(opacity, color, spread, power)
+        if color_spread is not None:
+            colors = functions(None, color, color_spread, power)[1]
+        self._opacity, self._color = numpy.array(self.points, numpy.float64), numpy.array(colors, numpy.float64)
+        self.struct = library.stratus_transfer_default()
+        self.struct.opacity, self.struct.opacity_count = address(self._opacity), len(self._opacity)
+        self.struct.color, self.struct.color_count = address(self._color), len(self._color)
+        self.struct.unit_distance, self.struct.weight = unit_distance, weight
+        if gradient is not None:
+            wanted = "pairs of a gradient's magnitude and a factor in 0..1"
+            self._gradient = numpy.array(sorted(pairs(gradient, 2, "gradient_opacity", wanted, power)), numpy.float64)
+            self.struct.gradient, self.struct.gradient_count = address(self._gradient), len(self._gradient)
+
+
+def set_shading(options, shade):
+    """shade: False, True, or a dict of ambient, diffuse, specular and specular_power."""
+    options.shade = int(bool(shade) or isinstance(shade, dict))
+    if isinstance(shade, dict):
+        unknown = set(shade) - set(_SHADING)
+        if unknown:
+            raise ValueError(f"shade has {sorted(unknown)}, it may have {', '.join(_SHADING)}")
+        for name, value in shade.items():
+            setattr(options.shading, name, number(value, f"shade's {name}"))
+
+
+def set_planes(options, clip_planes, most):
+    try:
+        planes = [] if clip_planes is None else [numbers(plane, 4, "a clip plane") for plane in clip_planes]
+    except TypeError:
+        raise TypeError(f"clip_planes is {clip_planes!r}, it must be planes of a, b, c and d") from None
+    if len(planes) > most:
+        raise ValueError(f"clip_planes has {len(planes)}, it may have {most}")
+    options.clip_plane_count = len(planes)
+    for n, plane in enumerate(planes):
+        options.clip_planes[n][:] = plane
+
+
+def set_contours(options, contours, power, most):
+    try:
+        values = [] if contours is None else [contours] if is_number(contours) else list(contours)
+    except TypeError:
+        raise TypeError(f"contours is {contours!r}, it must be one number or several") from None
+    if len(values) > most:
+        raise ValueError(f"contours has {len(values)}, it may have {most}")
+    options.contour_count = len(values)
+    for n, value in enumerate(values):
+        options.contours[n] = scaled_point(number(value, "a contour"), power)
+    return [options.contours[n] for n in range(len(values))]
+
+
+def crop_box(crop):
+    box = numbers(crop, 6, "crop")
+    if any(box[2 * axis] > box[2 * axis + 1] for axis in range(3)):
+        raise ValueError(f"crop is {crop!r}, it must be (xmin, xmax, ymin, ymax, zmin, zmax) with each minimum at most its maximum")
+    return box
+
+
+def value_interval(values, name, power):
+    try:
+        first, last = (float(value) for value in values)
+    except (TypeError, ValueError, OverflowError):
+        raise TypeError(f"{name} is {values!r}, it must be two numbers") from None
+    if not first <= last:
+        raise ValueError(f"{name} is {values!r}, the first must be at most the last")
+    return [scaled_point(value, power) if math.isfinite(value) else value for value in (first, last)]
+
+
+class Image:
+    """The core's picture with its buffers."""
+
+    def __init__(self, size, opaque_depth=None):
+        width, height = self.size = size
+        self.rgba = numpy.zeros((height, width, 4), numpy.float32)
+        self.depth = numpy.full((height, width), numpy.inf, numpy.float32)
+        self.struct = c.stratus_image(width=width, height=height, rgba=address(self.rgba), depth=address(self.depth))
+        if opaque_depth is not None:
+            depth = numpy.asarray(opaque_depth)
+            if depth.shape != (height, width):
+                raise ValueError(f"opaque_depth's shape is {depth.shape}, it must be that of the picture, {(height, width)}")
+            self._opaque = numpy.ascontiguousarray(depth[::-1], numpy.float32)
+            self.struct.opaque_depth = address(self._opaque)
+
+    def rendering(self, counters):
+        return Rendering(numpy.ascontiguousarray(self.rgba[::-1]), numpy.ascontiguousarray(self.depth[::-1]), counters)

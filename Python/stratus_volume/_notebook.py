@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A view of a notebook that the mouse turns: pictures in a widget, without a server."""
+import asyncio
+import math
+
+from ._draw import drawn_of
+from ._picture import paint
+from ._values import background_color, number, pixels, positive
+from ._view import _AROUND
+
+_REST = 0.3  # seconds without a move after which the full picture is drawn
+
+
+def _widgets():
+    try:
+        import ipywidgets
+    except ImportError:
+        raise ImportError("view needs ipywidgets: pip install ipywidgets (and ipyevents, with which the mouse turns the picture)") from None
+    return ipywidgets
+
+
+class View:
+    """A volume or cells in a notebook, turned by the mouse and by sliders, which `view` makes.
+
+    camera     dict of azimuth, elevation and zoom, which `show` and `render` take
+    rendering  the Rendering of the picture that shows
+    look       dict of what else the picture is drawn by; `set` changes it
+    widget     the ipywidgets.VBox of picture, sliders and message; `image`, `azimuth`, `elevation`, `zoom` and `message` are its parts
+    """
+
+    def __init__(self, drawn, look, size, camera, background, draft_size, draft_tolerance):
+        widgets = _widgets()
+        self.drawn, self.look, self.size, self.background = drawn, look, size, background
+        self.rendering, self.is_draft = None, False
+        self._draft_size, self._draft_tolerance = draft_size, draft_tolerance
+        self._rest, self._dragged, self._held, self._events = None, None, False, None
+        self.image = widgets.Image(format="png", width=size[0], height=size[1])
+        self.image.layout.max_width = "none"  # as the drafts are smaller pictures in the same place
+        wide = dict(continuous_update=True, readout_format=".0f", layout=widgets.Layout(width=f"{max(240, size[0])}px"))
+        self.azimuth = widgets.FloatSlider(value=_turn(camera["azimuth"]), min=-180, max=180, step=1, description="azimuth", **wide)
+        self.elevation = widgets.FloatSlider(value=min(89, max(-89, camera["elevation"])), min=-89, max=89, step=1, description="elevation", **wide)
+        self.zoom = widgets.FloatLogSlider(value=camera["zoom"], base=10, min=-1, max=1.5, step=0.01, description="zoom",
+                                           **dict(wide, readout_format=".2f"))
+        self.message = widgets.HTML()
+        self.widget = widgets.VBox([self.image, self.azimuth, self.elevation, self.zoom, self.message])
+        self._listen()
+        for slider in self.azimuth, self.elevation, self.zoom:
+            slider.observe(lambda change: self._moved(), names="value")
+        self.draw()
+
+    @property
+    def camera(self):
+        return dict(azimuth=self.azimuth.value, elevation=self.elevation.value, zoom=self.zoom.value)
+
+    def set(self, **look):
+        """Changes what the picture is drawn by, as opacity, color or mode, and draws it. What is wrong is raised, and the look stays as it was."""
+        before, self.look = self.look, dict(self.look, **look)
+        try:
+            self.draw()
+        except Exception:
+            self.look = before
+            raise
+
+    def draw(self, draft=False):
+        """Draws the picture; draft: as while the mouse moves."""
+        look, size = self.look, self.size
+        if draft:
+            size = self._draft_size
+            look = dict(look, tolerance=max(self._draft_tolerance, look.get("tolerance") or 0))
+        rendering = self.drawn.render(size=size, camera=self.camera, **look)
+        self.image.value = paint(rendering.rgba, self.background)._repr_png_()
+        self.rendering, self.is_draft, self.message.value = rendering, draft, ""
+
+    def _ipython_display_(self):
+        from IPython.display import display
+        display(self.widget)
+
+    # ---- moves
+
+    def _moved(self):
+        """A draft now, and the full picture once nothing has moved for a while. Without an event loop, as outside of a notebook, that is now."""
+        if self._held:
+            return  # of several sliders that change at once
+        if self._rest is not None:
+            self._rest.cancel()
+            self._rest = None
+        try:
+            loop = asyncio.get_running_loop()
+        except RuntimeError:
+            loop = None
+        self._try_to_draw(draft=loop is not None)
+        if loop is not None:
+            self._rest = loop.call_later(_REST, self._rested)
+
+    def _rested(self):
+        self._rest = None
+        self._try_to_draw(draft=False)
+
+    def _try_to_draw(self, draft):
+        """The last picture stays where one fails: an exception would end in a log that nobody sees."""
+        try:
+            self.draw(draft)
+        except Exception as error:
+            self.message.value = f"<b>{type(error).__name__}</b>: {_escaped(str(error))}"
+
+    def _place(self, azimuth, elevation, zoom):
+        self._held = True
+        try:
+            self.azimuth.value, self.elevation.value = _turn(azimuth), min(89, max(-89, elevation))
+            self.zoom.value = min(10**1.5, max(0.1, zoom))
+        finally:
+            self._held = False
+        self._moved()
+
+    def _listen(self):
+        """The mouse, where ipyevents is there; it is no error where it is not."""
+        try:
+            import ipyevents
+        except ImportError:
+            return
+        self._events = ipyevents.Event(source=self.image, watched_events=["mousedown", "mousemove", "mouseup", "mouseleave", "wheel"], wait=20,
+                                       throttle_or_debounce="throttle", prevent_default_action=True)
+        self._events.on_dom_event(self._on_event)
+
+    def _on_event(self, event):
+        """A drag turns by half a degree a pixel, and the wheel zooms."""
+        kind = event.get("type")
+        at = (event.get("relativeX", 0), event.get("relativeY", 0))
+        if kind == "mousedown":
+            self._dragged = at
+        elif kind == "mousemove" and self._dragged is not None:
+            dx, dy = at[0] - self._dragged[0], at[1] - self._dragged[1]
+            self._dragged = at
+            if dx or dy:
+                self._place(self.azimuth.value - 0.5 * dx, self.elevation.value + 0.5 * dy, self.zoom.value)
+        elif kind in ("mouseup", "mouseleave"):
+            moved, self._dragged = self._dragged is not None and self.is_draft, None
+            if moved:
+                if self._rest is not None:
+                    self._rest.cancel()
+                self._rested()
+        elif kind == "wheel":
+            self._place(self.azimuth.value, self.elevation.value, self.zoom.value * math.exp(-event.get("deltaY", 0) / 500))
+
+
+def _turn(degrees):
+    """The same azimuth within -180..180."""
+    return (degrees + 180) % 360 - 180
+
+
+def _escaped(text):
+    return text.replace("&", "&amp;").replace("<", "&lt;")
+
+
+def view(data, opacity=None, color=None, size=(480, 360), camera=None, background=(0.08, 0.1, 0.14), draft=0.5, draft_tolerance=0.02, spacing=None,
+         origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, **options):
+    """Returns a View: a picture in a notebook that the mouse turns (where ipyevents is installed) and sliders turn. Needs ipywidgets.
+
+    camera           dict of azimuth and elevation, in degrees, and zoom, where the view begins
+    draft            while it moves, pictures have this part of the width and height, above 0 and at most 1
+    draft_tolerance  and this tolerance, where that of the look is not larger; 0.3 seconds after the last move the full picture follows
+    Everything else is as in `render` and `show`. Structures are built once. A drag turns by half a degree a pixel, the wheel zooms.
+
+    The pictures are drawn in the notebook's own process and sent as PNG: no server runs. `view(data).camera` is what `show` takes.
+    """
+    _widgets()
+    size, background = pixels(size), background_color(background)
+    if not 0 < number(draft, "draft") <= 1:
+        raise ValueError(f"draft is {draft!r}, it must be above 0 and at most 1")
+    positive(draft_tolerance, "draft_tolerance")
+    if camera is not None and (not isinstance(camera, dict) or set(camera) - set(_AROUND)):
+        raise ValueError(f"camera is {camera!r}, a view begins by a dict of azimuth, elevation (degrees) and zoom")
+    begins = dict(_AROUND, **{name: number(value, f"camera's {name}") for name, value in (camera or {}).items()})
+    if not 0.1 <= begins["zoom"] <= 10**1.5:
+        raise ValueError(f"camera's zoom is {begins['zoom']}, a view's must be in 0.1..31.6")
+    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix)
+    for name in "opaque_depth", "audit":
+        if name in options:
+            raise TypeError(f"a view has no {name}")
+    small = tuple(max(1, round(side * draft)) for side in size)
+    return View(drawn, dict(options, opacity=opacity, color=color), size, begins, background, small, draft_tolerance)

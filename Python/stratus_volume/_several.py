@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Several volumes, and meshes among them, in one picture."""
+import ctypes
+
+from . import _declarations as c
+from . import _view
+from ._core import as_dict, library
+from ._draw import drawn_of
+from ._look import Image
+from ._tetrahedra import AskedOfCells, Tetrahedra
+from ._values import pixels
+from ._volume import Asked
+
+_DATA = ("spacing", "origin", "axes", "scalars", "component", "matrix")
+
+
+def _parted(item, n, device, threads):
+    """What draws an item, and its look."""
+    data, look = item if isinstance(item, (tuple, list)) and len(item) == 2 and isinstance(item[1], dict) else (item, {})
+    if isinstance(data, (tuple, list, dict)):
+        raise TypeError(f"item {n} is a {type(item).__name__}, it must be data, or a pair of data and a dict of how they look")
+    place = {name: look[name] for name in _DATA if name in look}
+    look = {name: value for name, value in look.items() if name not in _DATA}
+    if hasattr(data, "render") and hasattr(data, "context"):
+        return drawn_of(data, **place), look
+    return drawn_of(data, device=device, threads=threads, **place), look
+
+
+def _asked(drawn, look, n):
+    try:
+        return (AskedOfCells if isinstance(drawn, Tetrahedra) else Asked)(drawn, **look)
+    except TypeError as error:
+        raise TypeError(f"item {n}: {error}") from None
+    except ValueError as error:
+        raise ValueError(f"item {n}: {error}") from None
+
+
+def render_several(items, size=(640, 480), camera=None, opaque_depth=None, device=None, threads=None, progress=None):
+    """Draws volumes that may overlap as one medium, and returns a Rendering: rgba, depth, counters.
+
+    items         1 to 8, each of them data that `render` takes, or a pair of these and a dict of how they look: of all that `render` takes but
+                  size, camera, opaque_depth, device, threads and progress. spacing, origin and matrix tell where each lies. A Volume or
+                  Tetrahedra keeps what is built of it; all of them must be of one device, and none may come twice
+    size, camera, opaque_depth, progress  see render. The default camera sees all of the items
+    device, threads  of items that are not a Volume or Tetrahedra; default: those of the first one that is, or see Volume
+
+    Where volumes overlap, their optical depths and their light add up, whatever the items' order. Mode composite alone. Meshes among several
+    have one component and no light, and are marched by the host. An item that has no value that can show is left out with a warning.
+    counters are of the whole picture, and counters["items"] has one dict for each item, with the structure and sampling of each and why.
+    """
+    size = pixels(size)
+    try:
+        items = list(items)
+    except TypeError:
+        raise TypeError(f"items is a {type(items).__name__}, it must be a list of data, or of pairs of data and a dict of how they look") from None
+    most = c.CONSTANTS["STRATUS_SEVERAL_MAX"]
+    if not 1 <= len(items) <= most:
+        raise ValueError(f"items has {len(items)}, it must have 1 to {most}")
+    if device is None and threads is None:
+        given = [item[0] if isinstance(item, (tuple, list)) and item else item for item in items]
+        device = next((each.context for each in given if hasattr(each, "render") and hasattr(each, "context")), None)
+    parts = [_parted(item, n, device, threads) for n, item in enumerate(items)]
+    context, image = parts[0][0].context, Image(size, opaque_depth)
+    for n, (drawn, _) in enumerate(parts):
+        if drawn.context is not context:
+            raise ValueError(f"item {n} is of another device or Context than item 0: {drawn.context.device} and {context.device}")
+        if any(drawn is other for other, _ in parts[:n]):
+            raise ValueError(f"item {n} is the same {type(drawn).__name__} as an item before it: make another of the same data")
+    with context.lock:
+        asked = [_asked(drawn, look, n) for n, (drawn, look) in enumerate(parts)]
+        shown = [(drawn, each) for (drawn, _), each in zip(parts, asked) if not _nothing(drawn)]
+        reports = (c.stratus_ray_cast_report * len(shown))()
+        if shown:
+            inputs = (c.stratus_ray_cast_input * len(shown))()
+            for own, (drawn, each) in zip(inputs, shown):
+                own.transfer = each.functions
+                if isinstance(drawn, Tetrahedra):
+                    own.tetra, own.mesh, own.tetra_options = drawn._caster.pointer, ctypes.addressof(each.mesh), ctypes.addressof(each.options)
+                else:
+                    own.caster, own.volume, own.options = drawn._caster.pointer, ctypes.pointer(each.volume), ctypes.pointer(each.options)
+            bounds = [pick(each.bounds[2 * axis + end] for _, each in shown) for axis in range(3) for end, pick in enumerate((min, max))]
+            view = _view.make(context, camera, bounds, size)
+            context.call(library.stratus_ray_caster_render_several, inputs, len(shown), ctypes.byref(view), ctypes.byref(image.struct), reports,
+                         progress=progress)
+    told = iter([as_dict(report) for report in reports])
+    each_of = [{} if _nothing(drawn) else next(told) for drawn, _ in parts]
+    for (drawn, _), each in zip(parts, asked):
+        if _nothing(drawn):
+            each.explain(image.rgba)
+    if shown and float(image.rgba[..., 3].max()) < 0.5 / 255:
+        shown[0][1].explain(image.rgba)
+    whole = dict(next((each for each in each_of if each), {}), items=each_of)
+    return image.rendering(whole)
+
+
+def _nothing(drawn):
+    return drawn.nothing if isinstance(drawn, Tetrahedra) else drawn.grid.nothing

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A view that is turned as a notebook turns it: by the traits of its widgets, by the events of a mouse, with and without an event loop. `wheel`
+runs it where ipywidgets and ipyevents are installed."""
+import asyncio
+import sys
+
+from checking import ball, check, done, refuse
+
+from stratus_volume import Volume, show, view
+from stratus_volume._notebook import View
+
+field = ball((20, 22, 24), (10, 8, 12), 7)
+host = dict(opacity=[(0, 0), (1, 0.8)], size=(120, 90), device="host")
+
+
+def same(own, camera):
+    return own.image.value == show(field, camera=camera, **host)._repr_png_()
+
+
+def by_sliders():
+    own = view(field, camera=dict(azimuth=200), **host)
+    check(isinstance(own, View) and own.azimuth.value == -160 and own.image.value[:8] == b"\x89PNG\r\n\x1a\n", "a picture at once")
+    check(same(own, own.camera) and not own.is_draft and own.rendering.rgba.shape == (90, 120, 4), "that is show's")
+    own.azimuth.value = 45
+    check(own.camera["azimuth"] == 45 and same(own, own.camera), "a slider turns it: without an event loop by a full picture")
+    own.elevation.value, own.zoom.value = -30, 2
+    check(same(own, dict(azimuth=45, elevation=-30, zoom=2)), "and lifts it, and comes nearer")
+    builds = own.rendering.counters["range_builds"]
+    own.azimuth.value = 50
+    check(builds == own.rendering.counters["range_builds"] == 1, "a move builds nothing anew")
+    before = own.image.value
+    own.set(mode="maximum")
+    check(own.image.value != before and own.look["mode"] == "maximum", "the look is changed")
+    before = own.image.value
+    refuse(ValueError, "mode", own.set, mode="glow")
+    check(own.look["mode"] == "maximum" and own.image.value == before, "what is wrong is raised, and the picture stays")
+    own.look["mode"] = "glow"
+    own.azimuth.value = 10
+    check(own.image.value == before and "glow" in own.message.value, f"within a move it is told below the picture, which stays: {own.message.value}")
+    own.look["mode"] = "composite"
+    own.azimuth.value = 20
+    check(own.message.value == "" and own.image.value != before, "and the next picture takes the message away")
+    check(len(own.widget.children) == 5 and "image" in str(own.widget.children[0]).lower(), "one box for the notebook")
+
+
+async def while_it_moves():
+    own = view(field, **host)
+    full = own.rendering.counters["samples"]
+    own.azimuth.value = 100
+    check(own.is_draft and own.rendering.rgba.shape == (45, 60, 4) and own.rendering.counters["samples"] < full, "a draft while it moves")
+    await asyncio.sleep(0.1)
+    own.azimuth.value = 101
+    check(own.is_draft, "and as long as it moves")
+    await asyncio.sleep(0.5)
+    check(not own.is_draft and same(own, own.camera), "the full picture when it rests")
+    send = own._events._dom_handlers.callbacks[0]
+    send(dict(type="mousemove", relativeX=9, relativeY=9))
+    check(own.camera["azimuth"] == 101, "a mouse that is not pressed turns nothing")
+    send(dict(type="mousedown", relativeX=50, relativeY=40))
+    send(dict(type="mousemove", relativeX=70, relativeY=30))
+    check(own.is_draft and own.camera["azimuth"] == 91 and own.camera["elevation"] == 20, f"a drag turns: {own.camera}")
+    send(dict(type="mouseup", relativeX=70, relativeY=30))
+    check(not own.is_draft and same(own, own.camera), "the full picture as soon as the mouse is up")
+    zoom = own.camera["zoom"]
+    for _ in range(50):
+        send(dict(type="wheel", deltaY=-100))
+    check(own.is_draft and own.camera["zoom"] > 5 * zoom and own.camera["zoom"] <= 10**1.5, "the wheel comes nearer, to an end")
+    send(dict(type="mousedown", relativeX=0, relativeY=0))
+    send(dict(type="mousemove", relativeX=1000, relativeY=5000))
+    check(-180 <= own.camera["azimuth"] <= 180 and own.camera["elevation"] == 89, f"turns end at the poles: {own.camera}")
+    await asyncio.sleep(0.5)
+    check(not own.is_draft, "and rest")
+
+
+def refusals():
+    for words, options in [("draft", dict(draft=0)), ("draft_tolerance", dict(draft_tolerance=-1)), ("camera", dict(camera=dict(position=(1, 2, 3)))),
+                           ("zoom", dict(camera=dict(zoom=100))), ("size", dict(size=(0, 1))), ("mode", dict(mode="glow")),
+                           ("spacing", dict(data=Volume(field), spacing=(1, 1, 1), device=None))]:
+        refuse(ValueError, words, view, **{**dict(data=field), **host, **options})
+    refuse(TypeError, "audit", view, field, audit=True)
+    found = sys.modules["ipyevents"]
+    sys.modules["ipyevents"] = None
+    check(view(field, **host)._events is None, "sliders alone where ipyevents is missing")
+    sys.modules["ipyevents"] = found
+    sys.modules["ipywidgets"] = None
+    refuse(ImportError, "pip install ipywidgets", view, field)
+
+
+by_sliders()
+asyncio.run(while_it_moves())
+refusals()
+done()
