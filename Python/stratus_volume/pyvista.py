@@ -5,10 +5,13 @@ The picture is drawn by the core and laid over the scene's opaque geometry by it
 VTK from 9.1 on will do. pyvista from 0.48 on finds the component by itself; `add_volume(plotter, grid)` of this module is the same in
 pyvista before.
 
+Volumes of one renderer are drawn together: up to eight in mode composite mix along the rays, others lie one before the other.
+
 What it costs: depth is read from the window, and the picture is handed to it as a texture of bytes, in each frame. What cannot be right:
 translucent geometry is always behind the volume, and picking does not see it.
 """
 import warnings
+import weakref
 
 import numpy
 import pyvista
@@ -20,12 +23,18 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkRenderingCore import vtkCoordinate, vtkPolyDataMapper2D, vtkTexture, vtkTexturedActor2D
 
 from . import _declarations as c
+from ._core import Unsupported
 from ._picture import paint
+from ._several import render_several
 from ._tetrahedra import Tetrahedra
 from ._values import number, numbers
 from ._volume import Volume
 
-_BLENDINGS = ("composite", "maximum", "minimum", "average", "additive", "isosurface")
+_BLENDINGS = ("composite", "maximum", "minimum", "average", "additive", "isosurface", "slice")
+_MAPPERS = ("fixed_point", "gpu", "open_gl", "smart", "ugrid")
+_BLOCKS = ("Reds", "Greens", "Blues", "Greys", "Oranges", "Purples")
+# The opacity that pyvista's functions end at, lest a volume look like a surface.
+_MOST_OPAQUE = 0.998
 _SHADING = ("ambient", "diffuse", "specular", "specular_power")
 
 
@@ -52,11 +61,11 @@ def core_camera(camera, aspect):
 
 
 class _Picture(VTKPythonAlgorithmBase):
-    """Puts out the picture of a renderer's view. VTK asks for it when it draws the texture, after the scene's geometry."""
+    """Puts out the picture of a layer. VTK asks for it when it draws the texture, after the scene's geometry."""
 
-    def __init__(self, view, renderer):
+    def __init__(self, layer, renderer):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkImageData")
-        self.view, self.renderer, self.size = view, renderer, (1, 1)
+        self.layer, self.renderer, self.size = layer, renderer, (1, 1)
 
     def RequestInformation(self, request, inputs, outputs):
         self.size = tuple(max(1, side) for side in self.renderer.GetSize())
@@ -69,7 +78,7 @@ class _Picture(VTKPythonAlgorithmBase):
         image = vtkImageData.GetData(outputs, 0)
         image.SetDimensions(*self.size, 1)
         try:
-            rows = self.view.draw(self.renderer, self.size)
+            rows = self.layer.draw(self.renderer, self.size)
         except Exception as error:  # VTK would go on with a texture that is half made
             warnings.warn(f"Stratus draws nothing: {error}", RuntimeWarning, stacklevel=2)
             rows = numpy.zeros((self.size[1], self.size[0], 4), numpy.uint8)
@@ -110,130 +119,365 @@ def _lay_below(renderer, actor):
         renderer.AddViewProp(prop)
 
 
-class StratusVolume:
-    """A volume in a scene. `set` changes how it looks, `remove` takes it away, `visibility` hides it, `counters` tell of the last frame."""
+class _Layer:
+    """The volumes of one renderer, and the texture that has their picture."""
 
-    def __init__(self, plotter, drawn, look):
-        self.plotter, self.drawn, self.look, self.counters, self.visibility = plotter, drawn, look, {}, True
-        self.renderer = plotter.renderer
-        self._algorithm = _Picture(self, self.renderer)
-        self._actor = _window(self.renderer, self._algorithm)
-        _lay_below(self.renderer, self._actor)
-        self._observer = self.renderer.AddObserver("StartEvent", lambda caller, event: self._algorithm.Modified())
-        # Its bounds count for the camera and its clipping range; it shows nothing.
-        self._box = plotter.add_mesh(pyvista.Box(drawn.bounds), opacity=0.0, pickable=False, show_scalar_bar=False, reset_camera=True)
+    def __init__(self, renderer):
+        self.renderer, self.volumes, self._told = renderer, [], False
+        self._algorithm = _Picture(self, renderer)
+        self._actor = _window(renderer, self._algorithm)
+        _lay_below(renderer, self._actor)
+        anew = weakref.ref(self._algorithm)
+        # VTK's commands are beyond Python's garbage collector: they hold nothing that holds the renderer.
+        self._observer = renderer.AddObserver("StartEvent", lambda caller, event: anew() and anew().Modified())
 
-    def set(self, **look):
-        """Changes parameters that `Volume.render`, or of cells `Tetrahedra.render`, takes."""
-        self.look.update(look)
-        self.plotter.render()
+    @classmethod
+    def of(cls, plotter):
+        """The plotter's layer for its active renderer."""
+        layers = plotter.__dict__.setdefault("_stratus_layers", [])
+        for layer in layers:
+            if layer.renderer is plotter.renderer:
+                return layer
+        layers.append(cls(plotter.renderer))
+        return layers[-1]
 
-    def remove(self):
-        """Takes the volume out of the scene."""
-        if self._actor is not None:
-            self.renderer.RemoveObserver(self._observer)
-            self.renderer.RemoveViewProp(self._actor)
-            self.plotter.remove_actor(self._box)  # and its scalar bar
-            self._actor = None
+    def remove(self, volume, plotter):
+        self.volumes.remove(volume)
+        if not self.volumes:
+            self.close()
+            plotter.__dict__["_stratus_layers"].remove(self)
+
+    def close(self):
+        """Parts what VTK holds from what Python holds, so that both are freed."""
+        self.renderer.RemoveObserver(self._observer)
+        self.renderer.RemoveViewProp(self._actor)
+        self._actor.GetTexture().RemoveAllInputConnections(0)
+        self._actor.SetTexture(None)
+        self._algorithm.layer, self._algorithm.renderer = None, None
+        self.volumes.clear()
 
     def draw(self, renderer, size):
         """The picture in bytes, colours not multiplied by alpha, the bottom row first. VTK's texture asks for it within a frame."""
-        if not self.visibility:
+        shown = [volume for volume in self.volumes if volume.visibility]
+        if not shown:
             return numpy.zeros((size[1], size[0], 4), numpy.uint8)
         depths, (x, y) = vtkFloatArray(), renderer.GetOrigin()
         renderer.GetRenderWindow().GetZbufferData(x, y, x + size[0] - 1, y + size[1] - 1, depths)
         opaque = numpy.clip(vtk_to_numpy(depths).reshape(size[1], size[0]), 0, 1)[::-1]
         view = core_camera(renderer.GetActiveCamera(), renderer.GetTiledAspectRatio())
         with warnings.catch_warnings():
-            if self.counters:  # once is enough: frames follow each other
+            if self._told:  # once is enough: frames follow each other
                 warnings.simplefilter("ignore")
-            rendering = self.drawn.render(size=size, camera=view, opaque_depth=opaque, **self.look)
-        self.counters = rendering.counters
-        return numpy.ascontiguousarray(paint(rendering.rgba, None)[::-1])
+            rgba = self._together(shown, size, view, opaque) if len(shown) > 1 else None
+            rgba = self._one_by_one(shown, size, view, opaque) if rgba is None else rgba
+        self._told = True
+        return numpy.ascontiguousarray(paint(rgba, None)[::-1])
+
+    @staticmethod
+    def _together(shown, size, view, opaque):
+        """The picture of volumes that mix, None where one of them can't."""
+        if len(shown) > c.CONSTANTS["STRATUS_SEVERAL_MAX"] or any(volume.look.get("mode", "composite") != "composite" for volume in shown):
+            return None
+        try:
+            rendering = render_several([(volume.drawn, volume.look) for volume in shown], size=size, camera=view, opaque_depth=opaque)
+        except (Unsupported, ValueError, TypeError):  # what is wrong with a volume is told as it is drawn by itself
+            return None
+        for volume, counters in zip(shown, rendering.counters["items"]):
+            volume.counters = counters
+        return rendering.rgba
+
+    @staticmethod
+    def _one_by_one(shown, size, view, opaque):
+        """The pictures one before the other, the nearest middle first."""
+        def distance(volume):
+            bounds = volume.drawn.bounds
+            middle = [(low + high) / 2 for low, high in zip(bounds[::2], bounds[1::2])]
+            away = numpy.subtract(middle, view.eye)
+            return away @ numpy.array(view.forward) if view.parallel else numpy.linalg.norm(away)
+        result = None
+        for volume in sorted(shown, key=distance):
+            rendering = volume.drawn.render(size=size, camera=view, opaque_depth=opaque, **volume.look)
+            volume.counters = rendering.counters
+            result = rendering.rgba if result is None else result + (1 - result[..., 3:]) * rendering.rgba
+        return result
 
 
-def _look(low, high, opacity, cmap, n_colors, unit, blending, shade, flip_scalars, shading):
-    """The parameters of `render` that pyvista's words stand for."""
-    from pyvista.plotting.colors import get_cmap_safe
-    from pyvista.plotting.tools import opacity_transfer_function
-    if blending not in _BLENDINGS:
-        raise ValueError(f"blending is {blending!r}, it must be one of {', '.join(_BLENDINGS)}")
-    places = numpy.linspace(low, high, n_colors) if low < high else numpy.array([low])
-    if isinstance(opacity, (int, float)) and not isinstance(opacity, bool):
-        if not 0 <= opacity <= 1:
-            raise ValueError(f"opacity is {opacity!r}, it must be in 0..1")
-        opacities = numpy.full(len(places), float(opacity))
-    else:
-        opacities = numpy.asarray(opacity_transfer_function(opacity, n_colors), float)[:len(places)] / 255
-    colors = get_cmap_safe(cmap)(numpy.linspace(0, 1, len(places)))[:, :3]
-    if flip_scalars:
-        colors = colors[::-1]
-    return dict(opacity=list(zip(places, opacities)), color=[(place, *color) for place, color in zip(places, colors)], unit_distance=unit,
-                mode=blending, shade=shading if shade else False)
+class StratusVolume:
+    """A volume in a scene. `set` changes how it looks, `remove` takes it away, `visibility` hides it, `counters` tell of the last frame.
 
-
-def add_volume(plotter, volume, scalars=None, clim=None, opacity="linear", cmap=None, n_colors=256, blending="composite", shade=False,
-               opacity_unit_distance=None, flip_scalars=False, show_scalar_bar=True, scalar_bar_args=None, ambient=0.3, diffuse=0.7, specular=0.2,
-               specular_power=10.0, device=None, threads=None, **options):
-    """Adds a volume to a plotter's scene and returns a StratusVolume. Values between others are interpolated linearly by default, for which
-    pyvista's own volumes need `prop.interpolation_type = "linear"`.
-
-    volume    array (nx, ny, nz), as pyvista's own add_volume takes it; or ImageData, RectilinearGrid, UnstructuredGrid or StructuredGrid; or a
-              Volume or Tetrahedra
-    scalars   name of the array of a grid; default: the active one
-    clim      least and greatest value of opacity and colours; default: those of the values
-    opacity   a name of pyvista's such as "linear" or "sigmoid_5", one number, or opacities over clim
-    cmap      name of a colour map; default: the theme's
-    blending  composite, maximum, minimum, average, additive or isosurface
-    shade     whether light from the camera falls on it, by ambient, diffuse, specular and specular_power
-    opacity_unit_distance   world length to which opacities refer; default: the grid's length over its mean count of cells along an axis
-    device, threads, and all other options of `stratus_volume.render`: tolerance, crop, clip_planes, contours, progress and so on
+    name     by which another volume of that name replaces it
+    bounds   xmin, xmax, ymin, ymax, zmin, zmax in the world
     """
-    if isinstance(volume, (Volume, Tetrahedra)):
-        drawn = volume
-    elif isinstance(volume, numpy.ndarray):
-        drawn = Volume(volume, axes="xyz", device=device, threads=threads)
-    elif volume.IsA("vtkUnstructuredGrid") or volume.IsA("vtkStructuredGrid"):
-        drawn = Tetrahedra(volume, scalars=scalars, device=device, threads=threads)
-    else:
-        drawn = Volume(volume, scalars=scalars, device=device, threads=threads)
-    spread = drawn.grid.spread if isinstance(drawn, Volume) else drawn.spread
-    low, high = (0.0, 1.0) if spread is None else (spread.low, spread.high)
+
+    def __init__(self, plotter, drawn, look, name=None, reset_camera=None, render=True):
+        self.plotter, self.drawn, self.look, self.counters, self.visibility = plotter, drawn, look, {}, True
+        self.renderer, self._layer, self.name = plotter.renderer, _Layer.of(plotter), name
+        self._layer.volumes.append(self)
+        # Its bounds count for the camera and its clipping range; it shows nothing.
+        self._box = plotter.add_mesh(pyvista.Box(drawn.bounds), opacity=0.0, pickable=False, show_scalar_bar=False, reset_camera=reset_camera,
+                                     render=render, name=name)
+
+    @property
+    def bounds(self):
+        return self.drawn.bounds
+
+    @property
+    def user_matrix(self):
+        """float64 (4, 4), the last transformation into the world."""
+        return _matrix_of(self.drawn)
+
+    @user_matrix.setter
+    def user_matrix(self, matrix):
+        before, matrix = _stretch(self.user_matrix), _matrix(matrix)
+        self.drawn._place(matrix)
+        self.look["unit_distance"] *= _stretch(matrix) / before
+        self._box.mapper.SetInputData(pyvista.Box(self.drawn.bounds))
+        self.plotter.render()
+
+    def set(self, **look):
+        """Changes parameters that `Volume.render`, or of cells `Tetrahedra.render`, takes."""
+        self.look.update(look)
+        self.plotter.render()
+
+    def remove(self, render=True):
+        """Takes the volume out of the scene."""
+        if self._layer is not None:
+            self._layer.remove(self, self.plotter)
+            self.plotter.remove_actor(self._box, render=render)  # and its scalar bar
+            self._layer = None
+
+
+def _limits(clim, low, high, log_scale):
     if clim is not None:
         low, high = numbers(clim if numpy.ndim(clim) else (-number(clim, "clim"), number(clim, "clim")), 2, "clim")
         if low > high:
             raise ValueError(f"clim is {clim!r}, the first must be at most the second")
-    cmap = plotter.theme.cmap if cmap is None else cmap
+    if log_scale and low <= 0:
+        low = min(numpy.finfo(float).tiny, high)
+    return low, high
+
+
+def _table(cmap, n_colors, opacity, low, high, flip_scalars, log_scale, annotations):
+    """pyvista's table of colours and opacities."""
+    from pyvista.plotting.colors import get_cmap_safe
+    if isinstance(cmap, pyvista.LookupTable):
+        return cmap
+    table = pyvista.LookupTable()
+    colors = get_cmap_safe(cmap)
+    table.apply_cmap(colors.reversed() if flip_scalars else colors, n_colors)
+    if isinstance(opacity, (int, float)) and not isinstance(opacity, bool):
+        if not 0 <= opacity <= 1:
+            raise ValueError(f"opacity is {opacity!r}, it must be in 0..1")
+        table.values[:, -1] = 255 * opacity
+    else:
+        table.apply_opacity(opacity)
+    table.scalar_range = (low, high)
+    table.log_scale = bool(log_scale)
+    if annotations:
+        table.annotations = annotations
+    return table
+
+
+def _look(table):
+    """The functions of `render` that are a table's, as pyvista's volumes have them."""
+    low, high = table.scalar_range
+    places = numpy.linspace(low, high, table.n_values)
+    opacities = numpy.minimum(numpy.asarray(table.values)[:, 3] / 255, _MOST_OPAQUE)
+    colors = [tuple(table.map_value(place, opacity=False)) for place in places]
+    if low == high:  # of several points at one value the last one counts
+        places, opacities, colors = places[-1:], opacities[-1:], colors[-1:]
+    return dict(opacity=list(zip(places, opacities)), color=[(place, *color) for place, color in zip(places, colors)])
+
+
+def _with_scalars(volume, scalars, preference):
+    """A grid that has the scalars active, and their name. scalars: a name, an array with one for each point or cell, or None: the active ones."""
+    if scalars is None or isinstance(scalars, str):
+        if scalars is None and volume.active_scalars is not None and not numpy.issubdtype(volume.active_scalars.dtype, numpy.number):
+            raise TypeError("the grid's active scalars are no numbers")
+        name = volume.active_scalars_name if scalars is None else scalars
+        if name is None:
+            raise ValueError("the grid has no active scalars, neither of points nor of cells; name them by scalars=")
+        return volume, name
+    values = numpy.asarray(scalars)
+    if values.dtype.kind not in "biuf":
+        raise TypeError(f"scalars is of type {values.dtype}, it must be numbers")
+    sizes = dict(point=volume.n_points, cell=volume.n_cells)
+    if values.ndim not in (1, 2) or len(values) not in sizes.values():
+        raise ValueError(f"scalars has the shape {values.shape}, it must have one for each of the {sizes['point']} points or {sizes['cell']} cells")
+    if preference not in sizes:
+        raise ValueError(f"preference is {preference!r}, it must be point or cell")
+    of = preference if sizes[preference] == len(values) else "point" if sizes["point"] == len(values) else "cell"
+    volume = volume.copy(deep=False)
+    (volume.point_data if of == "point" else volume.cell_data)["Data"] = values
+    return volume, "Data"
+
+
+def _array_of(volume, name, preference):
+    """The named array of a grid, of points or of cells."""
+    data = [volume.point_data, volume.cell_data]
+    for each in data[::-1] if preference == "cell" else data:
+        if name in each:
+            return each[name]
+    raise ValueError(f"scalars is {name!r}, it must be one of {[*volume.point_data.keys(), *volume.cell_data.keys()]}")
+
+
+def _grid(volume, scalars, preference, place):
+    """What draws pyvista's grid, the scalars' name and its array."""
+    if not isinstance(volume, pyvista.DataSet):
+        volume = pyvista.wrap(volume)
+    if isinstance(volume, pyvista.StructuredGrid) and min(volume.dimensions) < 2:
+        raise ValueError(f"the structured grid has the dimensions {tuple(volume.dimensions)}, it must have at least 2 points along each axis")
+    if not isinstance(volume, (pyvista.ImageData, pyvista.RectilinearGrid, pyvista.UnstructuredGrid, pyvista.StructuredGrid)):
+        raise TypeError(f"the data set is a {type(volume).__name__}, it must be an array, or ImageData, RectilinearGrid, StructuredGrid, "
+                        "UnstructuredGrid or MultiBlock of these")
+    if volume.n_points == 0:
+        raise ValueError("the grid has no points")
+    volume, name = _with_scalars(volume, scalars, preference)
+    values = _array_of(volume, name, preference)
+    if values.ndim == 2 and (values.shape[1] != 4 or values.dtype != numpy.uint8):
+        raise ValueError(f"scalars {name!r} has the shape {values.shape} and type {values.dtype}, it must be one number each, or red, green, blue and opacity "
+                         "of type uint8")
+    place = dict(place, component="all" if values.ndim == 2 else None)
+    if name in volume.point_data and name in volume.cell_data and preference == "cell":
+        volume = volume.copy(deep=False)
+        volume.point_data.remove(name)
+    kind = Tetrahedra if isinstance(volume, (pyvista.UnstructuredGrid, pyvista.StructuredGrid)) else Volume
+    return kind(volume, scalars=name, **place), name, values
+
+
+def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacity="linear", n_colors=256, cmap=None, flip_scalars=False,
+               reset_camera=None, name=None, ambient=None, categories=False, culling=False, multi_colors=False, blending="composite", mapper=None,
+               scalar_bar_args=None, show_scalar_bar=None, annotations=None, pickable=True, preference="point", opacity_unit_distance=None, shade=False,
+               diffuse=0.7, specular=0.2, specular_power=10.0, render=True, user_matrix=None, log_scale=False, device=None, threads=None, **options):
+    """Adds a volume to a plotter's scene and returns a StratusVolume, of a MultiBlock a list with one for each block. The words are those of
+    pyvista's own add_volume. Values between others are interpolated linearly by default, for which pyvista's own volumes need
+    `prop.interpolation_type = "linear"`; values of cells are drawn as such. Several volumes of a renderer mix along its rays.
+
+    volume    array (nx, ny, nz), as pyvista's own add_volume takes it; or ImageData, RectilinearGrid, UnstructuredGrid, StructuredGrid, or a
+              MultiBlock of these; or a Volume or Tetrahedra
+    scalars   name of the array of a grid, or an array with one for each point or cell, or (n, 4) bytes: red, green, blue and opacity; default: the
+              active one. preference: "point" or "cell", where a name or a length fits both
+    clim      least and greatest value of opacity and colours; one number c stands for (-c, c); default: those of the values
+    resolution  of an array: its spacing
+    opacity   a name of pyvista's such as "linear" or "sigmoid_5", one number, or opacities over clim. They end at 0.998, as pyvista's do
+    n_colors, cmap, flip_scalars, categories, log_scale, annotations  of the table of colours, as pyvista's; cmap may be a LookupTable
+    name      a volume of that name is replaced
+    blending  composite, maximum, minimum, average, additive, isosurface or slice
+    shade     whether light from the camera falls on it, by ambient, diffuse, specular and specular_power
+    opacity_unit_distance   length to which opacities refer, before user_matrix as in VTK's mappers; default: the grid's length over its mean count
+              of cells along an axis, and 1 of cells of unstructured and structured grids
+    user_matrix  (4, 4), the last transformation into the world
+    reset_camera, render, show_scalar_bar, scalar_bar_args  as pyvista's
+    mapper, culling, pickable  are taken and change nothing: the mapper is Stratus, it has no faces, and picking does not see it
+    device, threads, and all other options of `stratus_volume.render`: tolerance, crop, clip_planes, contours, progress and so on
+    """
+    clim, cmap = options.pop("rng", clim), options.pop("colormap", cmap)
+    options.pop("backface_culling", None)
+    if mapper is not None and mapper not in _MAPPERS:
+        raise TypeError(f"mapper is {mapper!r}, it must be one of {', '.join(_MAPPERS)}; Stratus draws in place of any")
+    if culling not in (False, True, "front", "back", "frontface", "backface", "f", "b"):
+        raise ValueError(f"culling is {culling!r}, it must be False, True, front or back")
+    if blending not in _BLENDINGS:
+        raise ValueError(f"blending is {blending!r}, it must be one of {', '.join(_BLENDINGS)}")
+    if isinstance(volume, pyvista.MultiBlock):
+        name = f"MultiBlock({id(volume)})" if name is None else name
+        look = dict(scalars=scalars, clim=clim, opacity=opacity, n_colors=n_colors, flip_scalars=flip_scalars, reset_camera=reset_camera, ambient=ambient,
+                    categories=categories, blending=blending, scalar_bar_args=scalar_bar_args, show_scalar_bar=show_scalar_bar, annotations=annotations,
+                    preference=preference, opacity_unit_distance=opacity_unit_distance, shade=shade, diffuse=diffuse, specular=specular,
+                    specular_power=specular_power, render=render, user_matrix=user_matrix, log_scale=log_scale, device=device, threads=threads, **options)
+        return [add_volume(plotter, block, cmap=_BLOCKS[n % len(_BLOCKS)] if multi_colors else cmap, name=f"{name}-{n}", **look)
+                for n, block in enumerate(volume) if block is not None]
+    if show_scalar_bar is None:
+        show_scalar_bar = plotter.theme.show_scalar_bar or bool(scalar_bar_args)
+    place, title = dict(device=device, threads=threads, matrix=_matrix(user_matrix)), None
+    if isinstance(volume, (Volume, Tetrahedra)):
+        drawn, values = volume, None
+    elif isinstance(volume, numpy.ndarray):
+        spacing = None if resolution is None else numbers(resolution, 3, "resolution")
+        drawn, values = Volume(volume, axes="xyz", spacing=spacing, **place), volume
+    else:
+        drawn, title, values = _grid(volume, scalars, preference, place)
+    of = drawn.grid if isinstance(drawn, Volume) else drawn
+    low, high = (0.0, 1.0) if of.spread is None else (min(each.low for each in of.spreads), max(each.high for each in of.spreads))
+    low, high = _limits(clim, low, high, log_scale)
+    rgba = of.components == 4 and values is not None and values.dtype == numpy.uint8
+    if rgba and not (isinstance(opacity, str) and opacity == "linear"):
+        warnings.warn("custom opacity is left out, because the scalars are red, green, blue and opacity", UserWarning, stacklevel=2)
+        opacity = "linear"
+    if categories and values is not None:
+        n_colors = len(numpy.unique(values)) if categories is True else int(categories)
+    table = _table(plotter.theme.cmap if cmap is None else cmap, n_colors, opacity, low, high, flip_scalars, log_scale, annotations)
     if opacity_unit_distance is None:
-        lengths = numpy.subtract(drawn.bounds[1::2], drawn.bounds[::2])
-        counts = drawn.grid.values.shape if isinstance(drawn, Volume) else [max(2, round(len(drawn.points.reshape(-1, 3)) ** (1 / 3)))] * 3
-        opacity_unit_distance = float(numpy.linalg.norm(lengths) / max(1, numpy.mean(counts) - 1)) or 1.0
-    shading = dict(zip(_SHADING, (ambient, diffuse, specular, specular_power)))
-    look = _look(low, high, opacity, cmap, n_colors, opacity_unit_distance, blending, shade, flip_scalars, shading)
-    result = StratusVolume(plotter, drawn, dict(look, **options))
-    if show_scalar_bar:
-        mapper = result._box.mapper
-        mapper.lookup_table = pyvista.LookupTable(cmap, n_values=n_colors, scalar_range=(low, high), flip=flip_scalars)
-        mapper.scalar_range = (low, high)
-        title = getattr(volume, "active_scalars_name", None) if scalars is None else scalars
-        plotter.add_scalar_bar(mapper=mapper, **{"title": title or "Data", **(scalar_bar_args or {})})
+        opacity_unit_distance = _unit(volume, drawn)
+    light = dict(zip(_SHADING, (0.1 if ambient is None else ambient, diffuse, specular, specular_power)))
+    unit = opacity_unit_distance * _stretch(_matrix_of(drawn))
+    look = dict(_look(table), unit_distance=unit, mode=blending, shade=light if shade else False)
+    if rgba:
+        look.update(dependent=True, color=None)
+    if name is not None:
+        for layer in plotter.__dict__.get("_stratus_layers", [])[:]:
+            for other in [each for each in layer.volumes if each.name == name and layer.renderer is plotter.renderer]:
+                other.remove(render=False)
+    result = StratusVolume(plotter, drawn, dict(look, **options), name, reset_camera, render)
+    if show_scalar_bar and not rgba:
+        shown = result._box.mapper
+        shown.lookup_table, shown.scalar_range = table, table.scalar_range
+        plotter.add_scalar_bar(mapper=shown, **{"title": title or "Data", **(scalar_bar_args or {})})
     return result
+
+
+def _matrix_of(drawn):
+    matrix = drawn.grid.matrix if isinstance(drawn, Volume) else drawn.matrix
+    return numpy.eye(4) if matrix is None else matrix.reshape(4, 4).copy()
+
+
+def _stretch(matrix):
+    """The factor of lengths, in the mean of all directions."""
+    return 1.0 if matrix is None else float(abs(numpy.linalg.det(numpy.asarray(matrix)[:3, :3])) ** (1 / 3))
+
+
+def _unit(volume, drawn):
+    """pyvista's default of the length that opacities refer to, which no matrix enters."""
+    if isinstance(drawn, Tetrahedra):
+        return 1.0
+    if isinstance(volume, pyvista.DataSet):
+        length, counts = volume.length, volume.dimensions
+    else:
+        matrix = _matrix_of(drawn)
+        drawn._place(None)
+        length, counts = numpy.linalg.norm(numpy.subtract(drawn.bounds[1::2], drawn.bounds[::2])), drawn.grid.values.shape[:3]
+        drawn._place(matrix)
+    return float(length / max(1, numpy.mean(counts) - 1)) or 1.0
+
+
+def _matrix(transform):
+    """The matrix (4, 4) of what pyvista takes as a transformation, None of none."""
+    if transform is None:
+        return None
+    try:
+        import pyvista_validation as validation
+    except ImportError:  # before pyvista 0.49 it is a part of it
+        from pyvista.core import _validation as validation
+    return validation.validate_transform4x4(transform)
 
 
 class StratusComponent:
     """`plotter.stratus`."""
 
     def __init__(self, plotter):
-        self._plotter, self.volumes = plotter, []
+        self._plotter = plotter
+
+    @property
+    def volumes(self):
+        """The StratusVolumes of the plotter."""
+        return [volume for layer in self._plotter.__dict__.get("_stratus_layers", []) for volume in layer.volumes]
 
     def add_volume(self, volume, *arguments, **options):
-        self.volumes.append(add_volume(self._plotter, volume, *arguments, **options))
-        return self.volumes[-1]
+        return add_volume(self._plotter, volume, *arguments, **options)
 
     def __plotter_close__(self):
-        for volume in self.volumes:
-            volume.renderer.RemoveObserver(volume._observer)
-        self.volumes.clear()
+        for layer in self._plotter.__dict__.pop("_stratus_layers", []):
+            layer.close()
 
 
 StratusComponent.add_volume.__doc__ = add_volume.__doc__

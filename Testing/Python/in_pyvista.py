@@ -86,14 +86,80 @@ def lives():
         volume.set(structure="bush")
         volume.set(structure="none")
     check(any("bush" in str(one.message) for one in told), "what fails within a frame is a warning")
+    shear = numpy.eye(4)
+    shear[0, 1] = 1
+    volume.user_matrix = shear
+    check(numpy.array_equal(volume.user_matrix, shear) and volume.bounds[1] == 24 and numpy.allclose(plotter.bounds[:2], (-24, 24)), "it can be moved")
     volume.remove()
     after = plotter.screenshot(return_img=True).astype(int)
     check(numpy.abs(after - empty).max() <= 1 and not plotter.scalar_bars, f"and taken away: {numpy.abs(after - empty).max()}")
-    for words in dict(blending="glow"), dict(opacity=2), dict(clim=(3, 1)):
+    for words in dict(blending="glow"), dict(opacity=2), dict(clim=(3, 1)), dict(culling="sides"), dict(preference="edge", scalars=numpy.arange(15625)), \
+            dict(scalars=numpy.arange(7)), dict(scalars=numpy.zeros((15625, 3))):
         refuse(ValueError, next(iter(words)), plotter.stratus.add_volume, grid, **words)
     refuse(ValueError, "scalars", plotter.stratus.add_volume, grid, scalars="wind")
+    refuse(TypeError, "mapper", plotter.stratus.add_volume, grid, mapper="ray")
+    refuse(TypeError, "PolyData", plotter.stratus.add_volume, pyvista.Sphere())
+    refuse(ValueError, "3), (4, 4)", plotter.stratus.add_volume, grid, user_matrix=numpy.eye(5))
+    check(len(plotter.stratus.volumes) == 0, "what is refused leaves nothing")
     plotter.close()
     check(not plotter.__dict__["stratus"].volumes, "nothing is left of a closed plotter")
+
+
+def named():
+    plotter = pyvista.Plotter(off_screen=True, window_size=(100, 80))
+    first = plotter.stratus.add_volume(grid, name="one", show_scalar_bar=False)
+    plotter.camera.azimuth = 30
+    seen = plotter.camera_position
+    second = plotter.stratus.add_volume(grid.copy(), name="one", cmap="gray", show_scalar_bar=False, reset_camera=False)
+    check(plotter.stratus.volumes == [second] and first._layer is None, "a volume replaces the one of its name")
+    check(plotter.camera_position == seen, "and the camera stays")
+    plotter.close()
+
+
+def words():
+    """Words of pyvista's that change the functions: the same picture as by VTK's mapper."""
+    plain = scene(None)
+    alpha = numpy.linspace(0, 200, grid.n_points)
+    rgba = numpy.stack([field.ravel() / 277 * 255, 255 - field.ravel() / 277 * 255, numpy.full(grid.n_points, 90), alpha], axis=1).astype(numpy.uint8)
+    turned = [[1.2, -0.9, 0, 2], [0.9, 1.2, 0, 0], [0, 0, 1.5, -3], [0, 0, 0, 1]]
+    for more in dict(log_scale=True), dict(n_colors=5), dict(scalars=rgba), dict(user_matrix=turned), dict(clim=200.0), dict(categories=7), \
+            dict(cmap=pyvista.LookupTable("magma", alpha_range=(0, 0.9), scalar_range=(50, 250))), dict(scalars=field.ravel()[::-1]), dict(opacity="foreground"), \
+            dict(cmap=["red", "white", "blue"]):
+        stratus, vtk = scene("stratus", **more), scene("vtk", **more)
+        lit = numpy.abs(vtk - plain).max(axis=2) > 8
+        # Without the outline, which is a part of a pixel elsewhere by VTK's mapper: what is opaque and dark ends sharply there.
+        inside = lit & numpy.roll(lit, 1, 0) & numpy.roll(lit, -1, 0) & numpy.roll(lit, 1, 1) & numpy.roll(lit, -1, 1)
+        apart = numpy.abs(stratus - vtk).mean(axis=2)
+        check(inside.sum() > 500 and apart[inside].mean() < 6 and apart[~lit].mean() < 1.5,
+              f"{list(more)}: {apart[inside].mean():.2f} where it shows in {inside.sum()} pixels, {apart[~lit].mean():.2f} elsewhere")
+
+
+def several():
+    """Blocks of a volume, and volumes that overlap, are one medium."""
+    def picture(*volumes, **look):
+        plotter = pyvista.Plotter(off_screen=True, window_size=(120, 90))
+        for volume in volumes:
+            plotter.stratus.add_volume(volume, show_scalar_bar=False, clim=(37, 277), opacity_unit_distance=2, tolerance=0, **look)
+        plotter.camera_position = [(70, -60, 55), (0, 0, 0), (0, 0, 1)]
+        plotter.renderer.reset_camera_clipping_range()
+        result = plotter.screenshot(return_img=True).astype(int)
+        made = plotter.stratus.volumes
+        counters = [volume.counters for volume in made]
+        plotter.close()
+        return result, counters
+    whole, _ = picture(grid)
+    halves = [grid.extract_subset((*ends, -12, 12, -12, 12)) for ends in ((-12, 0), (0, 12))]
+    blocks, counters = picture(pyvista.MultiBlock(halves))
+    check(len(counters) == 2 and all(each["samples"] > 0 for each in counters), "each block counts")
+    check(numpy.abs(blocks - whole).mean() < 0.5, f"two blocks look as the whole does: {numpy.abs(blocks - whole).mean():.2f}")
+    backwards, _ = picture(*halves[::-1])
+    check(numpy.abs(backwards - blocks).max() <= 2, "in any order")
+    cells, _ = picture(halves[0], halves[1].cast_to_unstructured_grid())
+    check(numpy.abs(cells - whole).mean() < 2, f"cells among them: {numpy.abs(cells - whole).mean():.2f}")
+    largest, _ = picture(*halves, blending="maximum")
+    check(numpy.abs(largest - picture(grid, blending="maximum")[0]).max() > 0 and largest.max() > 200, "what does not mix lies one before the other")
+    colored, _ = picture(pyvista.MultiBlock(halves), multi_colors=True)
+    check(numpy.abs(colored - blocks).max() > 50, "a colour for each block")
 
 
 def data():
@@ -110,5 +176,8 @@ def data():
 beside_vtk()
 composited()
 lives()
+named()
+words()
+several()
 data()
 done()
