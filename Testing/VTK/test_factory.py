@@ -13,8 +13,7 @@ from checking import check, done
 import numpy
 
 SIZE = 200, 160
-FACTORY = os.environ.get("STRATUS_FACTORY_FOLDER") or os.path.normpath(os.path.join(
-    os.environ["PYTHONPATH"].split(os.pathsep)[0], "..", "..", "stratus", "factory"))
+FACTORY = os.path.normpath(os.path.join(os.environ["PYTHONPATH"].split(os.pathsep)[0], "..", "..", "stratus", "factory"))
 
 
 def scenes(vtk, mappers):
