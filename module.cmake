@@ -53,13 +53,19 @@ vtk_module_build(
   INSTALL_HEADERS ON
   HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/stratus"
   CMAKE_DESTINATION "${stratus_cmake_destination}"
-  VERSION "${PROJECT_VERSION}"
-  SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+  ${stratus_library_version}
   TEST_DIRECTORY_NAME NONE)
 foreach (module IN LISTS stratus_modules)
   vtk_module_compile_options("${module}" PRIVATE -Wall -Wextra $<$<BOOL:${STRATUS_WERROR}>:-Werror>)
 endforeach ()
 
+# The library of VTK's core, by whose name programs tell whether theirs is the VTK that this was built for.
+_vtk_module_real_target(stratus_vtk_core VTK::CommonCore) # its name differs between versions of VTK
+get_target_property(type ${stratus_vtk_core} TYPE)
+if (type STREQUAL "INTERFACE_LIBRARY") # a VTK of kits, which join modules in one library
+  set(stratus_vtk_core VTK::Common)
+endif ()
+set(stratus_vtk_library "$<TARGET_SONAME_FILE_NAME:${stratus_vtk_core}>")
 add_subdirectory(Rendering/Factory)
 
 # ---- Python: package `stratus` beside Debian's `vtk`
@@ -95,13 +101,19 @@ if (Python3_FOUND AND Python3_Development.Module_FOUND)
   set(stratus_package "${CMAKE_BINARY_DIR}/${python_folder}/stratus")
   configure_file(Rendering/Python/__init__.py.in "${stratus_package}/__init__.py" @ONLY)
   configure_file(Rendering/Python/_show.py.in "${stratus_package}/_show.py" @ONLY)
+  configure_file(Rendering/Python/_needed.py.in "${CMAKE_BINARY_DIR}/_needed.py.in" @ONLY)
+  file(GENERATE OUTPUT "${stratus_package}/_needed.py" INPUT "${CMAKE_BINARY_DIR}/_needed.py.in")
   # Arrays and pictures are taken and made as stratus_volume does.
   set(stratus_package_files Python/stratus_volume/_picture.py Python/stratus_volume/_values.py)
   foreach (file IN LISTS stratus_package_files)
     get_filename_component(name "${file}" NAME)
     configure_file("${file}" "${stratus_package}/${name}" COPYONLY)
   endforeach ()
-  install(FILES "${stratus_package}/__init__.py" "${stratus_package}/_show.py" ${stratus_package_files} DESTINATION "${python_folder}/stratus" COMPONENT python)
+  install(FILES "${stratus_package}/__init__.py" "${stratus_package}/_needed.py" "${stratus_package}/_show.py" ${stratus_package_files} DESTINATION "${python_folder}/stratus" COMPONENT python)
+  if (SKBUILD)
+    stratus_add_no_opencl("${stratus_package}/no_opencl")
+    install(PROGRAMS "$<TARGET_FILE:stratus-no-opencl>" DESTINATION "${python_folder}/stratus/no_opencl" COMPONENT python)
+  endif ()
 else ()
   message(STATUS "No Python wrapping: VTK's or Python's development files are missing")
 endif ()

@@ -2,6 +2,8 @@
 """The wheel stratus-vtk in its VTK: pictures are those of Debian's VTK to the bit, pyvista takes the mappers, unchanged programs draw by them.
 in_newest_vtk.py FOLDER BUILD"""
 import os
+import re
+import shutil
 import subprocess
 import sys
 
@@ -78,4 +80,41 @@ factory = os.path.join(os.path.dirname(stratus.__file__), "stratus", "factory")
 told = subprocess.run([sys.executable, "-c", "import cvista.vtkRenderingVolumeOpenGL2; from cvista.vtkRenderingVolume import vtkGPUVolumeRayCastMapper as mapper; "
                        "print(mapper().GetClassName())"], env=dict(os.environ, VTK_AUTOLOAD_PATH=factory), capture_output=True, text=True)
 check("vtkStratusFactoryVolumeMapper" in told.stdout, f"the object factory: {told}")
+
+# Two VTKs in one process, each with its own objects.
+both = subprocess.run([sys.executable, "-c", "import warnings; warnings.simplefilter('error')\nimport vtkmodules.vtkCommonDataModel as other\n"
+                       "try:\n    import stratus\nexcept RuntimeWarning as told:\n    print(told)\nwarnings.simplefilter('ignore')\nimport stratus\n"
+                       "try:\n    stratus.show(other.vtkImageData())\nexcept TypeError as told:\n    print(told)"], capture_output=True, text=True)
+said = both.stdout.splitlines()
+check(both.returncode == 0 and len(said) == 2 and "two VTKs" in said[0] and "vtkmodules is" in said[0] and "a vtkmodules." in said[1]
+      and said[1].endswith("of cvista"), f"two VTKs: {both}")
+
+# The core and VTK share one OpenMP runtime. A second one would have threads of its own beside the first one's.
+with open("/proc/self/maps", encoding="utf-8") as file:
+    maps = {line.split(maxsplit=5)[5].strip() for line in file if len(line.split(maxsplit=5)) == 6}
+runtimes = {path for path in maps if re.search(r"/lib(g|i|)omp[-.0-9]", path)}
+check(len(runtimes) == 1 and "cvista.libs" in runtimes.pop(), f"OpenMP's runtimes in this process: {sorted(path for path in maps if 'omp' in path)}")
+
+# Each library is there once, under the name by which others ask for it.
+package = os.path.dirname(stratus.__file__)
+names = [name.split(".so")[0] for name in os.listdir(package) if name.startswith("lib")]
+check(len(names) == len(set(names)) > 8, f"no copies of libraries: {sorted(names)}")
+
+# A machine without OpenCL: a name that is nowhere stands in for its loader's.
+copy = os.path.join(folder, "without", "stratus")
+shutil.rmtree(os.path.dirname(copy), ignore_errors=True)
+shutil.copytree(package, copy, ignore=shutil.ignore_patterns("__pycache__"))
+for part in "_needed.py", "libstratus-core.so.0.1", "no_opencl/libOpenCL.so.1":
+    path = os.path.join(copy, part)
+    with open(path, "rb") as file:
+        content = file.read().replace(b"libOpenCL", b"libOpenCX")
+    os.remove(path)
+    with open(path.replace("libOpenCL", "libOpenCX"), "wb") as file:
+        file.write(content)
+for beside in "cvista", "cvista.libs":  # where the libraries look for them
+    os.symlink(os.path.join(os.path.dirname(package), beside), os.path.join(folder, "without", beside))
+shown = subprocess.run([sys.executable, "-c", "import numpy, stratus\nz = numpy.mgrid[:9, :9, :9][0] + 0.0\n"
+                        "print(stratus.__file__, stratus.show(z, opacity=[(0, 0), (8, 0.5)], size=(60, 40))[..., 0].max())"],
+                       env=dict(os.environ, PYTHONPATH=os.path.dirname(copy)), cwd=folder, capture_output=True, text=True)
+check(shown.returncode == 0 and copy in shown.stdout, f"without an OpenCL loader the host draws: {shown}")
 done()
