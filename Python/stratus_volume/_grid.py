@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Volumes from NumPy, xarray, VTK and pyvista, as views of their own memory where type and order allow."""
 import ctypes
+import importlib
 
 import numpy
 
@@ -203,8 +204,14 @@ def _shaped(values, shape):
     return native(values).reshape([*shape, *values.shape[1:]])
 
 
+def of_package(data, module):
+    """A module of the VTK that a data set is of. It need not be vtkmodules, and another VTK would not know the data set."""
+    package = next((kind.__module__ for kind in type(data).__mro__ if kind.__name__ == "vtkDataSet"), "vtkmodules").split(".")[0]
+    return importlib.import_module(f"{package}.{module}")
+
+
 def _of_vtk(data, scalars, component):
-    from vtkmodules.util.numpy_support import vtk_to_numpy
+    vtk_to_numpy = of_package(data, "util.numpy_support").vtk_to_numpy
     points, cells = data.GetPointData(), data.GetCellData()
     if scalars is not None:
         cell_centered = not points.HasArray(scalars)

@@ -8,7 +8,7 @@ import numpy
 from . import _declarations as c
 from . import _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library, type_of
-from ._grid import affine, chosen
+from ._grid import affine, chosen, of_package
 from ._look import Image, crop_box, set_contours, set_planes, value_interval
 from ._media import explain_each, functions_of, materials_of
 from ._values import (Spread, explain, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled, unit_length,
@@ -212,13 +212,12 @@ class AskedOfCells:
 
 
 def _of_vtk(data, scalars, component):
-    from vtkmodules.util.numpy_support import vtk_to_numpy
+    vtk_to_numpy = of_package(data, "util.numpy_support").vtk_to_numpy
     if data.IsA("vtkUnstructuredGrid"):
         # The one is not there in VTK 9.1, the other warns from 9.6 on.
         kinds = data.GetDistinctCellTypesArray() if hasattr(data, "GetDistinctCellTypesArray") else data.GetCellTypesArray()
         if data.GetNumberOfCells() and not (vtk_to_numpy(kinds) == _TETRA).all():
-            from vtkmodules.vtkFiltersGeneral import vtkDataSetTriangleFilter
-            divide = vtkDataSetTriangleFilter()
+            divide = of_package(data, "vtkFiltersGeneral").vtkDataSetTriangleFilter()
             divide.SetInputData(data)
             divide.TetrahedraOnlyOn()
             divide.Update()

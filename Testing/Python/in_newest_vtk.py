@@ -89,6 +89,18 @@ said = both.stdout.splitlines()
 check(both.returncode == 0 and len(said) == 2 and "two VTKs" in said[0] and "vtkmodules is" in said[0] and "a vtkmodules." in said[1]
       and said[1].endswith("of cvista"), f"two VTKs: {both}")
 
+# The package without VTK takes grids of any package's VTK, and loads no other for them.
+other = os.path.join(folder, "other")
+os.makedirs(other, exist_ok=True)
+shutil.rmtree(os.path.join(other, "stratus_volume"), ignore_errors=True)
+shutil.copytree(os.path.join(build, "lib", "python3", "dist-packages", "stratus_volume"), os.path.join(other, "stratus_volume"))
+drawn = subprocess.run([sys.executable, "-c", "import sys; sys.modules['vtkmodules'] = None\nimport pyvista, stratus_volume\n"
+                        "grid = pyvista.Wavelet(extent=(-8, 8, -8, 8, -8, 8))\n"
+                        "for each in grid, grid.cast_to_unstructured_grid(), grid.cast_to_structured_grid(), grid.cast_to_rectilinear_grid():\n"
+                        "    print(stratus_volume.render(each, size=(60, 40), device='host').rgba[..., 3].max() > 0.1)"],
+                       env=dict(os.environ, PYTHONPATH=other), capture_output=True, text=True)
+check(drawn.stdout.split() == 4 * ["True"], f"cvista's grids in stratus_volume: {drawn}")
+
 # The core and VTK share one OpenMP runtime. A second one would have threads of its own beside the first one's.
 with open("/proc/self/maps", encoding="utf-8") as file:
     maps = {line.split(maxsplit=5)[5].strip() for line in file if len(line.split(maxsplit=5)) == 6}
@@ -117,4 +129,6 @@ shown = subprocess.run([sys.executable, "-c", "import numpy, stratus\nz = numpy.
                         "print(stratus.__file__, stratus.show(z, opacity=[(0, 0), (8, 0.5)], size=(60, 40))[..., 0].max())"],
                        env=dict(os.environ, PYTHONPATH=os.path.dirname(copy)), cwd=folder, capture_output=True, text=True)
 check(shown.returncode == 0 and copy in shown.stdout, f"without an OpenCL loader the host draws: {shown}")
+for each in other, os.path.dirname(copy):
+    shutil.rmtree(each)
 done()
