@@ -15,6 +15,7 @@ import weakref
 
 import numpy
 import pyvista
+import pyvista.plotting.volume
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkFloatArray, vtkPoints
@@ -33,8 +34,6 @@ from ._volume import Volume
 _BLENDINGS = ("composite", "maximum", "minimum", "average", "additive", "isosurface", "slice")
 _MAPPERS = ("fixed_point", "gpu", "open_gl", "smart", "ugrid")
 _BLOCKS = ("Reds", "Greens", "Blues", "Greys", "Oranges", "Purples")
-# The opacity that pyvista's functions end at, lest a volume look like a surface.
-_MOST_OPAQUE = 0.998
 _SHADING = ("ambient", "diffuse", "specular", "specular_power")
 
 
@@ -165,6 +164,8 @@ class _Layer:
         renderer.GetRenderWindow().GetZbufferData(x, y, x + size[0] - 1, y + size[1] - 1, depths)
         opaque = numpy.clip(vtk_to_numpy(depths).reshape(size[1], size[0]), 0, 1)[::-1]
         view = core_camera(renderer.GetActiveCamera(), renderer.GetTiledAspectRatio())
+        for volume in shown:
+            volume.place()
         with warnings.catch_warnings():
             if self._told:  # once is enough: frames follow each other
                 warnings.simplefilter("ignore")
@@ -176,10 +177,10 @@ class _Layer:
     @staticmethod
     def _together(shown, size, view, opaque):
         """The picture of volumes that mix, None where one of them can't."""
-        if len(shown) > c.CONSTANTS["STRATUS_SEVERAL_MAX"] or any(volume.look.get("mode", "composite") != "composite" for volume in shown):
+        if len(shown) > c.CONSTANTS["STRATUS_SEVERAL_MAX"] or any(volume.asked()["mode"] != "composite" for volume in shown):
             return None
         try:
-            rendering = render_several([(volume.drawn, volume.look) for volume in shown], size=size, camera=view, opaque_depth=opaque)
+            rendering = render_several([(volume.drawn, volume.asked()) for volume in shown], size=size, camera=view, opaque_depth=opaque)
         except (Unsupported, ValueError, TypeError):  # what is wrong with a volume is told as it is drawn by itself
             return None
         for volume, counters in zip(shown, rendering.counters["items"]):
@@ -196,43 +197,86 @@ class _Layer:
             return away @ numpy.array(view.forward) if view.parallel else numpy.linalg.norm(away)
         result = None
         for volume in sorted(shown, key=distance):
-            rendering = volume.drawn.render(size=size, camera=view, opaque_depth=opaque, **volume.look)
+            rendering = volume.drawn.render(size=size, camera=view, opaque_depth=opaque, **volume.asked())
             volume.counters = rendering.counters
             result = rendering.rgba if result is None else result + (1 - result[..., 3:]) * rendering.rgba
         return result
 
 
-class StratusVolume:
-    """A volume in a scene. `set` changes how it looks, `remove` takes it away, `visibility` hides it, `counters` tell of the last frame.
-
-    name     by which another volume of that name replaces it
-    bounds   xmin, xmax, ymin, ymax, zmin, zmax in the world
+class StratusVolume(pyvista.plotting.volume.Volume):
+    """A volume in a scene: a Volume of pyvista's whose picture Stratus draws. What its `prop`, `mapper`, `user_matrix`, position and so on are set
+    to shows in the next frame, but for `mapper.dataset`. `set` changes what else `Volume.render`, or of cells `Tetrahedra.render`, takes, and holds
+    in place of those. `remove` takes it away, `visibility` hides it, `counters` tell of the last frame.
     """
 
-    def __init__(self, plotter, drawn, look, name=None, reset_camera=None, render=True):
-        self.plotter, self.drawn, self.look, self.counters, self.visibility = plotter, drawn, look, {}, True
-        self.renderer, self._layer, self.name = plotter.renderer, _Layer.of(plotter), name
+    # pyvista's classes refuse attributes that they do not know. title: of the scalar bar; called: the name that was given
+    drawn, look, counters, plotter, renderer, title, called, _layer, _box, _base, _known, _words, _kept = (None,) * 13
+
+    def __init__(self, plotter, drawn, mapper, prop, look, user_matrix=None):
+        super().__init__()
+        self.drawn, self.look, self.counters, self.plotter, self.renderer = drawn, look, {}, plotter, plotter.renderer
+        self._base = _matrix_of(drawn)
+        self.mapper, self.prop = mapper, prop
+        self._kept = mapper, prop  # with what Python knows of them
+        if user_matrix is not None:
+            self.user_matrix = user_matrix
+
+    def enter(self, name=None, reset_camera=None, render=True):
+        """Adds the volume to its plotter's scene."""
+        self._layer = _Layer.of(self.plotter)
         self._layer.volumes.append(self)
         # Its bounds count for the camera and its clipping range; it shows nothing.
-        self._box = plotter.add_mesh(pyvista.Box(drawn.bounds), opacity=0.0, pickable=False, show_scalar_bar=False, reset_camera=reset_camera,
-                                     render=render, name=name)
+        self._box = self.plotter.add_mesh(pyvista.Box(self.bounds), opacity=0.0, pickable=False, show_scalar_bar=False, reset_camera=reset_camera,
+                                          render=render, name=name)
+
+    def place(self):
+        """Puts the values where the volume is."""
+        matrix = pyvista.array_from_vtkmatrix(self.GetMatrix())
+        if self._known is None or not numpy.array_equal(matrix, self._known):
+            self._known, whole = matrix, matrix @ self._base
+            self.drawn._place(None if numpy.array_equal(whole, numpy.eye(4)) else whole)
+            if self._box is not None:
+                self._box.mapper.SetInputData(pyvista.Box(self.bounds))
+
+    def asked(self):
+        """The parameters of `render` that prop and mapper stand for, and those of `set`."""
+        prop, mapper = self.prop, self.mapper
+        parts = [prop, mapper, prop.GetScalarOpacity(), prop.GetRGBTransferFunction(), mapper.GetClippingPlanes() or prop]
+        parts += [planes.GetItem(n) for planes in [mapper.GetClippingPlanes()] if planes for n in range(planes.GetNumberOfItems())]
+        known = [part.GetMTime() for part in parts]
+        if self._words is None or self._words[0] != known:
+            self._words = known, self._asked_by(prop, mapper)
+        unit = prop.GetScalarOpacityUnitDistance() * _stretch(self._known)  # VTK's mappers count lengths before the matrix
+        return {**self._words[1], "unit_distance": unit, **self.look}
+
+    def _asked_by(self, prop, mapper):
+        fade, hue = prop.GetScalarOpacity(), prop.GetRGBTransferFunction()
+        result = dict(opacity=[point[:2] for point in _nodes(fade, 4)], color=[point[:4] for point in _nodes(hue, 6)], shade=False,
+                      mode=_BLENDINGS[mapper.GetBlendMode()])
+        if prop.GetColorChannels(0) == 1:
+            result["color"] = [(value, grey, grey, grey) for value, grey, *_ in _nodes(prop.GetGrayTransferFunction(0), 4)]
+        if prop.HasGradientOpacity(0) and not prop.GetDisableGradientOpacity(0):
+            result["gradient_opacity"] = [point[:2] for point in _nodes(prop.GetGradientOpacity(0), 4)] or None
+        if prop.GetShade():
+            result["shade"] = dict(zip(_SHADING, (prop.GetAmbient(), prop.GetDiffuse(), prop.GetSpecular(), prop.GetSpecularPower())))
+        planes = mapper.GetClippingPlanes()
+        if planes and planes.GetNumberOfItems():
+            of = [(plane.GetNormal(), plane.GetOrigin()) for plane in (planes.GetItem(n) for n in range(planes.GetNumberOfItems()))]
+            result["clip_planes"] = [(*normal, -float(numpy.dot(normal, origin))) for normal, origin in of]
+        if isinstance(self.drawn, Volume):
+            result["interpolation"] = "linear" if prop.GetInterpolationType() == 1 else "nearest"
+        if (self.drawn.grid if isinstance(self.drawn, Volume) else self.drawn).components > 1 and not prop.GetIndependentComponents():
+            result.update(dependent=True, color=None)
+        return result
 
     @property
-    def bounds(self):
-        return self.drawn.bounds
+    def visibility(self):
+        """Whether it shows."""
+        return bool(self.GetVisibility())
 
-    @property
-    def user_matrix(self):
-        """float64 (4, 4), the last transformation into the world."""
-        return _matrix_of(self.drawn)
-
-    @user_matrix.setter
-    def user_matrix(self, matrix):
-        before, matrix = _stretch(self.user_matrix), _matrix(matrix)
-        self.drawn._place(matrix)
-        self.look["unit_distance"] *= _stretch(matrix) / before
-        self._box.mapper.SetInputData(pyvista.Box(self.drawn.bounds))
-        self.plotter.render()
+    @visibility.setter
+    def visibility(self, shown):
+        self.SetVisibility(bool(shown))
 
     def set(self, **look):
         """Changes parameters that `Volume.render`, or of cells `Tetrahedra.render`, takes."""
@@ -240,11 +284,22 @@ class StratusVolume:
         self.plotter.render()
 
     def remove(self, render=True):
-        """Takes the volume out of the scene."""
+        """Takes the volume out of the scene, and its scalar bar with it."""
         if self._layer is not None:
             self._layer.remove(self, self.plotter)
-            self.plotter.remove_actor(self._box, render=render)  # and its scalar bar
+            if self.title in self.plotter.scalar_bars and not any(other.title == self.title for other in self._layer.volumes):
+                self.plotter.remove_scalar_bar(self.title, render=False)
+            self.plotter.remove_actor(self._box, render=render)
             self._layer = None
+
+
+def _nodes(function, count):
+    """The points of one of VTK's functions, tuples of so many numbers."""
+    result, point = [], [0.0] * count
+    for n in range(function.GetSize()):
+        function.GetNodeValue(n, point)
+        result.append(tuple(point))
+    return result
 
 
 def _limits(clim, low, high, log_scale):
@@ -278,17 +333,6 @@ def _table(cmap, n_colors, opacity, low, high, flip_scalars, log_scale, annotati
     return table
 
 
-def _look(table):
-    """The functions of `render` that are a table's, as pyvista's volumes have them."""
-    low, high = table.scalar_range
-    places = numpy.linspace(low, high, table.n_values)
-    opacities = numpy.minimum(numpy.asarray(table.values)[:, 3] / 255, _MOST_OPAQUE)
-    colors = [tuple(table.map_value(place, opacity=False)) for place in places]
-    if low == high:  # of several points at one value the last one counts
-        places, opacities, colors = places[-1:], opacities[-1:], colors[-1:]
-    return dict(opacity=list(zip(places, opacities)), color=[(place, *color) for place, color in zip(places, colors)])
-
-
 def _with_scalars(volume, scalars, preference):
     """A grid that has the scalars active, and their name. scalars: a name, an array with one for each point or cell, or None: the active ones."""
     if scalars is None or isinstance(scalars, str):
@@ -302,7 +346,9 @@ def _with_scalars(volume, scalars, preference):
     if values.dtype.kind not in "biuf":
         raise TypeError(f"scalars is of type {values.dtype}, it must be numbers")
     sizes = dict(point=volume.n_points, cell=volume.n_cells)
-    if values.ndim not in (1, 2) or len(values) not in sizes.values():
+    if values.ndim not in (1, 2):
+        raise ValueError(f"scalars has {values.ndim} dimensions, it must have 1 or 2")
+    if len(values) not in sizes.values():
         raise ValueError(f"scalars has the shape {values.shape}, it must have one for each of the {sizes['point']} points or {sizes['cell']} cells")
     if preference not in sizes:
         raise ValueError(f"preference is {preference!r}, it must be point or cell")
@@ -335,8 +381,8 @@ def _grid(volume, scalars, preference, place):
     volume, name = _with_scalars(volume, scalars, preference)
     values = _array_of(volume, name, preference)
     if values.ndim == 2 and (values.shape[1] != 4 or values.dtype != numpy.uint8):
-        raise ValueError(f"scalars {name!r} has the shape {values.shape} and type {values.dtype}, it must be one number each, or red, green, blue and opacity "
-                         "of type uint8")
+        raise ValueError(f"scalars {name!r} has the shape {values.shape} and datatype {values.dtype}, it must be one number each, or red, green, blue and "
+                         "opacity of datatype uint8")
     place = dict(place, component="all" if values.ndim == 2 else None)
     if name in volume.point_data and name in volume.cell_data and preference == "cell":
         volume = volume.copy(deep=False)
@@ -389,41 +435,67 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
                 for n, block in enumerate(volume) if block is not None]
     if show_scalar_bar is None:
         show_scalar_bar = plotter.theme.show_scalar_bar or bool(scalar_bar_args)
-    place, title = dict(device=device, threads=threads, matrix=_matrix(user_matrix)), None
+    _matrix(user_matrix)  # what is none is refused before anything changes
+    place, title = dict(device=device, threads=threads), None
     if isinstance(volume, (Volume, Tetrahedra)):
         drawn, values = volume, None
-    elif isinstance(volume, numpy.ndarray):
+    elif isinstance(volume, numpy.ndarray) and scalars is None:
         spacing = None if resolution is None else numbers(resolution, 3, "resolution")
         drawn, values = Volume(volume, axes="xyz", spacing=spacing, **place), volume
     else:
+        if isinstance(volume, numpy.ndarray):  # whose scalars are told apart from it
+            volume = pyvista.wrap(volume)
+            volume.spacing = (1, 1, 1) if resolution is None else numbers(resolution, 3, "resolution")
         drawn, title, values = _grid(volume, scalars, preference, place)
     of = drawn.grid if isinstance(drawn, Volume) else drawn
     low, high = (0.0, 1.0) if of.spread is None else (min(each.low for each in of.spreads), max(each.high for each in of.spreads))
     low, high = _limits(clim, low, high, log_scale)
     rgba = of.components == 4 and values is not None and values.dtype == numpy.uint8
     if rgba and not (isinstance(opacity, str) and opacity == "linear"):
-        warnings.warn("custom opacity is left out, because the scalars are red, green, blue and opacity", UserWarning, stacklevel=2)
+        warnings.warn("Ignoring custom opacity due to RGBA scalars.", UserWarning, stacklevel=2)
         opacity = "linear"
     if categories and values is not None:
         n_colors = len(numpy.unique(values)) if categories is True else int(categories)
     table = _table(plotter.theme.cmap if cmap is None else cmap, n_colors, opacity, low, high, flip_scalars, log_scale, annotations)
     if opacity_unit_distance is None:
-        opacity_unit_distance = _unit(volume, drawn)
-    light = dict(zip(_SHADING, (0.1 if ambient is None else ambient, diffuse, specular, specular_power)))
-    unit = opacity_unit_distance * _stretch(_matrix_of(drawn))
-    look = dict(_look(table), unit_distance=unit, mode=blending, shade=light if shade else False)
-    if rgba:
-        look.update(dependent=True, color=None)
+        opacity_unit_distance = _unit(volume, drawn) * _stretch(_matrix_of(drawn))
+    mapper, prop = _words(plotter, volume, drawn, table)
+    prop.ambient, prop.diffuse, prop.specular, prop.specular_power = 0.1 if ambient is None else ambient, diffuse, specular, specular_power
+    prop.shade, prop.interpolation_type, prop.opacity_unit_distance = bool(shade), "linear", opacity_unit_distance
+    prop.independent_components = not rgba
+    if blending in _BLENDINGS[:5]:
+        mapper.blend_mode = blending
+    else:
+        options.setdefault("mode", blending)
     if name is not None:
         for layer in plotter.__dict__.get("_stratus_layers", [])[:]:
-            for other in [each for each in layer.volumes if each.name == name and layer.renderer is plotter.renderer]:
+            for other in [each for each in layer.volumes if each.called == name and layer.renderer is plotter.renderer]:
                 other.remove(render=False)
-    result = StratusVolume(plotter, drawn, dict(look, **options), name, reset_camera, render)
+    result = StratusVolume(plotter, drawn, mapper, prop, options, user_matrix)
+    if name is not None:
+        result.name = result.called = name
+    result.enter(name, reset_camera, render)
+    plotter.mapper, plotter.volume = mapper, result
     if show_scalar_bar and not rgba:
-        shown = result._box.mapper
-        shown.lookup_table, shown.scalar_range = table, table.scalar_range
-        plotter.add_scalar_bar(mapper=shown, **{"title": title or "Data", **(scalar_bar_args or {})})
+        bar = dict(scalar_bar_args or {})
+        result.title = bar.setdefault("title", title or "values")
+        plotter.add_scalar_bar(**bar)
     return result
+
+
+def _words(plotter, volume, drawn, table):
+    """The mapper and the property of pyvista's that tell what a volume is drawn by. The mapper has the grid's bounds, and draws nothing."""
+    from pyvista.plotting.mapper import SmartVolumeMapper, UnstructuredGridVolumeRayCastMapper
+    from pyvista.plotting.volume_property import VolumeProperty
+    kind = UnstructuredGridVolumeRayCastMapper if isinstance(volume, pyvista.UnstructuredGrid) else SmartVolumeMapper
+    mapper = kind(theme=plotter.theme)
+    if not isinstance(volume, (pyvista.ImageData, pyvista.RectilinearGrid, pyvista.UnstructuredGrid)):
+        low, high = numpy.array(drawn.bounds[::2]), numpy.array(drawn.bounds[1::2])
+        volume = pyvista.ImageData(dimensions=(2, 2, 2), spacing=numpy.maximum(high - low, 1e-300), origin=low)
+    mapper.dataset = volume
+    mapper.scalar_range = table.scalar_range
+    mapper.lookup_table = table
+    return mapper, VolumeProperty(lookup_table=table)
 
 
 def _matrix_of(drawn):

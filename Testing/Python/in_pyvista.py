@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """stratus_volume in scenes of pyvista, beside the volumes that VTK's own mapper draws there. `wheel` runs it where pyvista is installed."""
+import gc
 import warnings
+import weakref
 
 from checking import check, done, refuse
 
 import numpy
 import pyvista
+from vtkmodules.vtkCommonDataModel import vtkPlane
 
 import stratus_volume
 from stratus_volume.pyvista import add_volume
@@ -89,6 +92,7 @@ def lives():
     shear = numpy.eye(4)
     shear[0, 1] = 1
     volume.user_matrix = shear
+    plotter.render()
     check(numpy.array_equal(volume.user_matrix, shear) and volume.bounds[1] == 24 and numpy.allclose(plotter.bounds[:2], (-24, 24)), "it can be moved")
     volume.remove()
     after = plotter.screenshot(return_img=True).astype(int)
@@ -132,6 +136,51 @@ def words():
         apart = numpy.abs(stratus - vtk).mean(axis=2)
         check(inside.sum() > 500 and apart[inside].mean() < 6 and apart[~lit].mean() < 1.5,
               f"{list(more)}: {apart[inside].mean():.2f} where it shows in {inside.sum()} pixels, {apart[~lit].mean():.2f} elsewhere")
+
+
+def reacts():
+    """What pyvista's table, property and mapper are changed to shows in the next frame, and nothing is left of it all."""
+    def picture(change=None, **look):
+        plotter = pyvista.Plotter(off_screen=True, window_size=(120, 90))
+        # A table that tells the smallest differences apart.
+        volume = plotter.stratus.add_volume(grid, show_scalar_bar=False, **{**dict(opacity="foreground", cmap="flag"), **look})
+        plotter.camera_position = [(70, -60, 55), (0, 0, 0), (0, 0, 1)]
+        plotter.renderer.reset_camera_clipping_range()
+        plotter.render()
+        if change is not None:
+            change(volume)
+        result = plotter.screenshot(return_img=True).astype(int)
+        plotter.close()
+        left.append(weakref.ref(volume))
+        return result
+
+    def table(volume):
+        volume.mapper.lookup_table.apply_cmap("plasma", 256)
+        volume.mapper.lookup_table.apply_opacity("sigmoid_5")
+        volume.mapper.lookup_table.scalar_range = (100, 250)
+
+    def cut(volume):
+        plane = vtkPlane()
+        plane.SetNormal(1, 0, 0), plane.SetOrigin(2, 0, 0)
+        volume.mapper.AddClippingPlane(plane)
+    left = []
+    before = picture()
+    for change, same in (table, dict(cmap="plasma", opacity="sigmoid_5", clim=(100, 250))), (cut, dict(clip_planes=[(1, 0, 0, -2)])), \
+            (lambda volume: setattr(volume.prop, "interpolation_type", "nearest"), dict(interpolation="nearest")), \
+            (lambda volume: setattr(volume.mapper, "blend_mode", "maximum"), dict(blending="maximum")), \
+            (lambda volume: setattr(volume.prop, "opacity_unit_distance", 9.0), dict(opacity_unit_distance=9)), \
+            (lambda volume: volume.rotate_z(30), dict(user_matrix=pyvista.Transform().rotate_z(30).matrix)):
+        changed = picture(change)
+        check(numpy.abs(changed - before).max() > 5, f"{same} changes the picture")
+        check(numpy.abs(changed - picture(**same)).max() <= 2, f"as {same} does")
+    plotter = pyvista.Plotter(off_screen=True)
+    volume = plotter.stratus.add_volume(grid)
+    plotter.add_volume_clip_plane(volume)
+    check(len(volume.asked()["clip_planes"]) == 1 and volume.mapper.dataset.n_points == grid.n_points, "pyvista's widgets take it")
+    plotter.close()
+    del volume
+    gc.collect()
+    check(all(each() is None for each in left), f"closed plotters leave {sum(each() is not None for each in left)} volumes")
 
 
 def several():
@@ -178,6 +227,7 @@ composited()
 lives()
 named()
 words()
+reacts()
 several()
 data()
 done()
