@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Tests that build something anew, each one line of ctest's summary. What they need must be there: nothing is skipped.
+# Tests that build something anew, each one line of ctest's summary. What they need must be there, but for Oclgrind, which Debian 13 has not.
 find_program(CLANG clang REQUIRED)
-find_program(OCLGRIND oclgrind REQUIRED)
+find_program(OCLGRIND oclgrind)
 
 # ---- clang-tidy over the core, as compile_commands.json has it
 find_program(CLANG_TIDY NAMES clang-tidy-14 clang-tidy REQUIRED)

@@ -44,10 +44,14 @@ std::vector<View> Views()
     { "horizontal angle", [](vtkCamera* c) { c->UseHorizontalViewAngleOn(), c->SetViewAngle(25); } },
     { "off-axis screen",
       [](vtkCamera* c) {
+        // Before VTK 9.3 the screen is in the eye's coordinates, since then in the world's: here they are the same, and the lattice moves.
+        const double move[16] = { 1, 0, 0, -5.1, 0, 1, 0, -4.9, 0, 0, 1, -14, 0, 0, 0, 1 };
+        c->SetModelTransformMatrix(move);
+        c->SetPosition(0, 0, 0), c->SetFocalPoint(0, 0, -1);
+        c->SetScreenBottomLeft(-1.0, -2.0, -4.0);
+        c->SetScreenBottomRight(1.0, -2.0, -4.0);
+        c->SetScreenTopRight(1.0, -0.5, -4.0);
         c->SetUseOffAxisProjection(1);
-        c->SetScreenBottomLeft(4.0, 2.0, 3.0);
-        c->SetScreenBottomRight(6.0, 2.0, 3.0);
-        c->SetScreenTopRight(6.0, 3.5, 3.0);
       } },
     { "a projection matrix of its own",
       [](vtkCamera* c) {

@@ -41,8 +41,13 @@ void Cameras()
     s.Renderer->GetActiveCamera()->SetViewShear(0.2, -0.1, 1.0);
   });
   Compare("off-axis projection", [](Scene& s) {
-    // A screen before the eye, off to one side of it, in the eye's coordinates.
+    // A screen before the eye, off to one side of it: before VTK 9.3 in the coordinates of the eye, since then of the world, here the same.
+    s.Image->SetOrigin(-12.4, -15, -73.2);
     vtkCamera* camera = s.Renderer->GetActiveCamera();
+    camera->SetPosition(0, 0, 0);
+    camera->SetFocalPoint(0, 0, -60);
+    camera->SetViewUp(0, 1, 0);
+    camera->SetClippingRange(1, 200);
     camera->SetScreenBottomLeft(-13, -14, -60);
     camera->SetScreenBottomRight(17, -14, -60);
     camera->SetScreenTopRight(17, 12, -60);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Embree 3 on voxels as user geometry: one box per voxel, or one box per brick of 4^3 voxels whose bit mask is walked. The callbacks do as
-// little as possible: reciprocals of the direction come with the ray, and only distance and primitive are written.
+// Embree 3 or 4 on voxels as user geometry: one box per voxel, or one box per brick of 4^3 voxels whose bit mask is walked. The callbacks
+// do as little as possible: reciprocals of the direction come with the ray, and only distance and primitive are written.
 #include "tree_methods.h"
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <atomic>
 #include <cmath>
@@ -26,14 +30,51 @@ struct brick {
   int32_t at[3]; // in voxels
 };
 
+// What a ray is asked with: Embree 4 takes arguments that name the context, Embree 3 the context itself.
+#if RTC_VERSION_MAJOR >= 4
+using query_context = RTCRayQueryContext;
+class query
+{
+public:
+  query(query_context* context, bool coherent)
+  {
+    rtcInitRayQueryContext(context);
+    rtcInitIntersectArguments(&this->arguments);
+    this->arguments.context = context;
+    this->arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+  }
+  void one(RTCScene scene, RTCRayHit* ray) { rtcIntersect1(scene, ray, &this->arguments); }
+  void sixteen(RTCScene scene, const int* valid, RTCRayHit16* rays) { rtcIntersect16(valid, scene, rays, &this->arguments); }
+
+private:
+  RTCIntersectArguments arguments;
+};
+#else
+using query_context = RTCIntersectContext;
+class query
+{
+public:
+  query(query_context* from, bool coherent) : context(from)
+  {
+    rtcInitIntersectContext(from);
+    from->flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  }
+  void one(RTCScene scene, RTCRayHit* ray) { rtcIntersect1(scene, this->context, ray); }
+  void sixteen(RTCScene scene, const int* valid, RTCRayHit16* rays) { rtcIntersect16(valid, scene, this->context, rays); }
+
+private:
+  query_context* context;
+};
+#endif
+
 // Embree passes the context to the callbacks, so the members behind it carry what a callback needs.
 struct ray_context {
-  RTCIntersectContext head;
+  query_context head;
   float inverse[3];
   int32_t voxel; // bricks: the bit of the mask
 };
 struct packet_context {
-  RTCIntersectContext head;
+  query_context head;
   float inverse[3][packet];
 };
 
@@ -309,8 +350,7 @@ void embree_hits::trace_packets()
 {
   static const int all[packet] = { -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1 };
   packet_context context;
-  rtcInitIntersectContext(&context.head);
-  context.head.flags = this->coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  query ask(&context.head, this->coherent);
   alignas(64) int valid[packet];
   std::memcpy(valid, all, sizeof valid);
   alignas(64) RTCRayHit16 p;
@@ -332,7 +372,7 @@ void embree_hits::trace_packets()
         context.inverse[a][i] = r.inverse[a];
       }
     }
-    rtcIntersect16(valid, this->scene, &context.head, &p);
+    ask.sixteen(this->scene, valid, &p);
     for (int i = 0; i < packet; ++i) {
       this->times[this->order[first + static_cast<size_t>(i)]] = p.ray.tfar[i];
       this->primitives[this->order[first + static_cast<size_t>(i)]] = p.hit.primID[i];
@@ -347,8 +387,7 @@ void embree_hits::trace()
     return;
   }
   ray_context context;
-  rtcInitIntersectContext(&context.head);
-  context.head.flags = this->coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  query ask(&context.head, this->coherent);
   for (size_t i = 0; i < this->rays.size(); ++i) {
     const float_ray& r = this->rays[i];
     RTCRayHit h;
@@ -356,7 +395,7 @@ void embree_hits::trace()
     h.hit.primID = h.hit.geomID = h.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     std::memcpy(context.inverse, r.inverse, sizeof context.inverse);
     context.voxel = 0;
-    rtcIntersect1(this->scene, &context.head, &h);
+    ask.one(this->scene, &h);
     this->times[i] = h.ray.tfar;
     this->primitives[i] = h.hit.primID;
     this->bits[i] = context.voxel;
