@@ -85,7 +85,7 @@ class Scene:
 
 def say(words):
     if rank == 0:
-        print(words, flush=True)
+        print(words, file=sys.stderr, flush=True)  # where VTK's messages go, so that their order is kept
 
 
 other = "hill" if rank != 1 else "dale"  # rank 1 lacks the array
