@@ -16,20 +16,21 @@ import weakref
 import numpy
 import pyvista
 import pyvista.plotting.volume
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkFloatArray, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkImageData, vtkPolyData
-from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
-from vtkmodules.vtkRenderingCore import vtkCoordinate, vtkPolyDataMapper2D, vtkTexture, vtkTexturedActor2D
 
 from . import _declarations as c
 from ._core import Unsupported
+from ._grid import of_package
 from ._picture import paint
 from ._several import render_several
 from ._tetrahedra import Tetrahedra
 from ._values import number, numbers
 from ._volume import Volume
+
+# VTK is the one that pyvista has, which need not be vtkmodules.
+_package = pyvista.ImageData()
+numpy_support, core, data_model = (of_package(_package, name) for name in ("util.numpy_support", "vtkCommonCore", "vtkCommonDataModel"))
+pipeline, drawing = (of_package(_package, name) for name in ("vtkCommonExecutionModel", "vtkRenderingCore"))
+VTKPythonAlgorithmBase = of_package(_package, "util.vtkAlgorithm").VTKPythonAlgorithmBase
 
 _BLENDINGS = ("composite", "maximum", "minimum", "average", "additive", "isosurface", "slice")
 _MAPPERS = ("fixed_point", "gpu", "open_gl", "smart", "ugrid")
@@ -69,19 +70,19 @@ class _Picture(VTKPythonAlgorithmBase):
     def RequestInformation(self, request, inputs, outputs):
         self.size = tuple(max(1, side) for side in self.renderer.GetSize())
         info = outputs.GetInformationObject(0)
-        info.Set(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT(), (0, self.size[0] - 1, 0, self.size[1] - 1, 0, 0), 6)
-        vtkDataObject.SetPointDataActiveScalarInfo(info, VTK_UNSIGNED_CHAR, 4)
+        info.Set(pipeline.vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT(), (0, self.size[0] - 1, 0, self.size[1] - 1, 0, 0), 6)
+        data_model.vtkDataObject.SetPointDataActiveScalarInfo(info, core.VTK_UNSIGNED_CHAR, 4)
         return 1
 
     def RequestData(self, request, inputs, outputs):
-        image = vtkImageData.GetData(outputs, 0)
+        image = data_model.vtkImageData.GetData(outputs, 0)
         image.SetDimensions(*self.size, 1)
         try:
             rows = self.layer.draw(self.renderer, self.size)
         except Exception as error:  # VTK would go on with a texture that is half made
             warnings.warn(f"Stratus draws nothing: {error}", RuntimeWarning, stacklevel=2)
             rows = numpy.zeros((self.size[1], self.size[0], 4), numpy.uint8)
-        scalars = numpy_to_vtk(rows.reshape(-1, 4), deep=True)
+        scalars = numpy_support.numpy_to_vtk(rows.reshape(-1, 4), deep=True)
         scalars.SetName("picture")
         image.GetPointData().SetScalars(scalars)
         return 1
@@ -89,15 +90,15 @@ class _Picture(VTKPythonAlgorithmBase):
 
 def _window(renderer, algorithm):
     """The actor that covers a renderer's view with a texture."""
-    texture = vtkTexture()
+    texture = drawing.vtkTexture()
     texture.SetInputConnection(algorithm.GetOutputPort())
-    points, cells, places = vtkPoints(), vtkCellArray(), vtkFloatArray()
+    points, cells, places = core.vtkPoints(), data_model.vtkCellArray(), core.vtkFloatArray()
     places.SetNumberOfComponents(2)
     for x, y in (0, 0), (1, 0), (1, 1), (0, 1):
         points.InsertNextPoint(x, y, 0)
         places.InsertNextTuple2(x, y)
     cells.InsertNextCell(4, (0, 1, 2, 3))
-    square, coordinate, mapper, actor = vtkPolyData(), vtkCoordinate(), vtkPolyDataMapper2D(), vtkTexturedActor2D()
+    square, coordinate, mapper, actor = data_model.vtkPolyData(), drawing.vtkCoordinate(), drawing.vtkPolyDataMapper2D(), drawing.vtkTexturedActor2D()
     square.SetPoints(points)
     square.SetPolys(cells)
     square.GetPointData().SetTCoords(places)
@@ -134,6 +135,7 @@ class _Layer:
     def of(cls, plotter):
         """The plotter's layer for its active renderer."""
         layers = plotter.__dict__.setdefault("_stratus_layers", [])
+        getattr(plotter, "stratus", None)  # from now on, pyvista's plotter tells this component when it closes
         for layer in layers:
             if layer.renderer is plotter.renderer:
                 return layer
@@ -152,7 +154,10 @@ class _Layer:
         self.renderer.RemoveViewProp(self._actor)
         self._actor.GetTexture().RemoveAllInputConnections(0)
         self._actor.SetTexture(None)
+        self._actor.SetMapper(None)
         self._algorithm.layer, self._algorithm.renderer = None, None
+        for volume in self.volumes:
+            volume._leave()
         self.volumes.clear()
 
     def draw(self, renderer, size):
@@ -160,9 +165,9 @@ class _Layer:
         shown = [volume for volume in self.volumes if volume.visibility]
         if not shown:
             return numpy.zeros((size[1], size[0], 4), numpy.uint8)
-        depths, (x, y) = vtkFloatArray(), renderer.GetOrigin()
+        depths, (x, y) = core.vtkFloatArray(), renderer.GetOrigin()
         renderer.GetRenderWindow().GetZbufferData(x, y, x + size[0] - 1, y + size[1] - 1, depths)
-        opaque = numpy.clip(vtk_to_numpy(depths).reshape(size[1], size[0]), 0, 1)[::-1]
+        opaque = numpy.clip(numpy_support.vtk_to_numpy(depths).reshape(size[1], size[0]), 0, 1)[::-1]
         view = core_camera(renderer.GetActiveCamera(), renderer.GetTiledAspectRatio())
         for volume in shown:
             volume.place()
@@ -281,16 +286,22 @@ class StratusVolume(pyvista.plotting.volume.Volume):
     def set(self, **look):
         """Changes parameters that `Volume.render`, or of cells `Tetrahedra.render`, takes."""
         self.look.update(look)
-        self.plotter.render()
+        if self.plotter is not None:
+            self.plotter.render()
 
     def remove(self, render=True):
         """Takes the volume out of the scene, and its scalar bar with it."""
         if self._layer is not None:
-            self._layer.remove(self, self.plotter)
-            if self.title in self.plotter.scalar_bars and not any(other.title == self.title for other in self._layer.volumes):
-                self.plotter.remove_scalar_bar(self.title, render=False)
-            self.plotter.remove_actor(self._box, render=render)
-            self._layer = None
+            plotter, layer, box = self.plotter, self._layer, self._box
+            layer.remove(self, plotter)
+            if self.title in plotter.scalar_bars and not any(other.title == self.title for other in layer.volumes):
+                plotter.remove_scalar_bar(self.title, render=False)
+            plotter.remove_actor(box, render=render)
+            self._leave()
+
+    def _leave(self):
+        """Forgets the scene, which would else hold the volume that holds it."""
+        self.plotter, self.renderer, self._layer, self._box = None, None, None, None
 
 
 def _nodes(function, count):

@@ -63,7 +63,7 @@ def components():
                 holds(render(far, opacity=opacity, color=hues, axes="xzy", **straight), media, colors, "in another order of axes")
                 planar = numpy.ascontiguousarray(values.transpose(3, 0, 1, 2)).transpose(1, 2, 3, 0)
                 holds(render(planar, opacity=opacity, color=hues, **straight), media, colors, "of planes one after the other")
-                holds(render(values * 1e300, opacity=[[(0, 0), (99e300, top)] for top in tops], color=hues, **straight), media, colors, "times 1e300")
+                holds(render(values.astype(float) * 1e300, opacity=[[(0, 0), (99e300, top)] for top in tops], color=hues, **straight), media, colors, "times 1e300")
                 shares = [0.5, 0, 1, 0.25][:count]
                 weighed = [1 - (1 - medium) ** share for medium, share in zip(media, shares)]
                 holds(render(values, opacity=opacity, color=hues, weights=shares, **straight), weighed, colors, "weights")
