@@ -8,7 +8,7 @@ import numpy
 from . import _declarations as c
 from ._core import address, library
 from ._look import Transfer, set_shading, value_interval
-from ._values import is_number, no_opacity, number, numbers, positive, warn
+from ._values import dot, is_number, length_of, no_opacity, number, numbers, positive, warn
 
 # Colours of independent components that are given none: far from each other, and about as bright.
 _HUES = ((0.95, 0.45, 0.2), (0.25, 0.55, 0.95), (0.4, 0.8, 0.35), (0.85, 0.5, 0.85))
@@ -196,7 +196,7 @@ def surface_of(surface):
 
 def _direction(vector, name):
     own = numbers(vector, 3, name)
-    length = math.hypot(*own)
+    length = length_of(own)
     if length == 0:
         raise ValueError(f"{name} is {vector!r}, it must have a length above 0")
     return [part / length for part in own]
@@ -210,7 +210,7 @@ def slab(center, normal, thickness):
     thickness  world length across it, above 0
     """
     middle, across, half = numbers(center, 3, "center"), _direction(normal, "normal"), positive(thickness, "thickness") / 2
-    place = sum(a * m for a, m in zip(across, middle))
+    place = dot(across, middle)
     return [(*across, half - place), (*(-part for part in across), half + place)]
 
 

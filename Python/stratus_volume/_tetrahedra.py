@@ -11,8 +11,8 @@ from ._core import Owned, address, as_dict, choice, context as context_of, libra
 from ._grid import affine, chosen, of_package
 from ._look import Image, crop_box, set_contours, set_planes, value_interval
 from ._media import explain_each, functions_of, materials_of
-from ._values import (Spread, explain, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled, unit_length,
-                      visible, warn)
+from ._values import (Spread, explain, length_of, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled,
+                      unit_length, visible, warn)
 
 _TETRA = 10  # VTK's number of the cell
 
@@ -194,7 +194,7 @@ class AskedOfCells:
         if average_range is not None:
             options.average_range[:] = value_interval(average_range, "average_range", drawn.power)
         self.bounds = drawn.bounds
-        self.unit = unit_length(unit_distance, math.hypot(*(self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3))))
+        self.unit = unit_length(unit_distance, length_of([self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3)]))
         self.transfers = [each.transfer(drawn.power, self.unit) for each in self._wanted]
         self.functions = (c.stratus_transfer * len(self.transfers))(*(each.struct for each in self.transfers))
         self.mesh = drawn._mesh()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Arrays and functions of values as people give them, made into what the core takes. The packages stratus and stratus_volume share it."""
+import math
 import os
 import sys
 import warnings
@@ -75,6 +76,18 @@ def positive(value, name):
     if number(value, name) <= 0:
         raise ValueError(f"{name} is {value!r}, it must be above 0")
     return float(value)
+
+
+def dot(a, b):
+    """The product of two vectors of three numbers, rounded alike by every Python: its sum() is another from 3.12 on."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def length_of(vector):
+    """The length of a vector of three numbers, rounded alike by every Python: its math.hypot() is another from 3.10 on."""
+    power = math.frexp(max(abs(part) for part in vector))[1]
+    scaled_down = [math.ldexp(part, -power) for part in vector]  # exactly, so that no square overflows
+    return math.sqrt(dot(scaled_down, scaled_down)) * 2.0 * math.ldexp(1.0, power - 1)
 
 
 def unit_length(unit_distance, length):

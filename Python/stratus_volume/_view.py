@@ -5,7 +5,7 @@ import math
 
 from . import _declarations as c
 from ._core import library
-from ._values import number, numbers
+from ._values import dot, length_of, number, numbers
 
 _AROUND = dict(azimuth=30.0, elevation=25.0, zoom=1.15)
 _PLACED = dict(position=None, focal_point=None, view_up=(0.0, 0.0, 1.0), view_angle=30.0, parallel_scale=None)
@@ -17,9 +17,9 @@ def _turned(vector, axis, degrees):
     """The vector turned about an axis of length 1 (Rodrigues)."""
     angle = math.radians(degrees)
     cosine, sine = math.cos(angle), math.sin(angle)
-    dot = sum(a * b for a, b in zip(vector, axis))
+    along = dot(vector, axis)
     cross = _cross(axis, vector)
-    return tuple(v * cosine + x * sine + a * dot * (1 - cosine) for v, x, a in zip(vector, cross, axis))
+    return tuple(v * cosine + x * sine + a * along * (1 - cosine) for v, x, a in zip(vector, cross, axis))
 
 
 def _cross(a, b):
@@ -33,7 +33,7 @@ def _around(camera, bounds, aspect):
     if wishes["zoom"] <= 0:
         raise ValueError(f"camera's zoom is {wishes['zoom']}, it must be above 0")
     middle = [0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]) for axis in range(3)]
-    radius = 0.5 * math.hypot(*(bounds[2 * axis + 1] - bounds[2 * axis] for axis in range(3))) or 0.5
+    radius = 0.5 * length_of([bounds[2 * axis + 1] - bounds[2 * axis] for axis in range(3)]) or 0.5
     outward = _turned((0.0, -1.0, 0.0), (0.0, 0.0, 1.0), wishes["azimuth"])
     side = _cross((0.0, 0.0, 1.0), outward)
     outward = _turned(outward, side, -max(-89.9, min(89.9, wishes["elevation"])))

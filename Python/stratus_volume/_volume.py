@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures of volumes by ray casting."""
 import ctypes
-import math
 
 from . import _declarations as c
 from . import _view
@@ -9,7 +8,7 @@ from ._core import Owned, address, as_dict, choice, context as context_of, libra
 from ._grid import affine, grid_of
 from ._look import Image, crop_box, set_contours, set_planes, set_shading, value_interval
 from ._media import Function2D, Labels, explain_each, functions_of, looks_of, materials_of, surface_of
-from ._values import explain, number, own_points, pixels, positive, unit_length, warn
+from ._values import explain, length_of, number, own_points, pixels, positive, unit_length, warn
 
 
 class Volume:
@@ -115,7 +114,7 @@ class Asked:
         if average_range is not None:
             options.average_range[:] = value_interval(average_range, "average_range", power)
         self.bounds = grid.bounds(drawn.context)
-        self.unit = unit = unit_length(unit_distance, math.hypot(*(self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3))))
+        self.unit = unit = unit_length(unit_distance, length_of([self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3)]))
         self.transfers = [each.transfer(power, unit) for each in wanted]
         self.functions = (c.stratus_transfer * len(wanted))(*(each.struct for each in self.transfers))
         self._function_2d = None if function_2d is None else Function2D(function_2d, power, unit)
