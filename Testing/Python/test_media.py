@@ -114,6 +114,11 @@ def dependent():
     colors = numpy.stack([values[..., 0] / 99, 1 - values[..., 0] / 99, numpy.zeros(values.shape[:3])], axis=-1)
     picture = render(values, opacity=[(0, 0), (99, 0.6)], color=[(0, 0, 1, 0), (99, 1, 0, 0)], dependent=True, **straight)
     holds(picture, [values[..., 1] / 99 * 0.6], [colors], "the colour of the first, the opacity of the second")
+    wide = values * (7, 1)
+    low, high = wide[..., 0].min(), wide[..., 0].max()
+    named = [(low, 0.23, 0.3, 0.75), (0.5 * (low + high), 0.87, 0.87, 0.87), (high, 0.9, 0.45, 0.15)]
+    own, same = (render(wide, opacity=[(0, 0), (99, 0.6)], color=color, dependent=True, **straight) for color in (None, named))
+    check(apart(own, same) < 1e-6, "colours that are not given are over the range of the first")
     rgba = random.integers(0, 256, (n, depth, n, 4)).astype(numpy.uint8)
     holds(render(rgba, dependent=True, **straight), [numpy.minimum(rgba[..., 3] / 255, 1 - 1e-12)], [rgba[..., :3] / 255], "bytes that are a colour")
     holds(render(rgba, opacity=[(0, 0), (255, 0.3)], dependent=True, **straight), [rgba[..., 3] / 255 * 0.3], [rgba[..., :3] / 255], "thinned")
