@@ -2,6 +2,7 @@
 """A view of a notebook that the mouse turns: pictures in a widget, without a server."""
 import asyncio
 import math
+import time
 
 from ._draw import drawn_of
 from ._picture import paint
@@ -9,6 +10,7 @@ from ._values import background_color, number, pixels, positive
 from ._view import _AROUND
 
 _REST = 0.3  # seconds without a move after which the full picture is drawn
+_LATE = 150  # milliseconds by which a mouse's event may be old and be drawn: where pictures take longer than events, the last ones count
 
 
 def _widgets():
@@ -33,7 +35,7 @@ class View:
         self.drawn, self.look, self.size, self.background = drawn, look, size, background
         self.rendering, self.is_draft = None, False
         self._draft_size, self._draft_tolerance = draft_size, draft_tolerance
-        self._rest, self._dragged, self._held, self._events = None, None, False, None
+        self._rest, self._dragged, self._held, self._events, self._clock = None, None, False, None, None
         self.image = widgets.Image(format="png", width=size[0], height=size[1])
         self.image.layout.max_width = "none"  # as the drafts are smaller pictures in the same place
         wide = dict(continuous_update=True, readout_format=".0f", layout=widgets.Layout(width=f"{max(240, size[0])}px"))
@@ -77,8 +79,9 @@ class View:
 
     # ---- moves
 
-    def _moved(self):
-        """A draft now, and the full picture once nothing has moved for a while. Without an event loop, as outside of a notebook, that is now."""
+    def _moved(self, late=False):
+        """A draft now, unless the move is late, and the full picture once nothing has moved for a while. Without an event loop, as outside of a
+        notebook, that is now."""
         if self._held:
             return  # of several sliders that change at once
         if self._rest is not None:
@@ -88,7 +91,8 @@ class View:
             loop = asyncio.get_running_loop()
         except RuntimeError:
             loop = None
-        self._try_to_draw(draft=loop is not None)
+        if not late or loop is None:
+            self._try_to_draw(draft=loop is not None)
         if loop is not None:
             self._rest = loop.call_later(_REST, self._rested)
 
@@ -103,14 +107,14 @@ class View:
         except Exception as error:
             self.message.value = f"<b>{type(error).__name__}</b>: {_escaped(str(error))}"
 
-    def _place(self, azimuth, elevation, zoom):
+    def _place(self, azimuth, elevation, zoom, late):
         self._held = True
         try:
             self.azimuth.value, self.elevation.value = _turn(azimuth), min(89, max(-89, elevation))
             self.zoom.value = min(10**1.5, max(0.1, zoom))
         finally:
             self._held = False
-        self._moved()
+        self._moved(late)
 
     def _listen(self):
         """The mouse, where ipyevents is there; it is no error where it is not."""
@@ -122,9 +126,17 @@ class View:
                                        throttle_or_debounce="throttle", prevent_default_action=True)
         self._events.on_dom_event(self._on_event)
 
+    def _is_late(self, event):
+        """Whether an event waited for pictures: the browser's clock and ours are as far apart as they are by the earliest of all events."""
+        if event.get("timeStamp") is None:
+            return False
+        apart = 1000 * time.monotonic() - event["timeStamp"]
+        self._clock = apart if self._clock is None else min(self._clock, apart)
+        return apart - self._clock > _LATE
+
     def _on_event(self, event):
         """A drag turns by half a degree a pixel, and the wheel zooms."""
-        kind = event.get("type")
+        kind, late = event.get("type"), self._is_late(event)
         at = (event.get("relativeX", 0), event.get("relativeY", 0))
         if kind == "mousedown":
             self._dragged = at
@@ -132,7 +144,7 @@ class View:
             dx, dy = at[0] - self._dragged[0], at[1] - self._dragged[1]
             self._dragged = at
             if dx or dy:
-                self._place(self.azimuth.value - 0.5 * dx, self.elevation.value + 0.5 * dy, self.zoom.value)
+                self._place(self.azimuth.value - 0.5 * dx, self.elevation.value + 0.5 * dy, self.zoom.value, late)
         elif kind in ("mouseup", "mouseleave"):
             moved, self._dragged = self._dragged is not None and self.is_draft, None
             if moved:
@@ -140,7 +152,7 @@ class View:
                     self._rest.cancel()
                 self._rested()
         elif kind == "wheel":
-            self._place(self.azimuth.value, self.elevation.value, self.zoom.value * math.exp(-event.get("deltaY", 0) / 500))
+            self._place(self.azimuth.value, self.elevation.value, self.zoom.value * math.exp(-event.get("deltaY", 0) / 500), late)
 
 
 def _turn(degrees):

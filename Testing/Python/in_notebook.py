@@ -70,6 +70,17 @@ async def while_it_moves():
     check(-180 <= own.camera["azimuth"] <= 180 and own.camera["elevation"] == 89, f"turns end at the poles: {own.camera}")
     await asyncio.sleep(0.5)
     check(not own.is_draft, "and rest")
+    send(dict(type="mousedown", relativeX=0, relativeY=0, timeStamp=0))
+    send(dict(type="mousemove", relativeX=20, relativeY=-60, timeStamp=10))
+    draft, seen = own.image.value, own.camera
+    check(own.is_draft, "an event in time is drawn")
+    await asyncio.sleep(0.25)
+    send(dict(type="mousemove", relativeX=30, relativeY=-60, timeStamp=20))
+    check(own.image.value == draft and own.camera["azimuth"] == seen["azimuth"] - 5, "one that waited turns the view, and leaves its picture to the next")
+    send(dict(type="mousemove", relativeX=40, relativeY=-60, timeStamp=270))
+    check(own.image.value != draft and own.is_draft, "which is drawn where it is in time")
+    await asyncio.sleep(0.5)
+    check(not own.is_draft and same(own, own.camera), "and the full picture is that of the last")
 
 
 def refusals():
