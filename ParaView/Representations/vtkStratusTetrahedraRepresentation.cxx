@@ -279,6 +279,9 @@ bool vtkStratusTetrahedraRepresentation::AddToView(vtkView* view)
     return false;
   }
   render_view->GetRenderer()->AddActor(this->Actor);
+  if (stratus::count_ranks() == 1) { // among several, cells that are dealt out have other numbers than the data
+    render_view->RegisterPropForHardwareSelection(this, this->Actor);
+  }
   this->Panel->Enter(render_view->GetRenderer(), this);
   vtkStratusCompositePass::Enter(
     render_view->GetRenderer(), this,
@@ -297,6 +300,7 @@ bool vtkStratusTetrahedraRepresentation::RemoveFromView(vtkView* view)
     return false;
   }
   render_view->GetRenderer()->RemoveActor(this->Actor);
+  render_view->UnRegisterPropForHardwareSelection(this, this->Actor);
   this->Panel->Leave();
   vtkStratusCompositePass::Leave(render_view->GetRenderer(), this);
   return this->Superclass::RemoveFromView(view);

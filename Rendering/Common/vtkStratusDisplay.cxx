@@ -3,6 +3,7 @@
 
 #include "vtkStratusGL.h"
 
+#include "vtkDataObject.h"
 #include "vtkHardwareSelector.h"
 #include "vtkOpenGLFramebufferObject.h"
 #include "vtkOpenGLQuadHelper.h"
@@ -18,6 +19,7 @@
 
 namespace {
 constexpr int PieceRows = 32;
+constexpr float LEAST_SELECTED = 3.0f / 255.0f;
 const char* const FragmentShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
 in vec2 texCoord;
@@ -217,7 +219,7 @@ bool vtkStratusDisplay::Upload(vtkOpenGLRenderWindow* window, const vtkStratusPi
   const bool coarse = part.Size[0] != part.ToSize[0] || part.Size[1] != part.ToSize[1];
   // Depths are not interpolated, so colours must not be, either.
   const bool writesDepth = !this->WindowDepth.empty() && this->Stage != vtkStratusPeels::FIRST;
-  const int filter = coarse && !writesDepth ? vtkTextureObject::Linear : vtkTextureObject::Nearest;
+  const int filter = coarse && !writesDepth && pixels.Rgba != this->Selected.data() ? vtkTextureObject::Linear : vtkTextureObject::Nearest;
   this->Texture->SetMinificationFilter(filter);
   this->Texture->SetMagnificationFilter(filter);
   if (!this->Texture->GetHandle() || this->Texture->GetWidth() != width || this->Texture->GetHeight() != height ||
@@ -468,22 +470,50 @@ vtkStratusDisplay::Pixels vtkStratusDisplay::ChoosePixels(vtkRenderer* renderer,
   return pixels;
 }
 
-// Hardware picking reads the window.
+// Hardware picking reads the window, in one pass for the prop, others for the block in composite data, the cell or point, the process.
 void vtkStratusDisplay::ChooseSelected(vtkRenderer* renderer, const vtkStratusPicture& picture, Pixels& pixels)
 {
-  float color[3];
-  renderer->GetSelector()->BeginRenderProp();
-  renderer->GetSelector()->GetPropColorValue(color);
-  this->Selected.resize(4 * static_cast<size_t>(picture.Size[0]) * picture.Size[1]);
-  for (size_t at = 0; at < this->Selected.size(); at += 4) {
-    const float seen = pixels.Rgba[at + 3] > 0.0f ? 1.0f : 0.0f;
-    const float shown[4] = { seen * color[0], seen * color[1], seen * color[2], seen };
-    std::copy_n(shown, 4, &this->Selected[at]);
+  vtkHardwareSelector* selector = renderer->GetSelector();
+  const int pass = selector->GetCurrentPass();
+  const bool points = selector->GetFieldAssociation() == vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  const int low = points ? vtkHardwareSelector::POINT_ID_LOW24 : vtkHardwareSelector::CELL_ID_LOW24;
+  const int high = points ? vtkHardwareSelector::POINT_ID_HIGH24 : vtkHardwareSelector::CELL_ID_HIGH24;
+  const bool ofProp = pass == vtkHardwareSelector::ACTOR_PASS || pass == vtkHardwareSelector::PROCESS_PASS;
+  const bool ofBlock = pass == vtkHardwareSelector::COMPOSITE_INDEX_PASS && pixels.Finder && pixels.Finder->HasBlocks();
+  const bool ofElement = (pass == low || pass == high) && pixels.Finder;
+  float color[3] = { 0.0f, 0.0f, 0.0f };
+  selector->BeginRenderProp();
+  if (pixels.Finder) { // more than 24 bits take another pass
+    selector->UpdateMaximumPointId(pixels.Finder->GetMost());
+    selector->UpdateMaximumCellId(pixels.Finder->GetMost());
+  }
+  if (ofProp) {
+    selector->GetPropColorValue(color);
+  }
+  // A selector that does not know the prop gives it no colour, and it hides nothing.
+  const bool known = pass != vtkHardwareSelector::ACTOR_PASS || color[0] > 0.0f || color[1] > 0.0f || color[2] > 0.0f;
+  this->Selected.assign(4 * static_cast<size_t>(picture.Size[0]) * picture.Size[1], 0.0f);
+  for (size_t ray = 0; ray < this->Selected.size() / 4 && known; ++ray) {
+    if (!(pixels.Rgba[4 * ray + 3] > LEAST_SELECTED)) {
+      continue;
+    }
+    if (ofBlock || ofElement) {
+      double place[3], direction[3];
+      picture.FindPlace(ray, (*pixels.Depth)[ray], place, direction);
+      const vtkStratusCellFinder::Found found = pixels.Finder->Find(place, direction, points);
+      const vtkIdType number = ofBlock ? static_cast<vtkIdType>(found.Block) : std::max<vtkIdType>(found.Element, 0);
+      for (int c = 0; c < 3; ++c) {
+        color[c] = static_cast<float>(number >> (8 * c + (pass == high ? 24 : 0)) & 255) / 255.0f;
+      }
+    }
+    std::copy_n(color, 3, &this->Selected[4 * ray]);
+    this->Selected[4 * ray + 3] = 1.0f;
   }
   pixels.Rgba = this->Selected.data();
   pixels.Scale = 1.0f;
   pixels.Bias = 0.0f;
-  pixels.WritesDepth = true;
+  // Where the selector keeps depths from pass to pass, as for points, a prop's own would hide it from the next one.
+  pixels.WritesDepth = !renderer->GetPreserveDepthBuffer();
 }
 
 bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& wanted, std::string& error)

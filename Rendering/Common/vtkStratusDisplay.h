@@ -6,6 +6,7 @@
 #ifndef vtkStratusDisplay_h
 #define vtkStratusDisplay_h
 
+#include "vtkStratusCellFinder.h"
 #include "vtkStratusPeels.h"
 #include "vtkStratusPicture.h"
 
@@ -37,8 +38,9 @@ public:
     const std::vector<float>* Depth = nullptr; // along each ray, as the core gives it
     // Casts rays of the picture up to window depths, one a ray; empty where a part of a ray has no colour of its own. Valid in this frame.
     std::function<bool(const float* depths, std::vector<float>& rgba)> Cast;
-    bool WritesDepth = false; // into the window's depth buffer, where alpha is not 0
-    bool Alone = false;       // nothing was drawn before, so that the bytes may replace the frame buffer's
+    bool WritesDepth = false;               // into the window's depth buffer, where alpha is not 0
+    bool Alone = false;                     // nothing was drawn before, so that the bytes may replace the frame buffer's
+    vtkStratusCellFinder* Finder = nullptr; // tells cells and points while the renderer picks; without one there are none
   };
 
   // Chooses how a picture is displayed with the final colour's window and level. `bytes`: of the picture, to be filled in if Pixels.Bytes
@@ -55,8 +57,9 @@ public:
   // frame, and the later ones draw the first one's picture between other peels. Then `error` is lastError, with which the frame's first
   // draw ended.
   bool Begin(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper, const std::string& lastError, std::string& error);
-  // Ends a draw for which Begin() returned true. While the renderer picks props it draws the prop's selection colour, and its depth, where
-  // the picture shows anything. Returns false, with the reason in `error`, where the window can't show it.
+  // Ends a draw for which Begin() returned true. While the renderer picks props it draws the prop's selection colour, or the number of the
+  // cell or point that each ray shows first, and their depth, where more than 3 of 255 show, as VTK's mappers do. Returns false, with the
+  // reason in `error`, where the window can't show it.
   bool Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& pixels, std::string& error);
   void ReleaseGraphicsResources(vtkWindow* window);
 

@@ -385,6 +385,23 @@ void vtkStratusPicture::ToWindowDepth(const std::vector<float>& distances, std::
   }
 }
 
+void vtkStratusPicture::FindPlace(size_t ray, float distance, double place[3], double direction[3]) const
+{
+  const stratus_camera& camera = this->Camera;
+  const size_t width = static_cast<size_t>(this->Size[0]);
+  const double u = (2.0 * static_cast<double>(ray % width) + 1.0) / this->Size[0] - 1.0;
+  const double v = (2.0 * static_cast<double>(ray / width) + 1.0) / this->Size[1] - 1.0;
+  for (int a = 0; a < 3; ++a) {
+    const double aside = u * camera.right[a] + v * camera.up[a];
+    place[a] = camera.eye[a] + (camera.parallel ? aside : 0.0);
+    direction[a] = camera.forward[a] + (camera.parallel ? 0.0 : aside);
+  }
+  vtkMath::Normalize(direction);
+  for (int a = 0; a < 3; ++a) {
+    place[a] += distance * direction[a];
+  }
+}
+
 vtkSmartPointer<vtkImageData> vtkStratusPicture::MakeImage(
   const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const
 {

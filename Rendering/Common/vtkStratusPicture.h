@@ -56,6 +56,8 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
     std::vector<uint32_t>* samples = nullptr, std::vector<unsigned char>* bytes = nullptr) const;
   // Converts distances along the rays to window depths, 0..1; 1 where nothing is.
   void ToWindowDepth(const std::vector<float>& distances, std::vector<float>& depth) const;
+  // Finds where in the world a ray, by its number among the rays, has come after a distance, and where it goes.
+  void FindPlace(size_t ray, float distance, double place[3], double direction[3]) const;
   // Makes an image of the whole viewport from values per ray: RGBA, Depth (infinite where nothing was drawn) and, unless nullptr, Samples.
   vtkSmartPointer<vtkImageData> MakeImage(
     const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const;

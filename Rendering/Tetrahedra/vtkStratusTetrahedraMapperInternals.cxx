@@ -348,6 +348,10 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   pixels.Window[1] = this->Picture.Size[0];
   pixels.Window[3] = this->Picture.Size[1];
   pixels.Depth = &this->Depth;
+  if (renderer->GetSelector()) {
+    this->Finder.Set(this->Mapper->GetDataObjectInput(), prop->GetMatrix());
+    pixels.Finder = &this->Finder;
+  }
   if (this->Options.mode == STRATUS_TETRA_COMPOSITE) {
     pixels.Cast = [this](const float* depths, std::vector<float>& rgba) {
       if (this->Picture.IsWhole(depths)) {

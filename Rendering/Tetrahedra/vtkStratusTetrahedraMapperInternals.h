@@ -4,6 +4,7 @@
 #define vtkStratusTetrahedraMapperInternals_h
 
 #include "vtkStratusBlocks.h"
+#include "vtkStratusCellFinder.h"
 #include "vtkStratusContext.h"
 #include "vtkStratusDisplay.h"
 #include "vtkStratusMeshDescription.h"
@@ -86,6 +87,7 @@ private:
   double Box[6] = { 0, 0, 0, 0, 0, 0 };
   std::vector<float> Rgba, Depth, PartDepth;
   stratus_tetra_options Options; // of the last picture
+  vtkStratusCellFinder Finder;
   vtkSmartPointer<vtkImageData> LastImage;
 };
 

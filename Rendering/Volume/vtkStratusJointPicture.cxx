@@ -89,6 +89,7 @@ bool vtkStratusJointPicture::Render(Scene& scene, std::string& error)
   std::copy_n(scene.Window, 4, pixels.Window);
   pixels.Depth = &this->Depth;
   pixels.WritesDepth = solid;
+  pixels.Finder = scene.Finder;
   if (!solid && scene.Settings->GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND) {
     this->CastPart = scene.Cast;
     pixels.Cast = [this](const float* depths, std::vector<float>& rgba) {

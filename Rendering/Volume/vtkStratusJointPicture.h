@@ -34,6 +34,7 @@ public:
     // Casts the rays. whole: it is the picture itself, not a part between peels. Returns false where it fails, with the reason in `error`,
     // or where an abort ends it. Valid in this frame, even when the scene is gone.
     CastRays Cast;
+    vtkStratusCellFinder* Finder = nullptr; // for Display, while the renderer picks
     // What Cast() tells of the whole picture.
     double Milliseconds = 0.0;
     int Window[4] = { 0, 0, 0, 0 };

@@ -92,6 +92,7 @@ public:
   vtkNew<vtkStratusVolumeMapper> Settings, Whole;
   std::vector<vtkSmartPointer<vtkStratusVolumeMapper>> Mappers; // of the blocks, in the input's order
   vtkStratusJointPicture Picture;
+  vtkStratusCellFinder Finder;
   std::string Error, Warning;
   bool IsRefined = false; // whether the input is AMR
   double Transfer2DRanges[4] = { 0., -1., 0., -1. };
@@ -254,6 +255,7 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
       this->Mappers[i]->SetArrayAccessMode(VTK_GET_ARRAY_BY_NAME);
     }
     this->Mappers[i]->SetInputDataObject(blocks[i].Grid);
+    this->Mappers[i]->Internal->PickedOf = vtkCompositeDataSet::SafeDownCast(from->GetInputDataObject(0, 0));
   }
   if (blocks.size() == 1) { // several have a context in common, and their mappers none
     this->Mappers[0]->SetDevice(this->Settings->GetDevice());
@@ -408,6 +410,10 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Render(vtkRenderer* renderer, 
   this->Scene.Cast = [this](const stratus_camera& camera, const stratus_image& image, bool whole, std::string& why) {
     return this->Cast(camera, image, whole, why);
   };
+  this->Scene.Finder = renderer->GetSelector() ? &this->Finder : nullptr;
+  if (this->Scene.Finder) {
+    this->Finder.Set(volume->GetMapper()->GetInputDataObject(0, 0), volume->GetMatrix());
+  }
   this->Renderer = renderer;
   const bool drawn = this->Picture.Render(this->Scene, error);
   this->Renderer = nullptr;

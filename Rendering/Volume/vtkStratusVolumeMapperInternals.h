@@ -3,6 +3,7 @@
 #ifndef vtkStratusVolumeMapperInternals_h
 #define vtkStratusVolumeMapperInternals_h
 
+#include "vtkStratusCellFinder.h"
 #include "vtkStratusContext.h"
 #include "vtkStratusDisplay.h"
 #include "vtkStratusInput.h"
@@ -10,6 +11,7 @@
 #include "vtkStratusVectors.h"
 #include "vtkStratusVolumeMapper.h"
 
+#include "vtkDataObject.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
 #include "vtkTable.h"
@@ -52,6 +54,7 @@ public:
   vtkStratusContext Context;
   stratus_ray_cast_report Report = stratus_ray_cast_report();
   vtkNew<vtkTable> BuildReport;
+  vtkStratusCellFinder Finder;
   vtkStratusImageView Image;
   std::vector<vtkStratusTransferView> Transfers; // at least one per independent component, or per label
   std::vector<stratus_transfer> Functions;       // those of this picture, in the core's terms
@@ -59,6 +62,7 @@ public:
   std::string LastError; // of the last picture, reported already; empty: none
   double DrawMilliseconds = 0.0;
   double UsedCoarseness = 1.0;
+  vtkSmartPointer<vtkDataObject> PickedOf;           // composite data whose block the input is; nullptr: the input is all
   double Transfer2DRanges[4] = { 0., -1., 0., -1. }; // of a function's columns and rows in place of the data's; empty: of the data
 
 private:

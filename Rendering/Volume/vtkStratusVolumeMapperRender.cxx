@@ -200,6 +200,10 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   std::copy_n(this->Report.window, 4, pixels.Window);
   pixels.Depth = &this->Depth;
   pixels.WritesDepth = this->IsFirstHit();
+  if (renderer->GetSelector()) {
+    this->Finder.Set(this->PickedOf ? this->PickedOf.Get() : this->Mapper->GetDataObjectInput(), prop->GetMatrix());
+    pixels.Finder = &this->Finder;
+  }
   if (!this->IsFirstHit() && this->Mapper->BlendMode == vtkVolumeMapper::COMPOSITE_BLEND) {
     pixels.Cast = [this, options](const float* depths, std::vector<float>& rgba) { return this->CastTo(options, depths, rgba); };
   }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Picking by hardware reads props off the window: the volume is picked where it shows, what is before it or behind what shows nothing is
-// not it, and pictures are as before. Which of its cells it is, hardware does not tell.
+// Picking by hardware reads props off the window: the volume is picked where more than 3 of 255 show, what is before it or behind what
+// shows nothing is not it, and pictures are as before. It tells the cell and the point that a ray shows first, as the picture's depths do.
 #include "mapper_testing.h"
 
 #include "vtkActor.h"
 #include "vtkHardwareSelector.h"
+#include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkPropPicker.h"
@@ -24,6 +25,29 @@ vtkSmartPointer<vtkSelection> Select(Scene& scene, bool propsOnly)
   return vtkSmartPointer<vtkSelection>::Take(selector->Select());
 }
 
+// Whether a selection has many cells, and each of them, or at the beginning of a ray's segment a cell beside it, has a point that shows.
+bool TellsShownCells(Scene& scene, vtkSelection* selection, int beside)
+{
+  auto* numbers = vtkIdTypeArray::SafeDownCast(selection->GetNode(0)->GetSelectionList());
+  const int* size = scene.Image->GetDimensions();
+  bool all = numbers && numbers->GetNumberOfValues() > 50;
+  for (vtkIdType i = 0; all && i < numbers->GetNumberOfValues(); ++i) {
+    const vtkIdType cell = numbers->GetValue(i);
+    const int at[3] = { static_cast<int>(cell % (size[0] - 1)), static_cast<int>(cell / (size[0] - 1) % (size[1] - 1)),
+      static_cast<int>(cell / ((size[0] - 1) * (size[1] - 1))) };
+    double most = 0.0;
+    for (int z = std::max(at[2] - beside, 0); z <= std::min(at[2] + 1 + beside, size[2] - 1); ++z) {
+      for (int y = std::max(at[1] - beside, 0); y <= std::min(at[1] + 1 + beside, size[1] - 1); ++y) {
+        for (int x = std::max(at[0] - beside, 0); x <= std::min(at[0] + 1 + beside, size[0] - 1); ++x) {
+          most = std::max(most, scene.Opacity->GetValue(scene.Image->GetScalarComponentAsDouble(x, y, z, 0)));
+        }
+      }
+    }
+    all = most > 0.0;
+  }
+  return all;
+}
+
 void Volume(int mode, bool coarse)
 {
   Scene scene;
@@ -34,7 +58,7 @@ void Volume(int mode, bool coarse)
   const std::vector<float> before = scene.Picture();
   int shown = 0;
   for (size_t p = 0; p < scene.Pixels(); ++p) {
-    shown += before[4 * p + 3] > 0.0f;
+    shown += before[4 * p + 3] > 3.0f / 255.0f;
   }
   const vtkSmartPointer<vtkSelection> selection = Select(scene, true);
   CHECK(selection && selection->GetNumberOfNodes() == 1, "%u props picked", selection ? selection->GetNumberOfNodes() : 0);
@@ -48,6 +72,8 @@ void Volume(int mode, bool coarse)
   const vtkSmartPointer<vtkSelection> cells = Select(scene, false);
   CHECK(cells && cells->GetNumberOfNodes() == 1 && cells->GetNode(0)->GetProperties()->Get(vtkSelectionNode::PROP()) == scene.Volume,
     "where cells are asked for, the prop is another");
+  CHECK(!cells || TellsShownCells(scene, cells, mode == vtkStratusVolumeMapper::FIRST_HIT_MODE ? 0 : 1),
+    "cells of which nothing shows are told");
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
 }
 
