@@ -72,6 +72,19 @@ int stratus::get_rank()
   return controller ? controller->GetLocalProcessId() : 0;
 }
 
+std::vector<vtkIdType> stratus::count_before(const std::vector<vtkIdType>& mine)
+{
+  const size_t kinds = mine.size(), ranks = static_cast<size_t>(count_ranks());
+  std::vector<vtkIdType> all(kinds * ranks), before(kinds, 0);
+  if (ranks > 1) {
+    vtkMultiProcessController::GetGlobalController()->AllGather(mine.data(), all.data(), static_cast<vtkIdType>(kinds));
+  }
+  for (size_t i = 0; i < kinds * static_cast<size_t>(get_rank()); ++i) {
+    before[i % kinds] += all[i];
+  }
+  return before;
+}
+
 bool stratus::join_bounds(vtkMultiProcessController* controller, const double mine[6], double whole[6])
 {
   double signed_bounds[6], least[6]; // upper bounds have their sign changed

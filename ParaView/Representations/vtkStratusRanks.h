@@ -3,8 +3,10 @@
 #pragma once
 
 #include "vtkSmartPointer.h"
+#include "vtkType.h"
 
 #include <string>
+#include <vector>
 
 class vtkDataObject;
 class vtkInformation;
@@ -20,6 +22,9 @@ int count_ranks();
 
 // This one's number, 0 without MPI.
 int get_rank();
+
+// Returns, of what this rank has so many of each, how many the ranks before it have. Every rank must call it.
+std::vector<vtkIdType> count_before(const std::vector<vtkIdType>& mine);
 
 // Gives the bounds about those of all ranks, each of which may be uninitialized. Returns false, and leaves `whole`, if all are. Every rank
 // of the controller must call it.

@@ -2,7 +2,7 @@
 """Draws scenes on so many ranks: pvbatch --sym draw_on_ranks.py PLUGIN FOLDER, by mpiexec. Pictures are FOLDER/NAME-RANKS.png. One rank
 writes the data; more find it there. FOLDER/differences-RANKS gets a line a scene: the largest difference to one rank's picture, what it may
 be, how many pixels differ by more than 1, how many may, and how many thousandths of the lit pixels differ. What differs, 16 times as large,
-is FOLDER/NAME-RANKS-difference.png."""
+is FOLDER/NAME-RANKS-difference.png. Without a scene's name, up to 3 ranks also write what filters number (write_numbers)."""
 import os
 import sys
 
@@ -148,6 +148,31 @@ MORE = {"structured-shade": (2, 2), "image-isosurface": (43, 1), "image-isosurfa
         "rectilinear-second-array": (2, 1)}
 wanted = sys.argv[3:]
 
+
+
+def write_numbers():
+    """FOLDER/blocks-RANKS-RANK.npy: of the blocks of distance maps, of points and of cells, those that this rank gives: number, distance, place.
+    FOLDER/nodes-RANKS-RANK.npy: the numbers of the tree's nodes and leaves."""
+    blocks = []
+    for of, kind in ("POINTS", "Full"), ("POINTS", "Octant"), ("CELLS", "Full"):
+        waves = simple.Wavelet(WholeExtent=[-10, 13, -9, 10, -10, 11])
+        source = simple.PointDatatoCellData(Input=waves) if of == "CELLS" else waves
+        maps = simple.StratusDistanceMap(Input=source, Range=[250, 300], Kind=kind)
+        maps.Scalars = [of, "RTData"]
+        maps.UpdatePipeline()
+        data = maps.GetClientSideObject().GetOutputDataObject(0)
+        for cell in range(data.GetNumberOfCells()):
+            values = [data.GetCellData().GetArray(name).GetTuple1(cell) for name in ("StratusGlobalBlock", "Distance")]
+            blocks.append([1000 * (of == "CELLS") + 2000 * (kind == "Octant") + values[0], values[1], *data.GetCell(cell).GetBounds()])
+    numpy.save(os.path.join(folder, f"blocks-{ranks}-{rank}.npy"), numpy.array(blocks).reshape(-1, 8))
+    tree = simple.StratusHybridTree(Input=simple.Wavelet(WholeExtent=[-10, 13, -9, 10, -10, 11]), Range=[250, 300], Method="SAH")
+    tree.Scalars = ["POINTS", "RTData"]
+    tree.UpdatePipeline()
+    boxes = tree.GetClientSideObject().GetOutputDataObject(1).GetCellData()
+    arrays = [vtk_to_numpy(boxes.GetArray(name)) for name in ("StratusGlobalNode", "StratusGlobalLeaf", "Kind")]
+    numpy.save(os.path.join(folder, f"nodes-{ranks}-{rank}.npy"), numpy.stack(arrays))
+
+
 simple.LoadPlugin(plugin, ns=vars(simple))
 simple._DisableFirstRenderCameraReset()
 differences = []
@@ -174,3 +199,5 @@ for number, (name, file, of, changes) in enumerate(SCENES):
         differences.append(f"{name} {of_pixel.max()} {most} {(of_pixel > 1).sum()} {pixels} {share}")
 if rank == 0 and ranks > 1:
     open(os.path.join(folder, f"differences-{ranks}"), "w").write("\n".join(differences) + "\n")
+if not wanted and ranks < 4:
+    write_numbers()
