@@ -11,6 +11,7 @@
 #include "vtkSMProxyIterator.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMTrace.h"
 
 namespace {
 
@@ -18,7 +19,8 @@ void ask(vtkObject*, unsigned long, void* representation, void*)
 {
   vtkSMSessionProxyManager* proxies =
     vtkSMProxyManager::IsInitialized() ? vtkSMProxyManager::GetProxyManager()->GetActiveSessionProxyManager() : nullptr;
-  if (!proxies) {
+  // A trace takes what changes while the panel's settings do for settings, too, and a script that sets it ends in an error.
+  if (!proxies || vtkSMTrace::GetActiveTracer()) {
     return;
   }
   vtkNew<vtkSMProxyIterator> each;
