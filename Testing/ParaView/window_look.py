@@ -8,7 +8,7 @@ import subprocess
 import traceback
 
 import numpy
-from paraview import simple
+from paraview import simple, smtrace
 from paraview.vtk import vtkIOXML
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
@@ -49,10 +49,21 @@ def look():
         file.write(json.dumps(told, default=str) + "\n")
 
 
+def start_trace():
+    global tracer
+    tracer = smtrace.start_trace()
+
+
+def stop_trace():
+    """Writes trace.py, what the window has recorded since start_trace()."""
+    with open(os.path.join(folder, "trace.py"), "w", encoding="utf-8") as file:
+        file.write(smtrace.stop_trace())
+
+
 def run(name):
     """What fails here would show in the shell's panel alone."""
     try:
-        {"look": look, "write_series": write_series}[name]()
+        {"look": look, "write_series": write_series, "start_trace": start_trace, "stop_trace": stop_trace}[name]()
     except Exception:
         with open(os.path.join(folder, "errors"), "a", encoding="utf-8") as file:
             traceback.print_exc(file=file)
