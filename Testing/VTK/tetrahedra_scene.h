@@ -81,7 +81,11 @@ struct GridScene : Scene {
     this->Render();
     vtkImageData* image = this->Tetrahedra->GetLastImage();
     const float* rgba = image ? vtkFloatArray::SafeDownCast(image->GetPointData()->GetArray("RGBA"))->GetPointer(0) : nullptr;
-    return rgba ? std::vector<float>(rgba, rgba + 4 * this->Pixels()) : std::vector<float>();
+    std::vector<float> picture; // gcc 14 takes one of two temporaries for no memory of its own
+    if (rgba) {
+      picture.assign(rgba, rgba + 4 * this->Pixels());
+    }
+    return picture;
   }
   double GridLight()
   {
