@@ -109,7 +109,7 @@ def masks():
             check(numpy.array_equal(stratus.show(wild, **options), stratus.show(holes.astype(dtype), **options)), f"masked {fill} as NaN")
             check(numpy.array_equal(stratus.show(wild, **plain), stratus.show(holes.astype(dtype), **plain)), f"masked {fill} is in no range")
             check(numpy.isclose(wild.data[0, 0, 0], fill, rtol=1e-6, equal_nan=True), "the array stays")
-    wild = numpy.ma.masked_array(numpy.where(mask, 1e300, field), mask)
+    wild = numpy.ma.masked_array(numpy.where(mask, 1e300, field.astype(float)), mask)
     check(numpy.array_equal(stratus.show(wild, **plain), stratus.show(holes.astype(float), **plain)), "masked 1e300")
     whole = numpy.ma.masked_array(numpy.where(mask, 30000, (100 * field)).astype(numpy.int16), mask)
     few = numpy.ma.masked_array((100 * field).astype(numpy.int16), mask)
