@@ -214,6 +214,7 @@ struct Source {
   std::vector<Node> Nodes;
   bool Straight = true; // linear between nodes of midpoint .5 and sharpness 0
   bool Logarithmic = false;
+  bool TakesLast = false; // of several nodes at a place, else the first one
   Function Whole;
   std::function<Function(const Node&, const Node&)> Piece;
   // Adds the points between two nodes instead of Piece, if set.
@@ -236,6 +237,9 @@ void Translate(const Source& source, Points& points)
     size_t last = first;
     while (last + 1 < nodes.size() && nodes[last + 1].X <= x) {
       ++last;
+    }
+    if (last > first && source.TakesLast) {
+      at = nodes[last].C;
     }
     first = last + 1;
     if (first == nodes.size()) { // VTK may round a logarithmic end to beyond the range
@@ -260,6 +264,21 @@ void Translate(const Source& source, Points& points)
   }
 }
 
+// Asks VTK which of several nodes at a place an opacity is taken from: in 9.1 the first one, in 9.3 the last.
+bool TakesLast()
+{
+  static const bool last = [] {
+    vtkNew<vtkPiecewiseFunction> steps;
+    steps->AllowDuplicateScalarsOn();
+    for (const double y : { 0.0, 1.0 }) {
+      steps->AddPoint(0.0, y);
+      steps->AddPoint(2.0 * y - 1.0, y);
+    }
+    return steps->GetValue(0.0) > 0.5;
+  }();
+  return last;
+}
+
 Source SourceOf(vtkPiecewiseFunction* function)
 {
   Source source;
@@ -270,6 +289,7 @@ Source SourceOf(vtkPiecewiseFunction* function)
   }
   source.Logarithmic = function->GetUseLogScale();
   source.Straight = !source.Logarithmic;
+  source.TakesLast = TakesLast();
   source.Whole = [function](double x) {
     const double y = function->GetValue(x);
     return Color{ y, y, y };

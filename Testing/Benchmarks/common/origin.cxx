@@ -126,8 +126,9 @@ void read_origin(const std::string& line, std::vector<origin>& origins)
       o.scenes = scenes_in(value);
       return;
     }
-    for (const auto& field : { std::make_pair("cores", &o.cores), std::make_pair("compiler", &o.compiler),
-           std::make_pair("commit", &o.commit), std::make_pair("date", &o.date) }) {
+    const std::pair<const char*, std::string*> fields[] = { { "cores", &o.cores }, { "compiler", &o.compiler }, { "commit", &o.commit },
+      { "date", &o.date } };
+    for (const auto& field : fields) {
       if (name == field.first) {
         *field.second = value;
       }
