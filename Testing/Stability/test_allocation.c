@@ -3,6 +3,7 @@
  * same objects give the right result at the next attempt. */
 #include "device_state.h"
 #include "faulty_allocator.h"
+#include "pocl.h"
 #include "small_scene.h"
 #include "testing.h"
 
@@ -14,12 +15,17 @@
 
 #define REQUESTS_MAX 500 /* for one call: far more than any needs, so that a loop which never succeeds ends */
 
-/* Device "gpu": PoCL that claims to be a GPU, so that the device builds the structures, too. */
+static const char* name_of(const char* device)
+{
+  return strcmp(device, "host") == 0 ? device : pocl_name();
+}
+
+/* Device "pocl", and "gpu": PoCL that claims to be a GPU, so that the device builds the structures, too. */
 static stratus_context* open_context(faulty_allocator* allocator, const char* device)
 {
   const bool as_gpu = strcmp(device, "gpu") == 0;
   stratus_context* context = NULL;
-  stratus_context_options options = faulty_options(allocator, as_gpu ? "pthread" : device);
+  stratus_context_options options = faulty_options(allocator, name_of(device));
   options.threads = 1; /* in hundreds of tiny calls threads would only wait for each other */
   if (stratus_context_create(&options, &context, NULL, 0) != STRATUS_OK) {
     return NULL;
@@ -53,7 +59,7 @@ static void a_context_is_made_whole_or_not_at_all(void** state)
   const char* device = *state;
   for (int64_t n = 1; n < REQUESTS_MAX; ++n) {
     faulty_allocator allocator = { .fail_at = n };
-    stratus_context_options options = faulty_options(&allocator, device);
+    stratus_context_options options = faulty_options(&allocator, name_of(device));
     stratus_context* context = NULL;
     char message[256];
     const stratus_status status = stratus_context_create(&options, &context, message, sizeof message);
@@ -218,7 +224,7 @@ static void a_scene_is_made_whole_or_not_at_all(void** state)
 
 #define ON(device, test) cmocka_unit_test_prestate(test, device)
 
-static char host[] = "host", pocl[] = "pthread", gpu[] = "gpu";
+static char host[] = "host", pocl[] = "pocl", gpu[] = "gpu";
 
 int test_allocation(void)
 {
