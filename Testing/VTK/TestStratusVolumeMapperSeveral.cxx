@@ -241,7 +241,7 @@ void Picking()
   const std::vector<float> before = scene.Mixed();
   int shown = 0;
   for (size_t p = 0; p < scene.Pixels(); ++p) {
-    shown += before[4 * p + 3] > 0.0f;
+    shown += before[4 * p + 3] > 3.0f / 255.0f; // as VTK picks
   }
   vtkNew<vtkHardwareSelector> selector;
   selector->SetRenderer(scene.Renderer);
