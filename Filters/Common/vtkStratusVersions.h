@@ -4,6 +4,7 @@
 
 #include "vtkCellArray.h"
 #include "vtkIdTypeArray.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkUniformGrid.h"
 #include "vtkUniformGridAMR.h"
 #include "vtkUnsignedCharArray.h"
@@ -38,6 +39,17 @@ inline vtkDataArray* vtkStratusCellTypes(vtkUnstructuredGrid* grid)
   return grid->GetCellTypes();
 #else
   return grid->GetCellTypesArray();
+#endif
+}
+
+// Finds the cell of a grid that a place is in, and where in it. Returns 0 outside.
+inline int vtkStratusFindCell(vtkRectilinearGrid* grid, double place[3], int ijk[3], double within[3])
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+  const double* at = place;
+  return grid->ComputeStructuredCoordinates(at, ijk, within);
+#else
+  return grid->ComputeStructuredCoordinates(place, ijk, within);
 #endif
 }
 

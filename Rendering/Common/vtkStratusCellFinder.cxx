@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusCellFinder.h"
 
+#include "vtkStratusVersions.h"
+
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
@@ -66,7 +68,7 @@ vtkIdType FindInRectilinear(vtkRectilinearGrid* grid, const double bounds[6], co
   for (int a = 0; a < 3; ++a) {
     within[a] = std::min(std::max(place[a], bounds[2 * a]), bounds[2 * a + 1]);
   }
-  if (!grid->ComputeStructuredCoordinates(within, ijk, share)) {
+  if (!vtkStratusFindCell(grid, within, ijk, share)) {
     return -1;
   }
   for (int a = 0; points && a < 3; ++a) {
