@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """stratus_volume's octree of boxes, partition and visibility order of tetrahedra, against brute force in NumPy."""
 from checking import check, done, refuse
+from lattice import cubes
 
 import numpy
 
@@ -90,16 +91,10 @@ def asked():
     refuse(ValueError, "", tree.along_ray, (0, 0, 0), (0, 0, 0))
 
 
-def cubes(shape):
-    """Points and tetrahedra of a lattice, six for each cube, moved a little so that no plane holds many faces."""
-    k, j, i = numpy.indices(shape)
-    places = numpy.stack([i, j, k], axis=-1).reshape(-1, 3) + random.uniform(-0.15, 0.15, (numpy.prod(shape), 3))
-    number = numpy.arange(len(places)).reshape(shape)
-    first = number[:-1, :-1, :-1].reshape(-1)
-    steps = numpy.array([1, shape[2], shape[1] * shape[2]])
-    cells = [numpy.stack([first, first + steps[a], first + steps[a] + steps[b], first + steps.sum()], axis=1)
-             for a in range(3) for b in range(3) if a != b]
-    return places, numpy.concatenate(cells)
+def moved_cubes(shape):
+    """Points and tetrahedra of a lattice, moved a little so that no plane holds many faces."""
+    places, cells = cubes(shape)
+    return places + random.uniform(-0.15, 0.15, places.shape), cells
 
 
 def volumes(places, cells):
@@ -133,7 +128,7 @@ def in_order(places, cells, order, eye):
 
 
 def partitioned():
-    places, cells = cubes((6, 7, 8))
+    places, cells = moved_cubes((6, 7, 8))
     whole = volumes(places, cells)
     for options in dict(depth=3, leaf_cells=1), dict(depth=2, rule="paper", leaf_cells=1), dict(depth=0):
         cut = partition(places, cells, device="host", **options)
@@ -166,7 +161,7 @@ def partitioned():
 
 
 def ordered():
-    places, cells = cubes((6, 7, 8))
+    places, cells = moved_cubes((6, 7, 8))
     cut = partition(places, cells, depth=2, leaf_cells=1, device="host")
     for order, points, own in (VisibilityOrder(places, cells, device="host"), places, cells), (VisibilityOrder(cut), cut.points, cut.tetrahedra):
         for eye in (20, -30, 12), (3.5, 3, 2.5), (-9, 4, 2):

@@ -3,6 +3,7 @@
 import warnings
 
 from checking import check, done, refuse
+from lattice import cubes
 
 import numpy
 
@@ -96,18 +97,6 @@ def hits():
     refuse(ValueError, "method", Tree, solid, method="bush")
     refuse(ValueError, "max_depth", Tree, solid, max_depth=100)
     refuse(ValueError, "", Tree.load, b"no tree at all")
-
-
-def cubes(shape):
-    """Points and tetrahedra of a lattice, six for each cube."""
-    k, j, i = numpy.indices(shape)
-    places = numpy.stack([i, j, k], axis=-1).reshape(-1, 3).astype(float)
-    number = numpy.arange(len(places)).reshape(shape)
-    first = number[:-1, :-1, :-1].reshape(-1)
-    steps = numpy.array([1, shape[2], shape[1] * shape[2]])
-    cells = [numpy.stack([first, first + steps[a], first + steps[a] + steps[b], first + steps.sum()], axis=1)
-             for a in range(3) for b in range(3) if a != b]
-    return places, numpy.concatenate(cells)
 
 
 def tetrahedra():
