@@ -110,7 +110,7 @@ void vtkStratusPieceDistanceMapFilter::SetSettings(vtkStratusDistanceMapFilter* 
 // Sets the blocks of the whole in which this rank's piece shows something. Each stretch of the piece begins with a block, or lies in one.
 // Pieces and stretches share points, so that the values of a block's parts overlap, and it is occupied where a part of it is.
 bool vtkStratusPieceDistanceMapFilter::FindOccupied(
-  vtkImageData* piece, bool cells, const Lattice& lattice, std::vector<unsigned char>& occupied, std::string& error)
+  vtkImageData* piece, bool cells, const Lattice& lattice, std::vector<unsigned char>& occupied)
 {
   const auto values = vtkSmartPointer<vtkImageData>::Take(piece->NewInstance());
   values->ShallowCopy(piece);
@@ -144,8 +144,7 @@ bool vtkStratusPieceDistanceMapFilter::FindOccupied(
         part->Update();
         auto* map = vtkImageData::SafeDownCast(part->GetOutputDataObject(0));
         vtkDataArray* distances = map ? map->GetCellData()->GetArray("Distance") : nullptr;
-        if (!distances) {
-          error = "a part of its piece is not taken";
+        if (!distances) { // the part has said why
           return false;
         }
         int size[3];
@@ -278,16 +277,15 @@ int vtkStratusPieceDistanceMapFilter::RequestData(vtkInformation* request, vtkIn
   Lattice lattice;
   for (int a = 0; a < 3; ++a) {
     lattice.First[a] = least[2 * a];
-    lattice.Last[a] = cells ? std::max(-least[2 * a + 1] - 1, least[2 * a]) : -least[2 * a + 1];
-    lattice.Blocks[a] = std::max(1, (lattice.Last[a] - lattice.First[a] + this->BlockSize - 1) / this->BlockSize);
+    const int last = cells ? std::max(-least[2 * a + 1] - 1, least[2 * a]) : -least[2 * a + 1];
+    lattice.Blocks[a] = std::max(1, (last - lattice.First[a] + this->BlockSize - 1) / this->BlockSize);
   }
   std::vector<unsigned char> occupied(static_cast<size_t>(lattice.GetCount()), 0), all(occupied.size()), distances;
-  std::string error;
-  int failed = any && !this->FindOccupied(piece, cells, lattice, occupied, error), any_failed = 0;
+  int failed = any && !this->FindOccupied(piece, cells, lattice, occupied), any_failed = 0;
   ranks->AllReduce(occupied.data(), all.data(), lattice.GetCount(), vtkCommunicator::MAX_OP);
   failed = failed || !this->FindDistances(lattice, all, distances);
   ranks->AllReduce(&failed, &any_failed, 1, vtkCommunicator::MAX_OP);
-  if (any_failed) { // the part's own filter has said why
+  if (any_failed) {
     return 0;
   }
   if (any) {

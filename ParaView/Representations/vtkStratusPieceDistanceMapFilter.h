@@ -16,7 +16,6 @@
 #include "StratusParaViewRepresentationsModule.h" // For export macro
 #include "vtkStratusDistanceMapFilter.h"
 
-#include <string> // For std::string
 #include <vector> // For std::vector
 
 class vtkImageData;
@@ -40,14 +39,13 @@ private:
 
   // The blocks of the whole: from which value of it on, and how many, along each axis.
   struct Lattice {
-    int First[3], Last[3]; // values of the whole
-    int Blocks[3];
+    int First[3], Blocks[3];
     vtkIdType GetCount() const { return static_cast<vtkIdType>(this->Blocks[0]) * this->Blocks[1] * this->Blocks[2]; }
     vtkIdType GetNumber(int i, int j, int k) const { return i + this->Blocks[0] * (j + static_cast<vtkIdType>(this->Blocks[1]) * k); }
   };
 
   void SetSettings(vtkStratusDistanceMapFilter* filter, int kind, int block);
-  bool FindOccupied(vtkImageData* piece, bool cells, const Lattice& lattice, std::vector<unsigned char>& occupied, std::string& error);
+  bool FindOccupied(vtkImageData* piece, bool cells, const Lattice& lattice, std::vector<unsigned char>& occupied);
   bool FindDistances(const Lattice& lattice, const std::vector<unsigned char>& occupied, std::vector<unsigned char>& distances);
   void Fill(vtkImageData* piece, bool cells, const Lattice& lattice, const std::vector<unsigned char>& occupied,
     const std::vector<unsigned char>& distances, vtkImageData* output);

@@ -363,6 +363,16 @@ stratus_image vtkStratusPicture::MakeRoom(std::vector<float>& rgba, std::vector<
   return image;
 }
 
+namespace {
+// Gives where a ray goes, which is at u and v in -1..1 in the picture, at the length that the camera has there.
+inline void FindDirection(const stratus_camera& camera, double u, double v, double direction[3])
+{
+  for (int a = 0; a < 3; ++a) {
+    direction[a] = camera.forward[a] + (camera.parallel ? 0.0 : u * camera.right[a] + v * camera.up[a]);
+  }
+}
+} // namespace
+
 void vtkStratusPicture::ToWindowDepth(const std::vector<float>& distances, std::vector<float>& depth) const
 {
   const stratus_camera& camera = this->Camera;
@@ -373,12 +383,9 @@ void vtkStratusPicture::ToWindowDepth(const std::vector<float>& distances, std::
     for (int i = 0; i < width; ++i) {
       const double u = (2.0 * i + 1.0) / width - 1.0;
       const size_t at = static_cast<size_t>(j) * width + i;
-      double square = 0.0;
-      for (int a = 0; a < 3; ++a) {
-        const double along = camera.forward[a] + (camera.parallel ? 0.0 : u * camera.right[a] + v * camera.up[a]);
-        square += along * along;
-      }
-      const double k = distances[at] / std::sqrt(square);
+      double direction[3];
+      FindDirection(camera, u, v, direction);
+      const double k = distances[at] / vtkMath::Norm(direction);
       const double z = (k - camera.near_k) / (camera.far_k - camera.near_k) * (camera.parallel ? 1.0 : camera.far_k / k);
       depth[at] = std::isfinite(k) && z < 1.0 ? static_cast<float>(std::max(0.0, z)) : 1.0f;
     }
@@ -391,14 +398,10 @@ void vtkStratusPicture::FindPlace(size_t ray, float distance, double place[3], d
   const size_t width = static_cast<size_t>(this->Size[0]);
   const double u = (2.0 * static_cast<double>(ray % width) + 1.0) / this->Size[0] - 1.0;
   const double v = (2.0 * static_cast<double>(ray / width) + 1.0) / this->Size[1] - 1.0;
-  for (int a = 0; a < 3; ++a) {
-    const double aside = u * camera.right[a] + v * camera.up[a];
-    place[a] = camera.eye[a] + (camera.parallel ? aside : 0.0);
-    direction[a] = camera.forward[a] + (camera.parallel ? 0.0 : aside);
-  }
+  FindDirection(camera, u, v, direction);
   vtkMath::Normalize(direction);
   for (int a = 0; a < 3; ++a) {
-    place[a] += distance * direction[a];
+    place[a] = camera.eye[a] + (camera.parallel ? u * camera.right[a] + v * camera.up[a] : 0.0) + distance * direction[a];
   }
 }
 
