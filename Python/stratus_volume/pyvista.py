@@ -2,14 +2,15 @@
 """Volumes of Stratus in pyvista's scenes: `plotter.stratus.add_volume(grid)`, with the words of `plotter.add_volume`.
 
 The picture is drawn by the core and laid over the scene's opaque geometry by its depth. No class of VTK is compiled for this, so that any
-VTK from 9.1 on will do. pyvista from 0.48 on finds the component by itself; `add_volume(plotter, grid)` of this module is the same in
-pyvista before.
+VTK from 9.1 on will do. pyvista from 0.48 on finds the component by itself; before, `import stratus_volume.pyvista` adds it.
+`add_volume(plotter, grid)` of this module is the same.
 
 Volumes of one renderer are drawn together: up to eight in mode composite mix along the rays, others lie one before the other.
 
 What it costs: depth is read from the window, and the picture is handed to it as a texture of bytes, in each frame. What cannot be right:
 translucent geometry is always behind the volume, and picking does not see it.
 """
+import functools
 import warnings
 import weakref
 
@@ -32,6 +33,8 @@ numpy_support, core, data_model = (of_package(_package, name) for name in ("util
 pipeline, drawing = (of_package(_package, name) for name in ("vtkCommonExecutionModel", "vtkRenderingCore"))
 VTKPythonAlgorithmBase = of_package(_package, "util.vtkAlgorithm").VTKPythonAlgorithmBase
 
+# pyvista from 0.48 on has components, and tells them that their plotter closes.
+_COMPONENTS = hasattr(pyvista, "register_plotter_component")
 _BLENDINGS = ("composite", "maximum", "minimum", "average", "additive", "isosurface", "slice")
 _MAPPERS = ("fixed_point", "gpu", "open_gl", "smart", "ugrid")
 _BLOCKS = ("Reds", "Greens", "Blues", "Greys", "Oranges", "Purples")
@@ -549,6 +552,13 @@ class StratusComponent:
 
     def __init__(self, plotter):
         self._plotter = plotter
+        if not _COMPONENTS:
+            close = plotter.close
+
+            def closing():
+                self.__plotter_close__()
+                close()
+            plotter.close = closing
 
     @property
     def volumes(self):
@@ -564,5 +574,8 @@ class StratusComponent:
 
 
 StratusComponent.add_volume.__doc__ = add_volume.__doc__
-if hasattr(pyvista, "register_plotter_component"):
+if _COMPONENTS:
     pyvista.register_plotter_component("stratus")(StratusComponent)
+else:
+    pyvista.BasePlotter.stratus = functools.cached_property(StratusComponent)
+    pyvista.BasePlotter.stratus.__set_name__(pyvista.BasePlotter, "stratus")

@@ -125,7 +125,7 @@ def words():
     plain = scene(None)
     alpha = numpy.linspace(0, 200, grid.n_points)
     rgba = numpy.stack([field.ravel() / 277 * 255, 255 - field.ravel() / 277 * 255, numpy.full(grid.n_points, 90), alpha], axis=1).astype(numpy.uint8)
-    turned = [[1.2, -0.9, 0, 2], [0.9, 1.2, 0, 0], [0, 0, 1.5, -3], [0, 0, 0, 1]]
+    turned = numpy.array([[1.2, -0.9, 0, 2], [0.9, 1.2, 0, 0], [0, 0, 1.5, -3], [0, 0, 0, 1]])
     for more in dict(log_scale=True), dict(n_colors=5), dict(scalars=rgba), dict(user_matrix=turned), dict(clim=200.0), dict(categories=7), \
             dict(cmap=pyvista.LookupTable("magma", alpha_range=(0, 0.9), scalar_range=(50, 250))), dict(scalars=field.ravel()[::-1]), dict(opacity="foreground"), \
             dict(cmap=["red", "white", "blue"]):
@@ -212,7 +212,9 @@ def several():
 
 
 def data():
-    for volume in field.transpose(2, 1, 0), grid.cast_to_unstructured_grid(), grid.cast_to_structured_grid(), grid.cast_to_rectilinear_grid(), \
+    structured = grid.cast_to_structured_grid()
+    structured.set_active_scalars("RTData")  # as pyvista before 0.48 makes none active there
+    for volume in field.transpose(2, 1, 0), grid.cast_to_unstructured_grid(), structured, grid.cast_to_rectilinear_grid(), \
             grid.point_data_to_cell_data(), stratus_volume.Volume(grid):
         plotter = pyvista.Plotter(off_screen=True, window_size=(100, 80))
         plotter.add_text("Annotation")
