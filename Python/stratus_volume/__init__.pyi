@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from collections.abc import Sequence
 from os import PathLike
-from typing import Any, Literal, NamedTuple, Union
+from typing import Any, Callable, Literal, NamedTuple, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 _Function = Union[float, Sequence[Sequence[float]], None]
 _Points = Union[_Function, Sequence[_Function]]
-_OneColor = Union[Sequence[float], Sequence[Sequence[float]], None]
+_OneColor = Union[Sequence[float], Sequence[Sequence[float]], str, Callable[[float], Sequence[float]], None]
 _Colors = Union[_OneColor, Sequence[_OneColor]]
 _Device = Union[str, int, "Context", None]
 _Progress = Any  # a function of a stage and a fraction, a bar of tqdm's protocol, or None

@@ -8,7 +8,7 @@ import numpy
 from . import _declarations as c
 from ._core import address, library
 from ._look import Transfer, set_shading, value_interval
-from ._values import dot, is_number, length_of, no_opacity, number, numbers, positive, warn
+from ._values import dot, is_color_map, is_number, length_of, no_opacity, number, numbers, positive, warn
 
 # Colours of independent components that are given none: far from each other, and about as bright.
 _HUES = ((0.95, 0.45, 0.2), (0.25, 0.55, 0.95), (0.4, 0.8, 0.35), (0.85, 0.5, 0.85))
@@ -72,7 +72,7 @@ def functions_of(grid, opacity, color, gradient_opacity, weights, dependent, loo
             result.append(Function(f"label {label}", *(look[name] for name in _LOOK), grid.spread))
         return result
     opacities = _each(opacity, count, lambda value: is_number(value) or _rows_of(value, 2), "opacity")
-    colors = _each(color, count, lambda value: _rows_of([value], 3) or _rows_of(value, 4), "color")
+    colors = _each(color, count, lambda value: is_color_map(value) or _rows_of([value], 3) or _rows_of(value, 4), "color")
     gradients = _each(gradient_opacity, count, lambda value: _rows_of(value, 2), "gradient_opacity")
     shares = _each(weights, count, is_number, "weights")
     for share in shares:

@@ -216,13 +216,42 @@ def opacity_points(opacity, low, high, common, power):
     return pairs(opacity, 2, "opacity", "a number in 0..1, or pairs of a value and an opacity in 0..1", power)
 
 
+def is_color_map(color):
+    """Whether it is a name, or a function of 0..1, as matplotlib's colour maps are."""
+    return isinstance(color, str) or callable(color)
+
+
+def _color_map(name):
+    """matplotlib's colour map, or a single colour, of a name."""
+    try:
+        import matplotlib
+        from matplotlib.colors import to_rgb
+    except ImportError:
+        raise ValueError(f"color is {name!r}: names are those of matplotlib, which is not installed") from None
+    if name in matplotlib.colormaps:
+        return matplotlib.colormaps[name]
+    try:
+        return to_rgb(name)
+    except ValueError:
+        raise ValueError(f"color is {name!r}, which is no colour map and no colour of matplotlib's") from None
+
+
 def color_points(color, low, high, power):
     """Returns tuples of value, red, green and blue. A single colour is that of all values."""
+    if isinstance(color, str):
+        color = _color_map(color)
+    if callable(color):
+        # As many as matplotlib's colour maps have. One value alone gets the middle.
+        places = numpy.linspace(0, 1, 256) if low < high else [0.5]
+        rows = [numbers(tuple(color(float(place)))[:3], 3, "a colour of a colour map") for place in places]
+        if not all(0 <= part <= 1 for row in rows for part in row):
+            raise ValueError(f"color is {color!r}, it must return red, green and blue in 0..1")
+        return [(low + (high - low) * float(place), *row) for place, row in zip(places, rows)]
     if color is None:
         middle = low + 0.5 * (high - low)
         points = [(low, 0.23, 0.3, 0.75), (middle, 0.87, 0.87, 0.87), (high, 0.9, 0.45, 0.15)]
         return points if low < high else points[1:2]
-    wanted = "one (r, g, b) or some (value, r, g, b), with r, g and b in 0..1"
+    wanted = "one (r, g, b) or some (value, r, g, b), with r, g and b in 0..1, or a colour map"
     try:
         if len(color) == 3 and all(is_number(part) for part in color):
             if not all(0 <= part <= 1 for part in color):

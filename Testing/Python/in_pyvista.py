@@ -211,6 +211,13 @@ def several():
     check(numpy.abs(colored - blocks).max() > 50, "a colour for each block")
 
 
+def named_colors():
+    import matplotlib
+    host = dict(size=(80, 60), device="host")
+    for name, same in ("viridis", matplotlib.colormaps["viridis"]), ("red", (1, 0, 0)):
+        check(numpy.array_equal(stratus_volume.render(field, color=name, **host).rgba, stratus_volume.render(field, color=same, **host).rgba), name)
+
+
 def data():
     structured = grid.cast_to_structured_grid()
     structured.set_active_scalars("RTData")  # as pyvista before 0.48 makes none active there
@@ -231,5 +238,6 @@ named()
 words()
 reacts()
 several()
+named_colors()
 data()
 done()

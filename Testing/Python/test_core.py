@@ -62,6 +62,12 @@ def pictures():
             dict(jitter=True, sample_distance=2), dict(average_range=(0.5, 1), mode="average"), dict(opacity=0.9):
         changed = render(field, **{**host, **option})
         check(not numpy.array_equal(changed.rgba, render(field, **host).rgba), f"{option} changes the picture")
+    low, high = float(field.min()), float(field.max())
+    ends, mapped = [(low, 0, 0.25, 1), (high, 1, 0.75, 0)], lambda place: (place, 0.25 + 0.5 * place, 1 - place, 1.0)  # as matplotlib's, with an alpha
+    apart = numpy.abs(render(field, color=mapped, **host).rgba - render(field, color=ends, **host).rgba).max()
+    check(apart < 1e-3, f"a colour map from the smallest value to the largest: {apart}")
+    twice = render(numpy.stack([field, field], axis=3), color=[mapped, mapped], **host).rgba
+    check(numpy.abs(twice - render(numpy.stack([field, field], axis=3), color=[ends, ends], **host).rgba).max() < 1e-3, "for each component")
     for structure in "none", "block", "distance", "octant", "hybrid":
         same = render(field, structure=structure, audit=True, sampling="midpoint", sample_distance=0.5, **host)
         check(same.counters["structure"] == structure and same.counters["differing_pixels"] == 0, f"{structure} skips what shows nothing")
@@ -123,9 +129,9 @@ def refusals():
                            ("gradient_opacity", dict(gradient_opacity=[(0, 2)])), ("average_range", dict(average_range=(2, 1), mode="average")),
                            ("ambient", dict(shade=dict(ambient=-1))), ("contour", dict(mode="isosurface")),
                            ("sample_distance", dict(sample_distance=-1)), ("opacity", dict(opacity=10**400)), ("spacing", dict(spacing=(10**400, 1, 1))),
-                           ("background", dict(background=(2, 0, 0)))]:
+                           ("background", dict(background=(2, 0, 0))), ("color", dict(color="no such colour")), ("color", dict(color=lambda place: (2, 0, 0)))]:
         refuse(ValueError, words.split("_")[0], show, field, device="host", **options)
-    for options in dict(unit_distance="x"), dict(tolerance="x"), dict(size=5), dict(opacity="x"), dict(color="red"), dict(crop=3), \
+    for options in dict(unit_distance="x"), dict(tolerance="x"), dict(size=5), dict(opacity="x"), dict(color=3), dict(crop=3), \
             dict(clip_planes=3), dict(contours=1j), dict(average_range=3):
         refuse(TypeError, next(iter(options)), show, field, device="host", **options)
     refuse(stratus_volume.Unsupported, "nearest", render, field, mode="isosurface", contours=[0.5], interpolation="nearest", device="host")
