@@ -291,12 +291,13 @@ def refusals():
     image = vtk.vtkImageData()
     image.SetDimensions(4, 4, 4)
     refuse(ValueError, "no scalars", show, image)
-    for options in dict(opacity=1j), dict(opacity="x"), dict(color=3), dict(color="red"), dict(camera=3), dict(camera=dict(zoom="x")), \
+    for options in dict(opacity=1j), dict(opacity="x"), dict(color=3), dict(camera=3), dict(camera=dict(zoom="x")), \
             dict(unit_distance="x"), dict(tolerance="x"), dict(mapper=3), dict(background=3), dict(size=5), dict(origin=None):
         refuse(TypeError, next(iter(options)), show, field, **options)
     for options in dict(size=(10.5, 9)), dict(background=(2, 0, 0)), dict(unit_distance=0), dict(unit_distance=numpy.nan), dict(axes=3), \
             dict(tolerance=-1), dict(tolerance=numpy.nan), \
-            dict(camera=dict(zoom=0)), dict(camera=dict(azimuth=numpy.inf)), dict(opacity=numpy.nan), dict(origin=(1, 2)):
+            dict(camera=dict(zoom=0)), dict(camera=dict(azimuth=numpy.inf)), dict(opacity=numpy.nan), dict(origin=(1, 2)), \
+            dict(color="no such colour"):
         refuse(ValueError, next(iter(options)), show, field, **options)
     for dtype in numpy.longdouble, object, "M8[s]", "V4":
         refuse(TypeError, "bool, int8", show, numpy.zeros((4, 4, 4), dtype))
