@@ -3,6 +3,7 @@
  * of scenes of record. Lines of CSV: processor milliseconds of a frame (medians), of all volumes together, of each alone with default
  * options, and of each alone by the rule and step that it has together; their ratios; and root mean square errors over the lit pixels at a
  * quarter of the size, against the reference in double, of the picture and of the single pictures laid over one another. */
+#define _POSIX_C_SOURCE 200809L
 #include "reference_several.h"
 
 #include "stratus/scenes.h"

@@ -3,6 +3,7 @@
  * N]: measures what the automatic structure costs beside each fixed one, over the scenes of record and random ones, for still pictures and
  * for orbits, builds included. Lines of CSV, then the ratios of automatic to the best fixed choice, by the clock and by the processor's
  * time. */
+#define _POSIX_C_SOURCE 200809L
 #include "random_scene.h"
 
 #include "stratus/scenes.h"
