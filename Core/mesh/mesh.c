@@ -33,11 +33,12 @@ static stratus_status check_lattice(stratus_context* context, const stratus_mesh
   const int32_t* n = mesh->lattice;
   int64_t points = 1, cells = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    if (n[axis] < 2 || (points *= n[axis]) > POINTS_MAX) {
+    if (n[axis] < 2 || points > POINTS_MAX / n[axis]) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
         "mesh lattice of %d x %d x %d points, must be at least 2 along each axis and at most %lld in all", (int)n[0], (int)n[1], (int)n[2],
         POINTS_MAX);
     }
+    points *= n[axis];
     cells *= n[axis] - 1;
   }
   if (mesh->point_count != points || mesh->cell_count != cells) {
