@@ -136,6 +136,7 @@ PACKET_KERNEL __attribute__((reqd_work_group_size(GROUP, 1, 1))) void tetra_proj
     draw_found(&view, a, tile, place, cells, count, &pixel);
     barrier(CLK_LOCAL_MEM_FENCE);
   }
+  barrier(CLK_LOCAL_MEM_FENCE); /* PoCL 6 else branches for the whole group as its first item does */
   if (pixel.wrong) {
     wrong[1 + atomic_inc(wrong)] = (uint)(PROJECT_TILE * PROJECT_TILE * tile + place);
   } else {
