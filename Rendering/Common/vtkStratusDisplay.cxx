@@ -15,6 +15,7 @@
 #include "vtkTextureObject.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace {
@@ -470,6 +471,32 @@ vtkStratusDisplay::Pixels vtkStratusDisplay::ChoosePixels(vtkRenderer* renderer,
   return pixels;
 }
 
+namespace {
+// The rays of a picture that cover some pixels of the window.
+struct RayRange {
+  double First[2], Last[2]; // columns and rows
+  bool Has(size_t ray, const vtkStratusPicture& picture) const
+  {
+    const size_t width = static_cast<size_t>(picture.Size[0]);
+    const double at[2] = { static_cast<double>(ray % width), static_cast<double>(ray / width) };
+    return at[0] >= this->First[0] && at[0] <= this->Last[0] && at[1] >= this->First[1] && at[1] <= this->Last[1];
+  }
+};
+
+// Those whose pixels a selector reads: area has the first column and row of the window, and the last ones. A ray more on each side is for
+// pixels that a coarse picture's rays share.
+RayRange FindRead(const vtkStratusPicture& picture, const unsigned int area[4])
+{
+  RayRange range;
+  for (int a = 0; a < 2; ++a) {
+    const double from = picture.Viewport[a] + picture.Rectangle[a], rays = static_cast<double>(picture.Size[a]) / picture.Rectangle[2 + a];
+    range.First[a] = std::floor((area[a] - from) * rays) - 1.0;
+    range.Last[a] = std::ceil((area[2 + a] + 1.0 - from) * rays);
+  }
+  return range;
+}
+} // namespace
+
 // Hardware picking reads the window, in one pass for the prop, others for the block in composite data, the cell or point, the process.
 void vtkStratusDisplay::ChooseSelected(vtkRenderer* renderer, const vtkStratusPicture& picture, Pixels& pixels)
 {
@@ -493,8 +520,9 @@ void vtkStratusDisplay::ChooseSelected(vtkRenderer* renderer, const vtkStratusPi
   // A selector that does not know the prop gives it no colour, and it hides nothing.
   const bool known = pass != vtkHardwareSelector::ACTOR_PASS || color[0] > 0.0f || color[1] > 0.0f || color[2] > 0.0f;
   this->Selected.assign(4 * static_cast<size_t>(picture.Size[0]) * picture.Size[1], 0.0f);
+  const RayRange read = FindRead(picture, selector->GetArea());
   for (size_t ray = 0; ray < this->Selected.size() / 4 && known; ++ray) {
-    if (!(pixels.Rgba[4 * ray + 3] > LEAST_SELECTED)) {
+    if (!(pixels.Rgba[4 * ray + 3] > LEAST_SELECTED) || !read.Has(ray, picture)) {
       continue;
     }
     if (ofBlock || ofElement) {

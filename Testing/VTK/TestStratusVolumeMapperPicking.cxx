@@ -14,12 +14,14 @@
 #include "vtkSphereSource.h"
 
 namespace {
-vtkSmartPointer<vtkSelection> Select(Scene& scene, bool propsOnly)
+// area: first column and row, last column and row; null: the whole picture.
+vtkSmartPointer<vtkSelection> Select(Scene& scene, bool propsOnly, const unsigned int* area = nullptr)
 {
   vtkNew<vtkHardwareSelector> selector;
   selector->SetRenderer(scene.Renderer);
   const int* size = scene.Renderer->GetSize();
-  selector->SetArea(0, 0, static_cast<unsigned int>(size[0] - 1), static_cast<unsigned int>(size[1] - 1));
+  const unsigned int whole[4] = { 0, 0, static_cast<unsigned int>(size[0] - 1), static_cast<unsigned int>(size[1] - 1) };
+  selector->SetArea(area ? area : whole);
   selector->SetFieldAssociation(vtkDataObject::FIELD_ASSOCIATION_CELLS);
   selector->SetActorPassOnly(propsOnly);
   return vtkSmartPointer<vtkSelection>::Take(selector->Select());
@@ -48,6 +50,37 @@ bool TellsShownCells(Scene& scene, vtkSelection* selection, int beside)
   return all;
 }
 
+// The cells of an area, from a selector that reads no more and from one that reads the whole picture.
+void Areas(Scene& scene)
+{
+  const int* size = scene.Renderer->GetSize();
+  const unsigned int last[2] = { static_cast<unsigned int>(size[0] - 1), static_cast<unsigned int>(size[1] - 1) };
+  vtkNew<vtkHardwareSelector> whole;
+  whole->SetRenderer(scene.Renderer);
+  whole->SetArea(0, 0, last[0], last[1]);
+  whole->SetFieldAssociation(vtkDataObject::FIELD_ASSOCIATION_CELLS);
+  CHECK(whole->CaptureBuffers(), "nothing was captured");
+  int found = 0;
+  for (unsigned int n = 0; n < 6; ++n) {
+    const unsigned int x = last[0] * (8 + n) / 20, y = last[1] * (12 - n) / 20;
+    const unsigned int area[4] = { x, y, n < 4 ? x : x + 8 * n, n < 4 ? y : y + 4 * n }; // single pixels, and rectangles
+    const vtkSmartPointer<vtkSelection> own = Select(scene, false, area);
+    const vtkSmartPointer<vtkSelection> part =
+      vtkSmartPointer<vtkSelection>::Take(whole->GenerateSelection(area[0], area[1], area[2], area[3]));
+    CHECK(own && own->GetNumberOfNodes() == part->GetNumberOfNodes(), "area %u has other props", n);
+    if (own && own->GetNumberOfNodes() == 1 && part->GetNumberOfNodes() == 1) {
+      vtkAbstractArray* lists[2] = { own->GetNode(0)->GetSelectionList(), part->GetNode(0)->GetSelectionList() };
+      CHECK(lists[0]->GetNumberOfValues() == lists[1]->GetNumberOfValues(), "area %u has %lld cells, %lld of them in the whole", n,
+        static_cast<long long>(lists[0]->GetNumberOfValues()), static_cast<long long>(lists[1]->GetNumberOfValues()));
+      for (vtkIdType i = 0; i < std::min(lists[0]->GetNumberOfValues(), lists[1]->GetNumberOfValues()); ++i) {
+        CHECK(lists[0]->GetVariantValue(i) == lists[1]->GetVariantValue(i), "area %u has another cell", n);
+        ++found;
+      }
+    }
+  }
+  CHECK(found > 10, "%d cells are found in the areas", found);
+}
+
 void Volume(int mode, bool coarse)
 {
   Scene scene;
@@ -74,6 +107,7 @@ void Volume(int mode, bool coarse)
     "where cells are asked for, the prop is another");
   CHECK(!cells || TellsShownCells(scene, cells, mode == vtkStratusVolumeMapper::FIRST_HIT_MODE ? 0 : 1),
     "cells of which nothing shows are told");
+  Areas(scene);
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
 }
 
