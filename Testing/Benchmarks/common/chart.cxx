@@ -8,6 +8,7 @@
 #include <vtkContextView.h>
 #include <vtkFloatArray.h>
 #include <vtkGL2PSExporter.h>
+#include <vtkLookupTable.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkPlotPoints.h>
@@ -100,6 +101,13 @@ void add_line(vtkChartXY* chart, const std::string& family, std::vector<const cu
   plot->SetWidth(is_ours(family) ? 2.5f : 1.5f);
   plot->SetMarkerStyle(is_ours(family) ? vtkPlotPoints::CIRCLE : number_of(family) % 2 ? vtkPlotPoints::DIAMOND : vtkPlotPoints::SQUARE);
   plot->SetMarkerSize(9.0f);
+  // Marks of the line's own colour: VTK 9.3 writes none to SVG that have no colours of their own.
+  vtkNew<vtkLookupTable> marks;
+  marks->SetNumberOfTableValues(1);
+  marks->SetTableValue(0, c[0] / 255.0, c[1] / 255.0, c[2] / 255.0, 1.0);
+  plot->SetLookupTable(marks);
+  plot->SelectColorArray("x");
+  plot->ScalarVisibilityOn();
 }
 
 // Returns the number of lines.
