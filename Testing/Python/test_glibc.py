@@ -26,12 +26,13 @@ SOURCE = """
 void each(int function, const double* x, const double* y, double* result, size_t n)
 {
   for (size_t i = 0; i < n; ++i) {
-    result[i] = function == 0 ? exp(x[i]) : function == 1 ? exp2(x[i]) : function == 2 ? log(x[i]) : function == 3 ? log2(x[i])
-                                                                                                                    : pow(x[i], y[i]);
+    double a = x[i], b = y[i];
+    result[i] = function == 0 ? exp(a) : function == 1 ? exp2(a) : function == 2 ? log(a) : function == 3 ? log2(a) : function == 4 ? pow(a, b)
+                                                                                                                                    : fmod(a, b);
   }
 }
 """
-NAMES = ["exp", "exp2", "log", "log2", "pow"]
+NAMES = ["exp", "exp2", "log", "log2", "pow", "fmod"]
 HEADER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Python", "glibc_2_28.h")
 
 
