@@ -472,28 +472,15 @@ vtkStratusDisplay::Pixels vtkStratusDisplay::ChoosePixels(vtkRenderer* renderer,
 }
 
 namespace {
-// The rays of a picture that cover some pixels of the window.
-struct RayRange {
-  double First[2], Last[2]; // columns and rows
-  bool Has(size_t ray, const vtkStratusPicture& picture) const
-  {
-    const size_t width = static_cast<size_t>(picture.Size[0]);
-    const double at[2] = { static_cast<double>(ray % width), static_cast<double>(ray / width) };
-    return at[0] >= this->First[0] && at[0] <= this->Last[0] && at[1] >= this->First[1] && at[1] <= this->Last[1];
-  }
-};
-
-// Those whose pixels a selector reads: area has the first column and row of the window, and the last ones. A ray more on each side is for
-// pixels that a coarse picture's rays share.
-RayRange FindRead(const vtkStratusPicture& picture, const unsigned int area[4])
+// The columns and rows of rays whose pixels a selector reads, from `first` on, before `end`. area: first column and row of the window, and
+// the last ones. A ray more on each side is for pixels that a coarse picture's rays share.
+void FindRead(const vtkStratusPicture& picture, const unsigned int area[4], size_t first[2], size_t end[2])
 {
-  RayRange range;
   for (int a = 0; a < 2; ++a) {
-    const double from = picture.Viewport[a] + picture.Rectangle[a], rays = static_cast<double>(picture.Size[a]) / picture.Rectangle[2 + a];
-    range.First[a] = std::floor((area[a] - from) * rays) - 1.0;
-    range.Last[a] = std::ceil((area[2 + a] + 1.0 - from) * rays);
+    const double from = picture.Viewport[a] + picture.Rectangle[a], most = picture.Size[a], rays = most / picture.Rectangle[2 + a];
+    first[a] = static_cast<size_t>(std::clamp(std::floor((area[a] - from) * rays) - 1.0, 0.0, most));
+    end[a] = static_cast<size_t>(std::clamp(std::ceil((area[2 + a] + 1.0 - from) * rays) + 1.0, 0.0, most));
   }
-  return range;
 }
 } // namespace
 
@@ -520,22 +507,26 @@ void vtkStratusDisplay::ChooseSelected(vtkRenderer* renderer, const vtkStratusPi
   // A selector that does not know the prop gives it no colour, and it hides nothing.
   const bool known = pass != vtkHardwareSelector::ACTOR_PASS || color[0] > 0.0f || color[1] > 0.0f || color[2] > 0.0f;
   this->Selected.assign(4 * static_cast<size_t>(picture.Size[0]) * picture.Size[1], 0.0f);
-  const RayRange read = FindRead(picture, selector->GetArea());
-  for (size_t ray = 0; ray < this->Selected.size() / 4 && known; ++ray) {
-    if (!(pixels.Rgba[4 * ray + 3] > LEAST_SELECTED) || !read.Has(ray, picture)) {
-      continue;
-    }
-    if (ofBlock || ofElement) {
-      double place[3], direction[3];
-      picture.FindPlace(ray, (*pixels.Depth)[ray], place, direction);
-      const vtkStratusCellFinder::Found found = pixels.Finder->Find(place, direction, points);
-      const vtkIdType number = ofBlock ? static_cast<vtkIdType>(found.Block) : std::max<vtkIdType>(found.Element, 0);
-      for (int c = 0; c < 3; ++c) {
-        color[c] = static_cast<float>(number >> (8 * c + (pass == high ? 24 : 0)) & 255) / 255.0f;
+  size_t first[2], end[2];
+  FindRead(picture, selector->GetArea(), first, end);
+  const size_t width = static_cast<size_t>(picture.Size[0]);
+  for (size_t row = first[1]; known && row < end[1]; ++row) {
+    for (size_t ray = row * width + first[0]; ray < row * width + end[0]; ++ray) {
+      if (!(pixels.Rgba[4 * ray + 3] > LEAST_SELECTED)) {
+        continue;
       }
+      if (ofBlock || ofElement) {
+        double place[3], direction[3];
+        picture.FindPlace(ray, (*pixels.Depth)[ray], place, direction);
+        const vtkStratusCellFinder::Found found = pixels.Finder->Find(place, direction, points);
+        const vtkIdType number = ofBlock ? static_cast<vtkIdType>(found.Block) : std::max<vtkIdType>(found.Element, 0);
+        for (int c = 0; c < 3; ++c) {
+          color[c] = static_cast<float>(number >> (8 * c + (pass == high ? 24 : 0)) & 255) / 255.0f;
+        }
+      }
+      std::copy_n(color, 3, &this->Selected[4 * ray]);
+      this->Selected[4 * ray + 3] = 1.0f;
     }
-    std::copy_n(color, 3, &this->Selected[4 * ray]);
-    this->Selected[4 * ray + 3] = 1.0f;
   }
   pixels.Rgba = this->Selected.data();
   pixels.Scale = 1.0f;
