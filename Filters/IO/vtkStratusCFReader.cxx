@@ -55,7 +55,7 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
       file.Fail("time '" + grid.GetTime()->Name + "' has no steps");
     }
   }
-  this->Description = grid.Describe();
+  this->Description = grid.Describe() + file.DescribeValues(*file.Find(this->ChosenName()));
   this->LengthUnits = grid.IsInMetres() ? "m" : "";
   return grid.IsCurved() ? "vtkStructuredGrid" : grid.IsUniform() ? "vtkImageData" : "vtkRectilinearGrid";
 }

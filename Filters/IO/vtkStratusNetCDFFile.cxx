@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusNetCDFFile.h"
 
-#include "vtkDoubleArray.h"
-#include "vtkFloatArray.h"
+#include "vtkStratusNetCDFValues.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,59 +13,6 @@
 #include <system_error>
 
 namespace {
-
-int ReadValues(int file, int id, const size_t* start, const size_t* count, float* to)
-{
-  return nc_get_vara_float(file, id, start, count, to);
-}
-
-int ReadValues(int file, int id, const size_t* start, const size_t* count, double* to)
-{
-  return nc_get_vara_double(file, id, start, count, to);
-}
-
-// The fill value as the type that is read, so that they compare equal.
-template <class T> T FillOf(int file, const vtkStratusNetCDFFile::Variable& variable, bool& has)
-{
-  T value = 0;
-  union {
-    signed char Byte;
-    short Short;
-    int Int;
-    float Float;
-    double Double;
-    long long Long;
-  } fill = {};
-  int none = 0;
-  if (nc_inq_var_fill(file, variable.Id, &none, &fill) != NC_NOERR || none) {
-    has = false;
-    return value;
-  }
-  has = true;
-  switch (variable.Type) {
-    case NC_SHORT:
-      return static_cast<T>(fill.Short);
-    case NC_USHORT:
-      return static_cast<T>(static_cast<unsigned short>(fill.Short));
-    case NC_INT:
-      return static_cast<T>(fill.Int);
-    case NC_UINT:
-      return static_cast<T>(static_cast<unsigned int>(fill.Int));
-    case NC_FLOAT:
-      return static_cast<T>(fill.Float);
-    case NC_DOUBLE:
-      return static_cast<T>(fill.Double);
-    case NC_INT64:
-      return static_cast<T>(fill.Long);
-    case NC_UINT64:
-      return static_cast<T>(static_cast<unsigned long long>(fill.Long));
-    default: { // a byte has no default fill value, because all its values may be data
-      size_t length = 0;
-      has = nc_inq_attlen(file, variable.Id, "_FillValue", &length) == NC_NOERR;
-      return variable.Type == NC_UBYTE ? static_cast<T>(static_cast<unsigned char>(fill.Byte)) : static_cast<T>(fill.Byte);
-    }
-  }
-}
 
 size_t Padded(size_t bytes)
 {
@@ -250,59 +196,26 @@ bool vtkStratusNetCDFFile::Number(const Variable& variable, const char* attribut
   return true;
 }
 
-template <class T>
-vtkSmartPointer<vtkDataArray> vtkStratusNetCDFFile::ReadAs(
-  const Variable& variable, const std::vector<size_t>& start, const std::vector<size_t>& count) const
+vtkStratusNetCDFValues vtkStratusNetCDFFile::ValuesOf(const Variable& variable) const
 {
-  size_t total = 1;
-  for (size_t length : count) {
-    total *= length;
+  if (variable.Type == NC_CHAR || variable.Type >= NC_STRING) {
+    this->Fail("variable '" + variable.Name + "' holds no numbers");
   }
-  vtkSmartPointer<vtkAOSDataArrayTemplate<T>> array;
-  array.TakeReference(
-    static_cast<vtkAOSDataArrayTemplate<T>*>(vtkDataArray::CreateDataArray(sizeof(T) == sizeof(float) ? VTK_FLOAT : VTK_DOUBLE)));
-  array->SetName(variable.Name.c_str());
-  array->SetNumberOfValues(static_cast<vtkIdType>(total));
-  T* values = array->GetPointer(0);
-  const size_t zero = 0, one = 1;
-  this->Check(ReadValues(this->Id, variable.Id, start.empty() ? &zero : start.data(), count.empty() ? &one : count.data(), values),
-    "variable '" + variable.Name + "' cannot be read");
-  bool has_fill = false;
-  const T fill = FillOf<T>(this->Id, variable, has_fill);
-  double missing = 0.0, low = -INFINITY, high = INFINITY, scale = 1.0, offset = 0.0;
-  const bool has_missing = this->Number(variable, "missing_value", missing);
-  nc_type type = NC_NAT;
-  size_t length = 0;
-  double range[2];
-  if (nc_inq_att(this->Id, variable.Id, "valid_range", &type, &length) == NC_NOERR && length == 2 && type != NC_CHAR &&
-    nc_get_att_double(this->Id, variable.Id, "valid_range", range) == NC_NOERR) {
-    low = range[0];
-    high = range[1];
+  try {
+    return vtkStratusNetCDFValues(this->Id, variable.Id, variable.Type, variable.Name);
+  } catch (const std::string& why) {
+    this->Fail(why);
   }
-  this->Number(variable, "valid_min", low);
-  this->Number(variable, "valid_max", high);
-  this->Number(variable, "scale_factor", scale);
-  this->Number(variable, "add_offset", offset);
-  const T gap = static_cast<T>(missing), nothing = static_cast<T>(NAN);
-  const bool scaled = scale != 1.0 || offset != 0.0;
-  for (size_t i = 0; i < total; ++i) {
-    const T value = values[i];
-    if ((has_fill && value == fill) || (has_missing && value == gap) || static_cast<double>(value) < low ||
-      static_cast<double>(value) > high) {
-      values[i] = nothing;
-    } else if (scaled) {
-      values[i] = static_cast<T>(static_cast<double>(value) * scale + offset);
-    }
-  }
-  return array;
+}
+
+std::string vtkStratusNetCDFFile::DescribeValues(const Variable& variable) const
+{
+  return this->ValuesOf(variable).Describe();
 }
 
 vtkSmartPointer<vtkDataArray> vtkStratusNetCDFFile::Read(
   const Variable& variable, const std::vector<size_t>& start, const std::vector<size_t>& count) const
 {
-  if (variable.Type == NC_CHAR || variable.Type == NC_STRING || variable.Type > NC_STRING) {
-    this->Fail("variable '" + variable.Name + "' holds no numbers");
-  }
   std::vector<size_t> from = start, many = count;
   if (count.empty()) {
     from.assign(variable.Dimensions.size(), 0);
@@ -310,8 +223,11 @@ vtkSmartPointer<vtkDataArray> vtkStratusNetCDFFile::Read(
       many.push_back(this->LengthOf(dimension));
     }
   }
-  const bool small = variable.Type == NC_BYTE || variable.Type == NC_UBYTE || variable.Type == NC_SHORT || variable.Type == NC_USHORT;
-  return variable.Type == NC_FLOAT || small ? this->ReadAs<float>(variable, from, many) : this->ReadAs<double>(variable, from, many);
+  int status = NC_NOERR;
+  const vtkSmartPointer<vtkDataArray> array = this->ValuesOf(variable).Read(from, many, status);
+  this->Check(status, "variable '" + variable.Name + "' cannot be read");
+  array->SetName(variable.Name.c_str());
+  return array;
 }
 
 std::vector<double> vtkStratusNetCDFFile::ReadComplete(const Variable& variable, const std::string& what) const

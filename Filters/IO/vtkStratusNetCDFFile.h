@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+class vtkStratusNetCDFValues;
+
 class vtkStratusNetCDFFile
 {
 public:
@@ -38,10 +40,12 @@ public:
   std::string Text(const Variable& variable, const char* attribute) const; // "" if there is none
   bool Number(const Variable& variable, const char* attribute, double& value) const;
 
-  // Reads a block of values; empty start and count: all. Values that are missing (_FillValue or its default, missing_value, outside of
-  // valid_range) are NaN, the others are scaled. The array is float where that holds all of the variable's values, else double.
+  // Reads a block of values; empty start and count: all. Values that are missing are NaN, the others are unpacked, by the rules at
+  // vtkStratusNetCDFValues. The array is float if this tells all of the variable's values apart, else double.
   vtkSmartPointer<vtkDataArray> Read(
     const Variable& variable, const std::vector<size_t>& start = {}, const std::vector<size_t>& count = {}) const;
+  // Returns "; ..." for attributes of values that are ignored, "" if there is none.
+  std::string DescribeValues(const Variable& variable) const;
   // Reads all values of integers or reals, in doubles; one that is missing is an error that names `what`.
   std::vector<double> ReadComplete(const Variable& variable, const std::string& what) const;
 
@@ -55,8 +59,7 @@ public:
 private:
   void Check(int status, const std::string& what) const;
   void CheckLength(int attributes, int unlimited) const;
-  template <class T>
-  vtkSmartPointer<vtkDataArray> ReadAs(const Variable& variable, const std::vector<size_t>& start, const std::vector<size_t>& count) const;
+  vtkStratusNetCDFValues ValuesOf(const Variable& variable) const;
 
   std::string Path;
   int Id = -1;

@@ -3,7 +3,14 @@
  * @class   vtkStratusNetCDFReader
  * @brief   what the readers of netCDF files share
  *
- * Values that are missing (_FillValue, missing_value, outside of valid_range) are NaN; scale_factor and add_offset are applied.
+ * Values are read as the netCDF users' guide says. All these attributes are about stored values, before scale_factor and add_offset:
+ * - _Unsigned "true" or "false" gives integers the other sign; bytes with a valid limit above 127 have no sign.
+ * - Values equal to _FillValue (its default for all types but bytes) or to any number of missing_value are NaN.
+ * - Values outside of valid_range, or without it below valid_min or above valid_max, are NaN.
+ * - Then scale_factor and add_offset are applied. Each must be one finite number; anything else is an error.
+ *
+ * Attributes are compared in the variable's type. GetDescription() tells which are ignored: text, and limits that packed integers cannot
+ * hold. Values are floats if these tell all of the variable's values apart, else doubles.
  *
  * @sa vtkStratusCFReader vtkStratusUgridReader
  */

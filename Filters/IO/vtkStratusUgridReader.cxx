@@ -150,7 +150,7 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
     }
   }
   this->LengthUnits = mesh.IsInMetres() ? "m" : "";
-  this->Description = mesh.Describe() + "; " + layers.Describe();
+  this->Description = mesh.Describe() + "; " + layers.Describe() + file.DescribeValues(chosen);
   return "vtkUnstructuredGrid";
 }
 
