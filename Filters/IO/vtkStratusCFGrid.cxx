@@ -1,65 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusCFGrid.h"
 
+#include "vtkStratusLongitudes.h"
+
 #include "vtkDoubleArray.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <netcdf.h>
 
 namespace {
 constexpr double EarthRadius = 6371000.0; // metres
 
-// Heights that follow from other variables: appendix D of the CF conventions.
-constexpr struct {
-  const char* Name;
-  const char* Terms[5];
-} Formulas[] = {
-  { "ocean_sigma_coordinate", { "sigma", "eta", "depth" } },
-  { "ocean_s_coordinate_g1", { "s", "C", "eta", "depth", "depth_c" } },
-  { "ocean_s_coordinate_g2", { "s", "C", "eta", "depth", "depth_c" } },
-  { "atmosphere_hybrid_height_coordinate", { "a", "b", "orog" } },
-};
-
-std::string Lower(std::string text)
-{
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 bool IsOneOf(const std::string& word, std::initializer_list<const char*> words)
 {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-bool IsDegrees(const std::string& units)
+bool EndsWith(const std::string& text, const std::string& end)
 {
-  return units.compare(0, 6, "degree") == 0;
-}
-
-bool IsPressure(const std::string& units)
-{
-  return IsOneOf(units, { "Pa", "hPa", "mb", "mbar", "millibar", "millibars" });
-}
-
-// Metres of a unit of length, 0 for other units.
-double MetresOf(const std::string& units)
-{
-  if (IsOneOf(units, { "m", "meter", "meters", "metre", "metres" })) {
-    return 1.0;
-  }
-  return IsOneOf(units, { "km", "kilometer", "kilometers", "kilometre", "kilometres" }) ? 1000.0 : units == "cm" ? 0.01 : 0.0;
-}
-
-double HeightOfPressure(double pressure, const std::string& units)
-{
-  return 44330.77 * (1.0 - std::pow(pressure / (units == "Pa" ? 101325.0 : 1013.25), 0.190263));
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 int AxisOfName(const std::string& name)
 {
-  const std::string word = Lower(name);
+  const std::string word = vtkStratusLower(name);
   if (IsOneOf(word, { "x", "xc", "xt", "xm", "xh", "lon", "longitude", "rlon", "west_east", "xi_rho", "ni", "i", "nx" })) {
     return 0;
   }
@@ -134,26 +99,24 @@ int vtkStratusCFGrid::AxisOfDimension(int dimension) const
   return axis >= 0 ? axis : AxisOfName(name);
 }
 
-// Returns 0, 1, 2 for a coordinate along x, y, z, and -1 where its attributes tell nothing.
 int vtkStratusCFGrid::AxisOf(const Variable& coordinate) const
 {
-  const std::string axis = this->File.Text(coordinate, "axis"), name = this->File.Text(coordinate, "standard_name"),
+  const std::string axis = vtkStratusLower(this->File.Text(coordinate, "axis")), name = this->File.Text(coordinate, "standard_name"),
                     units = this->File.Text(coordinate, "units");
-  if (axis == "X" || axis == "Y" || axis == "Z") {
-    return axis[0] - 'X';
+  if (axis == "x" || axis == "y" || axis == "z") {
+    return axis[0] - 'x';
   }
-  if (IsOneOf(name, { "longitude", "projection_x_coordinate", "grid_longitude" }) || IsOneOf(units, { "degrees_east", "degree_east" })) {
+  if (IsOneOf(name, { "longitude", "projection_x_coordinate", "grid_longitude" }) || vtkStratusIsEast(units)) {
     return 0;
   }
-  if (IsOneOf(name, { "latitude", "projection_y_coordinate", "grid_latitude" }) || IsOneOf(units, { "degrees_north", "degree_north" })) {
+  if (IsOneOf(name, { "latitude", "projection_y_coordinate", "grid_latitude" }) || vtkStratusIsNorth(units)) {
     return 1;
   }
   const bool vertical = IsOneOf(name, { "altitude", "height", "depth", "air_pressure", "height_above_reference_ellipsoid" }) ||
     name.compare(0, 6, "ocean_") == 0 || name.compare(0, 11, "atmosphere_") == 0;
-  return vertical || IsPressure(units) || !this->File.Text(coordinate, "positive").empty() ? 2 : -1;
+  return vertical || vtkStratusUnitOf(units).IsPressure() || !this->File.Text(coordinate, "positive").empty() ? 2 : -1;
 }
 
-// Returns whether the variable depends on time and the three axes alone.
 bool vtkStratusCFGrid::Fits(const Variable& variable) const
 {
   return variable.Type != NC_CHAR && variable.Type < NC_STRING &&
@@ -161,6 +124,20 @@ bool vtkStratusCFGrid::Fits(const Variable& variable) const
       return one == this->TimeDimension || this->File.LengthOf(one) == 1 ||
         std::find(this->Dimensions.begin(), this->Dimensions.end(), one) != this->Dimensions.end();
     });
+}
+
+bool vtkStratusCFGrid::Has(const Variable& variable, int axis) const
+{
+  return std::find(variable.Dimensions.begin(), variable.Dimensions.end(), this->GetDimension(axis)) != variable.Dimensions.end();
+}
+
+// A longitude or latitude that has no unit is in degrees.
+vtkStratusUnit vtkStratusCFGrid::UnitOf(const Variable& coordinate) const
+{
+  vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(coordinate, "units"));
+  const bool angle = IsOneOf(this->File.Text(coordinate, "standard_name"), { "longitude", "latitude", "grid_longitude", "grid_latitude" });
+  unit.Quantity = angle && unit.Quantity == vtkStratusQuantity::None ? vtkStratusQuantity::Angle : unit.Quantity;
+  return unit;
 }
 
 void vtkStratusCFGrid::FindCoordinates()
@@ -177,83 +154,92 @@ void vtkStratusCFGrid::FindCoordinates()
     const auto along = [dimension](const Variable* one) { return one && one->Dimensions.size() == 1 && one->Dimensions[0] == dimension; };
     const Variable* own = this->File.Find(this->File.NameOf(dimension));
     const auto other = std::find_if(others.begin(), others.end(), along);
-    this->Sources[a].Coordinate = along(own) ? own : other == others.end() ? nullptr : *other;
+    this->Along[a] = along(own) ? own : other == others.end() ? nullptr : *other;
   }
-  if (!this->Sources[0].Coordinate || !this->Sources[1].Coordinate) {
-    std::array<const Variable*, 2> found = { { nullptr, nullptr } };
-    for (const Variable* one : others) {
-      const int axis = one->Dimensions.size() >= 2 ? this->AxisOf(*one) < 0 ? AxisOfName(one->Name) : this->AxisOf(*one) : -1;
-      if (axis == 0 || axis == 1) {
-        found[static_cast<size_t>(axis)] = one;
-      }
-    }
-    if (found[0] && found[1]) {
-      this->Horizontal = found;
-    }
-  }
-  this->FindHeight(others);
+  this->Vertical = std::make_unique<vtkStratusCFVertical>(*this, this->Along[2], others);
+  this->FindHorizontal(others);
   for (int a = 0; a < 3; ++a) {
     this->ReadAxis(a);
   }
 }
 
-void vtkStratusCFGrid::FindHeight(const std::vector<const Variable*>& others)
+// Coordinates of two dimensions serve where those of one are missing, or mere numbers. WRF's are also known by their names.
+void vtkStratusCFGrid::FindHorizontal(const std::vector<const Variable*>& others)
 {
-  for (const Variable* one : others) {
-    const auto& of = one->Dimensions;
-    if (std::find(of.begin(), of.end(), this->Dimensions[2]) != of.end() && of.size() >= 3 && this->Horizontal[0] != one &&
-      this->Horizontal[1] != one) {
-      this->Height = one;
-      return;
+  const auto is_number = [this](const Variable* one) {
+    return !one || (this->File.Text(*one, "units").empty() && this->File.Text(*one, "standard_name").empty());
+  };
+  if (!is_number(this->Along[0]) && !is_number(this->Along[1])) {
+    return;
+  }
+  std::vector<const Variable*> candidates = others;
+  for (const Variable& one : this->File.GetVariables()) {
+    const bool named = one.Name.compare(0, 5, "XLONG") == 0 || one.Name.compare(0, 4, "XLAT") == 0;
+    if (this->Vertical->IsWrf() && named && this->Fits(one)) {
+      candidates.push_back(&one);
     }
   }
-  const Variable* levels = this->Sources[2].Coordinate;
-  const std::string name = levels ? this->File.Text(*levels, "standard_name") : "",
-                    terms = levels ? this->File.Text(*levels, "formula_terms") : "";
-  for (int i = 0; i < 4 && !terms.empty(); ++i) {
-    if (name == Formulas[i].Name) {
-      this->Formula = i + 1;
-      for (const char* term : Formulas[i].Terms) {
-        if (term) {
-          this->Terms.push_back(&this->Term(terms, term));
-        }
-      }
+  std::array<const Variable*, 2> found = { { nullptr, nullptr } };
+  for (const Variable* one : candidates) {
+    const int told = this->AxisOf(*one), axis = told < 0 ? AxisOfName(one->Name) : told;
+    if (this->Has(*one, 0) && this->Has(*one, 1) && (axis == 0 || axis == 1) && !found[static_cast<size_t>(axis)]) {
+      found[static_cast<size_t>(axis)] = one;
     }
+  }
+  if (found[0] && found[1] && !(this->Vertical->IsWrf() && this->FindWrfSpacing(*found[0], *found[1]))) {
+    this->Horizontal = found;
   }
 }
 
-const vtkStratusCFGrid::Variable& vtkStratusCFGrid::Term(const std::string& terms, const std::string& name) const
+// WRF's ideal cases have longitudes and latitudes of 0 all over, and the distance of points as attributes of the file.
+bool vtkStratusCFGrid::FindWrfSpacing(const Variable& x, const Variable& y)
 {
-  const std::vector<std::string> words = vtkStratusWords(terms);
-  for (size_t i = 0; i + 1 < words.size(); i += 2) {
-    if (words[i] == name + ":") {
-      const Variable* found = this->File.Find(words[i + 1]);
-      if (!found || !this->Fits(*found)) {
-        this->File.Fail(
-          "formula_terms name '" + words[i + 1] + "' for '" + name + "', which " + (found ? "has another grid" : "is not there"));
-      }
-      return *found;
+  Variable global = Variable();
+  global.Id = NC_GLOBAL;
+  for (const Variable* one : { &x, &y }) {
+    const vtkSmartPointer<vtkDataArray> values = this->File.Read(*one);
+    double range[2];
+    values->GetRange(range);
+    if (range[0] < range[1]) {
+      return false;
     }
   }
-  this->File.Fail("formula_terms '" + terms + "' have no '" + name + "'");
+  std::array<double, 2> spacing = { { 0.0, 0.0 } };
+  if (!this->File.Number(global, "DX", spacing[0]) || !this->File.Number(global, "DY", spacing[1]) || !(spacing[0] > 0.0) ||
+    !(spacing[1] > 0.0)) {
+    this->File.Fail("'" + x.Name + "' or '" + y.Name + "' is the same all over, and the file has no attributes DX and DY above 0");
+  }
+  this->Spacing = spacing;
+  return true;
 }
 
-// Reads an axis, which must increase or decrease, and turns it round where it decreases. Without a coordinate it counts from 0.
+// Reads an axis, which must increase or decrease all along. Angles become degrees, and longitudes continuous. Without a coordinate the axis
+// counts from 0.
 void vtkStratusCFGrid::ReadAxis(int axis)
 {
   const size_t a = static_cast<size_t>(axis);
-  const Variable* coordinate = this->Sources[a].Coordinate;
+  const Variable* coordinate = this->Along[a];
   std::vector<double>& at = this->Axes[a];
-  at.resize(this->File.LengthOf(this->Dimensions[a]));
+  at.resize(this->GetLength(axis));
   for (size_t i = 0; i < at.size(); ++i) {
     at[i] = static_cast<double>(i);
   }
-  const bool used = axis < 2 ? !this->Horizontal[a] : !this->Height && this->Formula == 0;
+  const bool used = axis < 2 ? !this->Horizontal[a] && this->Spacing[a] == 0.0 : !this->Vertical->IsCurved();
   if (!coordinate || !used) {
+    if (axis < 2 && this->Spacing[a] > 0.0) {
+      const double offset = EndsWith(this->File.NameOf(this->Dimensions[a]), "_stag") ? 0.5 : 0.0; // half a cell before the others
+      std::transform(at.begin(), at.end(), at.begin(), [=](double value) { return (value - offset) * this->Spacing[a]; });
+    }
     return;
   }
-  this->Sources[a].Units = this->File.Text(*coordinate, "units");
   at = this->File.ReadComplete(*coordinate, "coordinate");
+  const vtkStratusUnit unit = this->UnitOf(*coordinate);
+  if (axis < 2) {
+    std::transform(at.begin(), at.end(), at.begin(), [&unit](double value) { return unit.Convert(value); });
+  }
+  if (axis == 0 && unit.IsAngle()) {
+    this->Continuous = vtkStratusLongitudes::UnwrapAxis(at);
+  }
   for (size_t i = 1; i < at.size(); ++i) {
     if (!((at[i] - at[i - 1]) * (at[1] - at[0]) > 0.0)) {
       this->File.Fail("coordinate '" + coordinate->Name + "' must increase or decrease all along: number " + std::to_string(i) + " is " +
@@ -262,59 +248,62 @@ void vtkStratusCFGrid::ReadAxis(int axis)
   }
 }
 
+double vtkStratusCFGrid::MiddleLatitude() const
+{
+  std::vector<double> latitudes = this->Axes[1];
+  if (this->Horizontal[1]) {
+    const vtkStratusUnit unit = this->UnitOf(*this->Horizontal[1]);
+    const vtkSmartPointer<vtkDataArray> all = this->File.Read(*this->Horizontal[1]);
+    latitudes.clear();
+    for (vtkIdType i = 0; i < all->GetNumberOfTuples(); ++i) {
+      latitudes.push_back(unit.Convert(all->GetComponent(i, 0)));
+    }
+  }
+  double low = INFINITY, high = -INFINITY;
+  for (double latitude : latitudes) {
+    low = std::isfinite(latitude) ? std::min(low, latitude) : low;
+    high = std::isfinite(latitude) ? std::max(high, latitude) : high;
+  }
+  if (low > high) {
+    this->File.Fail("coordinate '" + this->Horizontal[1]->Name + "' has no value that is finite");
+  }
+  return 0.5 * (low + high);
+}
+
 void vtkStratusCFGrid::ConvertUnits()
 {
-  std::array<std::string, 3> units = { { this->Sources[0].Units, this->Sources[1].Units, this->Sources[2].Units } };
-  for (size_t a = 0; a < 2 && this->Horizontal[0]; ++a) {
-    units[a] = this->File.Text(*this->Horizontal[a], "units");
+  std::array<const Variable*, 2> from = { { nullptr, nullptr } };
+  std::array<vtkStratusUnit, 2> units;
+  for (size_t a = 0; a < 2; ++a) {
+    from[a] = this->Horizontal[a] ? this->Horizontal[a] : this->Spacing[a] > 0.0 ? nullptr : this->Along[a];
+    units[a] = from[a] ? this->UnitOf(*from[a]) : vtkStratusUnitOf(this->Spacing[a] > 0.0 ? "m" : "");
   }
-  const Variable* height = this->Height ? this->Height : this->Formula > 0 ? nullptr : this->Sources[2].Coordinate;
-  units[2] = height ? this->File.Text(*height, "units") : this->Formula > 0 ? "m" : "";
-  for (size_t a = 0; a < 3; ++a) {
-    const double metres = MetresOf(units[a]);
-    this->Factors[a] = metres > 0.0 ? metres : 1.0;
-  }
-  const bool degrees = IsDegrees(units[0]) && IsDegrees(units[1]);
-  this->Metres = (degrees || (MetresOf(units[0]) > 0.0 && MetresOf(units[1]) > 0.0)) && (MetresOf(units[2]) > 0.0 || IsPressure(units[2]));
+  const bool degrees = units[0].IsAngle() && units[1].IsAngle();
+  this->Flat = degrees || (units[0].IsLength() && units[1].IsLength());
+  this->Metres = this->Flat && this->Vertical->IsLength();
   if (degrees) {
-    double low = INFINITY, high = -INFINITY;
-    const std::vector<double> latitudes = this->Horizontal[1] ? this->File.ReadComplete(*this->Horizontal[1], "coordinate") : this->Axes[1];
-    for (double latitude : latitudes) {
-      low = std::min(low, latitude);
-      high = std::max(high, latitude);
-    }
-    const double degree = std::acos(-1.0) / 180.0;
-    this->Factors[0] = EarthRadius * degree * std::cos(0.5 * (low + high) * degree);
-    this->Factors[1] = EarthRadius * degree;
-    this->Description += "degrees as metres at latitude " + vtkStratusNumberText(0.5 * (low + high)) + "; ";
+    const double degree = std::acos(-1.0) / 180.0, middle = this->MiddleLatitude();
+    this->Factors = { { EarthRadius * degree * std::cos(middle * degree), EarthRadius * degree } };
+    this->Description += "degrees as metres at latitude " + vtkStratusNumberText(middle) + "; ";
   }
-  this->Pressure = IsPressure(units[2]);
-  if (this->Pressure) {
-    this->Description += "pressure as height in the standard atmosphere; ";
+  for (size_t a = 0; a < 2; ++a) {
+    const std::string text = from[a] ? this->File.Text(*from[a], "units") : "";
+    this->Description += std::string(1, "xy"[a]) + " by " +
+      (from[a] ? "'" + from[a]->Name + "'" + (text.empty() ? "" : " (" + text + ")")
+               : "number" + (this->Spacing[a] > 0.0 ? " times " + vtkStratusNumberText(this->Spacing[a]) + " m" : std::string())) +
+      (a == 0 && this->Continuous ? ", made continuous where it jumps, " : ", ");
   }
-  if (height && this->File.Text(*height, "positive") == "down" && !this->Pressure) {
-    this->Factors[2] = -this->Factors[2];
-  }
+  this->Description += this->Vertical->Describe();
   for (int a = 0; a < 3; ++a) {
-    this->ConvertAxis(a, this->Factors[static_cast<size_t>(a)]);
-    const size_t i = static_cast<size_t>(a);
-    const Variable* from = a < 2 && this->Horizontal[i] ? this->Horizontal[i]
-      : a == 2 && this->Height                          ? this->Height
-                                                        : this->Sources[i].Coordinate;
-    this->Description += std::string(1, "xyz"[a]) + " by " +
-      (from ? "'" + from->Name + "'" + (units[i].empty() ? "" : " (" + units[i] + ")") : "number") + (a < 2 ? ", " : "");
-  }
-  if (this->Formula > 0) {
-    this->Description += std::string(", by the formula of ") + Formulas[this->Formula - 1].Name;
+    this->ConvertAxis(a);
   }
 }
 
-void vtkStratusCFGrid::ConvertAxis(int axis, double factor)
+void vtkStratusCFGrid::ConvertAxis(int axis)
 {
   std::vector<double>& at = this->Axes[static_cast<size_t>(axis)];
-  const std::string& units = this->Sources[static_cast<size_t>(axis)].Units;
   for (double& value : at) {
-    value = axis == 2 && this->Pressure && !this->Height ? HeightOfPressure(value, units) : value * factor;
+    value = axis < 2 ? value * this->Factors[static_cast<size_t>(axis)] : this->Along[2] ? this->Vertical->Convert(value) : value;
   }
   if (at.size() > 1 && at[1] < at[0]) {
     this->Flipped[static_cast<size_t>(axis)] = !this->IsCurved();
@@ -339,37 +328,32 @@ bool vtkStratusCFGrid::IsUniform() const
   return true;
 }
 
-vtkStratusCFField vtkStratusCFGrid::ReadField(const Variable& variable, size_t step, const char* complete) const
+vtkStratusCFField vtkStratusCFGrid::ReadField(const Variable& variable, size_t step, const std::array<int, 3>* dimensions) const
 {
+  const std::array<int, 3>& axes = dimensions ? *dimensions : this->Dimensions;
   vtkStratusCFField field;
   std::vector<size_t> start, count;
   for (int dimension : variable.Dimensions) {
-    const bool space = std::find(this->Dimensions.begin(), this->Dimensions.end(), dimension) != this->Dimensions.end();
+    const bool space = std::find(axes.begin(), axes.end(), dimension) != axes.end();
     start.push_back(dimension == this->TimeDimension ? step : 0);
     count.push_back(space ? this->File.LengthOf(dimension) : 1);
   }
   size_t stride = 1;
   for (size_t i = count.size(); i-- > 0;) {
     for (size_t a = 0; a < 3; ++a) {
-      if (this->Dimensions[a] == variable.Dimensions[i]) {
+      if (axes[a] == variable.Dimensions[i]) {
         field.Strides[a] = stride;
       }
     }
     stride *= count[i];
   }
   field.Values = this->File.Read(variable, start, count);
-  for (vtkIdType i = 0; complete && i < field.Values->GetNumberOfTuples(); ++i) {
-    if (!std::isfinite(field.Values->GetComponent(i, 0))) {
-      this->File.Fail(std::string(complete) + " '" + variable.Name + "' has no value (a fill value, or not finite) at number " +
-        std::to_string(i) + ", all must be finite");
-    }
-  }
   return field;
 }
 
 vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::ReadValues(size_t step) const
 {
-  const vtkStratusCFField field = this->ReadField(this->Of, step, nullptr);
+  const vtkStratusCFField field = this->ReadField(this->Of, step);
   const size_t nx = this->GetLength(0), ny = this->GetLength(1), nz = this->GetLength(2);
   const bool plain = field.Strides[0] == 1 && field.Strides[1] == nx && field.Strides[2] == nx * ny && !this->Flipped[0] &&
     !this->Flipped[1] && !this->Flipped[2];
@@ -393,59 +377,109 @@ vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::ReadValues(size_t step) const
   return sorted;
 }
 
-double vtkStratusCFGrid::HeightByFormula(const std::vector<vtkStratusCFField>& terms, size_t x, size_t y, size_t z) const
+// Reads x or y of two or more dimensions in metres. Longitudes are made continuous. Values that are missing are NaN.
+std::vector<double> vtkStratusCFGrid::ReadHorizontal(int axis, size_t step, std::array<size_t, 3>& strides) const
 {
-  double t[5] = { 0, 0, 0, 0, 0 };
-  for (size_t i = 0; i < terms.size(); ++i) {
-    t[i] = terms[i].At(x, y, z);
+  const Variable& variable = *this->Horizontal[static_cast<size_t>(axis)];
+  const vtkStratusUnit unit = this->UnitOf(variable);
+  const vtkStratusCFField field = this->ReadField(variable, step);
+  strides = field.Strides;
+  std::vector<double> at(static_cast<size_t>(field.Values->GetNumberOfTuples()));
+  for (size_t i = 0; i < at.size(); ++i) {
+    at[i] = unit.Convert(field.Values->GetComponent(static_cast<vtkIdType>(i), 0));
+    if (std::isinf(at[i])) {
+      this->File.Fail("coordinate '" + variable.Name + "' is not finite at number " + std::to_string(i));
+    }
   }
-  if (this->Formula == 1) { // sigma, eta, depth
-    return t[1] + t[0] * (t[2] + t[1]);
+  if (axis == 0 && unit.IsAngle()) {
+    vtkStratusLongitudes::Unwrap(
+      at, vtkStratusLongitudes::LatticeEdges({ { this->GetLength(0), this->GetLength(1), this->GetLength(2) } }, strides));
   }
-  if (this->Formula == 4) { // a, b, orog
-    return t[0] + t[1] * t[2];
-  }
-  const double s = t[0], stretching = t[1], eta = t[2], depth = t[3], critical = t[4];
-  if (this->Formula == 2) {
-    const double rest = critical * s + (depth - critical) * stretching;
-    return rest + eta * (1.0 + rest / depth);
-  }
-  return eta + (eta + depth) * (critical * s + depth * stretching) / (critical + depth);
+  return at;
 }
 
-vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::ReadPoints(size_t step) const
+// Marks the columns of cells across which longitudes differ by more than half a turn.
+void vtkStratusCFGrid::HideTorn(
+  const std::vector<double>& longitudes, const std::array<size_t, 3>& strides, std::vector<char>& hidden) const
 {
-  std::array<vtkStratusCFField, 3> fields;
-  std::vector<vtkStratusCFField> terms;
-  for (size_t a = 0; a < 2 && this->Horizontal[0]; ++a) {
-    fields[a] = this->ReadField(*this->Horizontal[a], step, "coordinate");
-  }
-  if (this->Height) {
-    fields[2] = this->ReadField(*this->Height, step, "coordinate");
-  }
-  for (const Variable* term : this->Terms) {
-    terms.push_back(this->ReadField(*term, step, "term of the height"));
-  }
-  const std::string units = this->Height ? this->File.Text(*this->Height, "units") : "";
-  const size_t n[3] = { this->GetLength(0), this->GetLength(1), this->GetLength(2) };
-  vtkSmartPointer<vtkDoubleArray> points = vtkSmartPointer<vtkDoubleArray>::New();
-  points->SetNumberOfComponents(3);
-  points->SetNumberOfTuples(static_cast<vtkIdType>(n[0] * n[1] * n[2]));
-  double* to = points->GetPointer(0);
+  const size_t n[3] = { this->GetLength(0) - 1, this->GetLength(1) - 1, this->GetLength(2) - 1 };
   for (size_t k = 0; k < n[2]; ++k) {
     for (size_t j = 0; j < n[1]; ++j) {
-      for (size_t i = 0; i < n[0]; ++i, to += 3) {
-        to[0] = fields[0].Values ? fields[0].At(i, j, k) * this->Factors[0] : this->Axes[0][i];
-        to[1] = fields[1].Values ? fields[1].At(i, j, k) * this->Factors[1] : this->Axes[1][j];
-        to[2] = this->Axes[2][k];
-        if (this->Height) {
-          const double z = fields[2].At(i, j, k);
-          to[2] = this->Pressure ? HeightOfPressure(z, units) : z * this->Factors[2];
-        } else if (this->Formula > 0) {
-          to[2] = this->HeightByFormula(terms, i, j, k);
+      for (size_t i = 0; i < n[0]; ++i) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t corner = 0; corner < 8; ++corner) {
+          const double one =
+            longitudes[(i + (corner & 1)) * strides[0] + (j + (corner >> 1 & 1)) * strides[1] + (k + (corner >> 2)) * strides[2]];
+          low = std::min(low, one);
+          high = std::max(high, one);
+        }
+        if (high - low > 180.0) {
+          hidden.resize(n[0] * n[1] * n[2], 0);
+          hidden[i + n[0] * (j + n[1] * k)] = 1;
         }
       }
     }
   }
+}
+
+vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::ReadPoints(
+  size_t step, std::vector<char>& hidden_points, std::vector<char>& hidden_cells) const
+{
+  const size_t n[3] = { this->GetLength(0), this->GetLength(1), this->GetLength(2) };
+  vtkSmartPointer<vtkDoubleArray> points = vtkSmartPointer<vtkDoubleArray>::New();
+  points->SetNumberOfComponents(3);
+  points->SetNumberOfTuples(static_cast<vtkIdType>(n[0] * n[1] * n[2]));
+  double* const first = points->GetPointer(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const size_t a = static_cast<size_t>(axis);
+    std::array<size_t, 3> strides = { { 0, 0, 0 } };
+    std::vector<double> at;
+    if (axis < 2 && this->Horizontal[a]) {
+      at = this->ReadHorizontal(axis, step, strides);
+      if (axis == 0 && this->UnitOf(*this->Horizontal[0]).IsAngle()) {
+        this->HideTorn(at, strides, hidden_cells);
+      }
+      std::transform(at.begin(), at.end(), at.begin(), [this, a](double value) { return value * this->Factors[a]; });
+    } else if (axis == 2 && this->Vertical->IsCurved()) {
+      this->Vertical->Read(step, first + 2, 3);
+      continue;
+    } else {
+      at = this->Axes[a];
+      strides[a] = 1;
+    }
+    double* to = first + axis;
+    for (size_t k = 0; k < n[2]; ++k) {
+      for (size_t j = 0; j < n[1]; ++j) {
+        for (size_t i = 0; i < n[0]; ++i, to += 3) {
+          *to = at[i * strides[0] + j * strides[1] + k * strides[2]];
+        }
+      }
+    }
+  }
+  this->HideMissing(points, hidden_points);
   return points;
+}
+
+// Marks points that have no place, and puts them where the last one is that has one.
+void vtkStratusCFGrid::HideMissing(vtkDoubleArray* points, std::vector<char>& hidden) const
+{
+  const size_t count = static_cast<size_t>(points->GetNumberOfTuples());
+  double* const at = points->GetPointer(0);
+  const auto missing = [at](size_t i) { return std::isnan(at[3 * i]) || std::isnan(at[3 * i + 1]) || std::isnan(at[3 * i + 2]); };
+  size_t there = 0;
+  while (there < count && missing(there)) {
+    ++there;
+  }
+  if (there == count) {
+    this->File.Fail("no point of '" + this->Of.Name + "' has a place: everywhere one of its coordinates, or a term of them, is missing");
+  }
+  for (size_t i = 0; i < count; ++i) {
+    if (missing(i)) {
+      hidden.resize(count, 0);
+      hidden[i] = 1;
+      std::copy(at + 3 * there, at + 3 * there + 3, at + 3 * i);
+    } else {
+      there = i;
+    }
+  }
 }

@@ -3,11 +3,16 @@
 #ifndef vtkStratusCFGrid_h
 #define vtkStratusCFGrid_h
 
+#include "vtkStratusCFVertical.h"
 #include "vtkStratusNetCDFFile.h"
+#include "vtkStratusUnits.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
+
+class vtkDoubleArray;
 
 // Values over some of the axes x, y, z, all others being fixed. An axis that they do not depend on has the stride 0.
 struct vtkStratusCFField {
@@ -27,52 +32,59 @@ public:
 
   vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable); // throws vtkStratusReadError
 
-  bool IsCurved() const { return this->Horizontal[0] || this->Height || this->Formula > 0; }
+  bool IsCurved() const { return this->Horizontal[0] || this->Vertical->IsCurved(); }
   bool IsUniform() const;
   std::string Describe() const { return this->Description; }
   bool IsInMetres() const { return this->Metres; }
+  bool IsSheet() const { return this->Flat && !this->Metres; } // x and y are in metres, and z is not
   const Variable* GetTime() const { return this->Time; }
-  size_t GetLength(int axis) const { return this->Axes[axis].size(); }
+  const vtkStratusNetCDFFile& GetFile() const { return this->File; }
+  int GetDimension(int axis) const { return this->Dimensions[static_cast<size_t>(axis)]; }
+  size_t GetLength(int axis) const { return this->File.LengthOf(this->GetDimension(axis)); }
   const std::vector<double>& GetAxis(int axis) const { return this->Axes[axis]; } // ascending
+  // Returns 0, 1, 2 for a coordinate along x, y, z, and -1 where its attributes tell nothing.
+  int AxisOf(const Variable& coordinate) const;
+  // Returns whether the variable depends on time and the three axes only, and whether on one of them.
+  bool Fits(const Variable& variable) const;
+  bool Has(const Variable& variable, int axis) const;
+  // Reads a variable that fits. One on other dimensions than the grid's own needs those.
+  vtkStratusCFField ReadField(const Variable& variable, size_t step, const std::array<int, 3>* dimensions = nullptr) const;
   // Values of the variable with x fastest, along ascending axes.
   vtkSmartPointer<vtkDataArray> ReadValues(size_t step) const;
   // Points of a curved grid, x fastest, in doubles.
-  vtkSmartPointer<vtkDataArray> ReadPoints(size_t step) const;
+  // hidden_points: 1 for points that have no place, hidden_cells: 1 for cells that longitudes around a pole tear apart; empty: none
+  vtkSmartPointer<vtkDataArray> ReadPoints(size_t step, std::vector<char>& hidden_points, std::vector<char>& hidden_cells) const;
 
 private:
-  struct Source {
-    const Variable* Coordinate = nullptr; // of one dimension
-    std::string Units;
-  };
   void FindDimensions();
   void SortDimensions(std::vector<int> space);
   void FindCoordinates();
-  void FindHeight(const std::vector<const Variable*>& others);
-  int AxisOf(const Variable& coordinate) const;
+  void FindHorizontal(const std::vector<const Variable*>& others);
+  bool FindWrfSpacing(const Variable& x, const Variable& y);
   int AxisOfDimension(int dimension) const;
+  vtkStratusUnit UnitOf(const Variable& coordinate) const;
   void ReadAxis(int axis);
   void ConvertUnits();
-  void ConvertAxis(int axis, double factor);
-  bool Fits(const Variable& variable) const;
-  vtkStratusCFField ReadField(const Variable& variable, size_t step, const char* complete) const;
-  const Variable& Term(const std::string& terms, const std::string& name) const;
-  double HeightByFormula(const std::vector<vtkStratusCFField>& terms, size_t x, size_t y, size_t z) const;
+  void ConvertAxis(int axis);
+  double MiddleLatitude() const;
+  std::vector<double> ReadHorizontal(int axis, size_t step, std::array<size_t, 3>& strides) const;
+  void HideTorn(const std::vector<double>& longitudes, const std::array<size_t, 3>& strides, std::vector<char>& hidden) const;
+  void HideMissing(vtkDoubleArray* points, std::vector<char>& hidden) const;
 
   const vtkStratusNetCDFFile& File;
   const Variable& Of;
   std::array<int, 3> Dimensions = { { -1, -1, -1 } }; // of x, y, z
   int TimeDimension = -1;
   const Variable* Time = nullptr;
-  std::array<Source, 3> Sources;
+  std::array<const Variable*, 3> Along = { { nullptr, nullptr, nullptr } }; // coordinates of one dimension
   std::array<std::vector<double>, 3> Axes;
   std::array<bool, 3> Flipped = { { false, false, false } };
-  std::array<const Variable*, 2> Horizontal = { { nullptr, nullptr } }; // of two dimensions
-  const Variable* Height = nullptr;                                     // of three
-  int Formula = 0;                                                      // number of a row in the table of formulas, from 1
-  std::vector<const Variable*> Terms;
-  std::array<double, 3> Factors = { { 1.0, 1.0, 1.0 } }; // of coordinates, to metres
-  bool Pressure = false;
-  bool Metres = true;
+  std::array<const Variable*, 2> Horizontal = { { nullptr, nullptr } }; // of two dimensions or more
+  std::unique_ptr<vtkStratusCFVertical> Vertical;
+  std::array<double, 2> Spacing = { { 0.0, 0.0 } }; // of points without coordinates, in metres; 0: unknown
+  std::array<double, 2> Factors = { { 1.0, 1.0 } }; // of x and y in m or degrees, to metres
+  bool Continuous = false;                          // longitudes were made so
+  bool Metres = true, Flat = false;                 // all axes are in metres; x and y are
   std::string Description;
 };
 

@@ -3,6 +3,7 @@
 
 #include "vtkStratusCFGrid.h"
 
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkObjectFactory.h"
@@ -10,6 +11,7 @@
 #include "vtkPoints.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <climits>
@@ -30,6 +32,18 @@ std::set<std::string> FindReferred(const vtkStratusNetCDFFile& file)
     }
   }
   return names;
+}
+
+void Hide(vtkDataSetAttributes* data, const std::vector<char>& hidden, unsigned char flag)
+{
+  if (hidden.empty()) {
+    return;
+  }
+  vtkSmartPointer<vtkUnsignedCharArray> ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfValues(static_cast<vtkIdType>(hidden.size()));
+  std::transform(hidden.begin(), hidden.end(), ghosts->GetPointer(0), [flag](char one) { return one ? flag : 0; });
+  data->AddArray(ghosts);
 }
 } // namespace
 
@@ -56,6 +70,11 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
     }
   }
   this->Description = grid.Describe() + file.DescribeValues(*file.Find(this->ChosenName()));
+  if (grid.IsSheet()) {
+    vtkWarningMacro(
+      << file.GetPath() << ": the levels of '" << this->ChosenName()
+      << "' have no unit of length or pressure, and no formula that is known: heights are mere numbers beside x and y in metres");
+  }
   this->LengthUnits = grid.IsInMetres() ? "m" : "";
   return grid.IsCurved() ? "vtkStructuredGrid" : grid.IsUniform() ? "vtkImageData" : "vtkRectilinearGrid";
 }
@@ -83,8 +102,11 @@ void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFFile& file, size_t step
   } else if (vtkStructuredGrid* curved = vtkStructuredGrid::SafeDownCast(output)) {
     curved->SetDimensions(n[0], n[1], n[2]);
     vtkSmartPointer<vtkPoints> points = vtkSmartPointer<vtkPoints>::New();
-    points->SetData(grid.ReadPoints(step));
+    std::vector<char> hidden_points, hidden_cells;
+    points->SetData(grid.ReadPoints(step, hidden_points, hidden_cells));
     curved->SetPoints(points);
+    Hide(curved->GetPointData(), hidden_points, vtkDataSetAttributes::HIDDENPOINT);
+    Hide(curved->GetCellData(), hidden_cells, vtkDataSetAttributes::HIDDENCELL);
   }
   const vtkSmartPointer<vtkDataArray> values = grid.ReadValues(step);
   output->GetPointData()->AddArray(values);

@@ -6,16 +6,33 @@
  * The output's class follows from the coordinates of the variable's dimensions:
  * - evenly spaced ones along all axes give a vtkImageData (so do dimensions without coordinates, counted from 0);
  * - others a vtkRectilinearGrid, at the very coordinates that the file has;
- * - two-dimensional ones (latitude and longitude of a turned or curved grid), a three-dimensional height, or a height that follows terrain
- * or a free surface (formula_terms of ocean_sigma_coordinate, ocean_s_coordinate_g1 and _g2, atmosphere_hybrid_height_coordinate) give a
+ * - two-dimensional ones (latitude and longitude of a turned or curved grid), or heights that differ from column to column, give a
  *   vtkStructuredGrid, anew at each time step where they change in time.
  *
  * Axes are told by axis, standard_name, units and names, else by their order (time, z, y, x). Coordinates that decrease are turned round
- * with their values, positive: "down" becomes negative z. Where both horizontal coordinates are degrees, they become metres on a sphere of
- * 6,371 km at the middle latitude; lengths become metres, a pressure becomes the height of the standard atmosphere. GetDescription() tells
- * what was done. Values are point data of the variable's name.
+ * with their values. Units are any that UDUNITS knows where the module is built with it, else common ones.
  *
- * Coordinates that are missing, not finite, repeated or not monotone are errors, and so is a time that does not increase.
+ * Horizontal coordinates: where both are degrees (or radians), they become metres on a sphere of 6,371 km at the middle latitude.
+ * Longitudes that jump by 360 degrees are made continuous; the first one stays. Of a lattice that runs around a pole they cannot be
+ * continuous everywhere: cells whose longitudes differ by more than 180 degrees are blanked by vtkGhostType.
+ *
+ * Heights, in metres, follow from the first of these that the file has:
+ * - a coordinate of three dimensions;
+ * - formula_terms, by every formula of the conventions' appendix D. A formula for pressure gives heights by the hypsometric equation of dry
+ *   air where the file has air_temperature on the same levels: up from surface_altitude (or surface_geopotential), else from the height of
+ *   the surface pressure in the standard atmosphere. Without a temperature, pressure becomes the height of the standard atmosphere;
+ * - PH and PHB of WRF, by (PH + PHB) / 9.81, in the middle of layers for variables there. Staggered variables have the mean of the heights
+ *   around them. WRF's ideal cases, whose longitudes are all alike, have DX and DY as distances of points;
+ * - the levels' coordinate: a length, a geopotential, a pressure as the height of the standard atmosphere, or a pressure in decibars as the
+ *   depth of sea water of 1025 kg m-3. It counts down if positive is "down" in any case, or without this attribute, if standard_name is
+ *   depth or the name begins with "depth" over values none of which is negative.
+ * Levels that have no unit stay numbers, with a warning where x and y are metres.
+ *
+ * GetDescription() says which variables coordinates came from, and what was made of their units. Values are point data of the variable's
+ * name. Points of which a coordinate of two or more dimensions, or a term of the height, is missing are blanked by vtkGhostType.
+ *
+ * Coordinates of one dimension that have missing values, values that are not finite, are repeated or not monotone are errors, and so are
+ * terms of another quantity than their formula's, pressures below 0, and a time that does not increase.
  *
  * @sa vtkStratusUgridReader
  */

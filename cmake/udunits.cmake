@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Finds libudunits2 and sets stratus_udunits: whether the readers of netCDF files read units by it, or know a few names only.
+set(STRATUS_BUILD_UDUNITS AUTO CACHE STRING "Read units of netCDF files by UDUNITS, which needs libudunits2: ON, OFF, or AUTO (where it is found)")
+set_property(CACHE STRATUS_BUILD_UDUNITS PROPERTY STRINGS AUTO ON OFF)
+set(stratus_udunits OFF)
+if (STRATUS_BUILD_UDUNITS AND stratus_netcdf)
+  find_path(UDUNITS_INCLUDE_DIR udunits2.h PATH_SUFFIXES udunits2)
+  find_library(UDUNITS_LIBRARY udunits2)
+  mark_as_advanced(UDUNITS_INCLUDE_DIR UDUNITS_LIBRARY)
+  if (UDUNITS_INCLUDE_DIR AND UDUNITS_LIBRARY)
+    set(stratus_udunits ON)
+  elseif (STRATUS_BUILD_UDUNITS STREQUAL "AUTO")
+    message(STATUS "No libudunits2: the readers of netCDF files know common units only (Debian: libudunits2-dev)")
+  else ()
+    message(FATAL_ERROR "STRATUS_BUILD_UDUNITS is ${STRATUS_BUILD_UDUNITS}, but libudunits2 was not found (Debian: libudunits2-dev)")
+  endif ()
+endif ()
