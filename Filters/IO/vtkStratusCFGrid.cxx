@@ -40,61 +40,26 @@ int AxisOfName(const std::string& name)
 
 bool vtkStratusCFGrid::IsVolume(const vtkStratusNetCDFFile& file, const Variable& variable)
 {
-  if (variable.Type == NC_CHAR || variable.Type >= NC_STRING) {
-    return false;
-  }
-  int space = 0;
-  for (int dimension : variable.Dimensions) {
-    space += file.LengthOf(dimension) > 1 && !file.TimeOf(dimension) ? 1 : 0;
-  }
-  return space == 3;
+  return variable.Type != NC_CHAR && variable.Type < NC_STRING && vtkStratusNetCDFLayout(file, variable, [](int) { return -1; }).IsVolume();
 }
 
-vtkStratusCFGrid::vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable) : File(file), Of(variable)
+vtkStratusCFGrid::vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable)
+    : File(file), Of(variable), Layout(file, variable, [this](int dimension) { return this->AxisOfDimension(dimension); }),
+      Dimensions(Layout.GetAxes())
 {
-  this->FindDimensions();
+  if (!this->Layout.IsVolume()) {
+    file.Fail("variable '" + variable.Name + "' has " + std::to_string(this->Layout.GetCount()) +
+      " dimensions in space that are longer than 1, a volume has 3; its dimensions are " + file.DescribeDimensions(variable));
+  }
   this->FindCoordinates();
   this->ConvertUnits();
-}
-
-void vtkStratusCFGrid::FindDimensions()
-{
-  std::vector<int> space;
-  for (int dimension : this->Of.Dimensions) {
-    const Variable* time = this->File.TimeOf(dimension);
-    if (time) {
-      this->Time = time;
-      this->TimeDimension = dimension;
-    } else if (this->File.LengthOf(dimension) > 1) {
-      space.push_back(dimension);
-    }
-  }
-  if (space.size() != 3) {
-    this->File.Fail("variable '" + this->Of.Name + "' has " + std::to_string(space.size()) +
-      " dimensions in space that are longer than 1; a volume has 3");
-  }
-  this->SortDimensions(space);
-}
-
-// By what the dimensions' coordinates tell, if that names each axis once; else x is the last.
-void vtkStratusCFGrid::SortDimensions(std::vector<int> space)
-{
-  this->Dimensions = { { space[2], space[1], space[0] } };
-  std::array<int, 3> told = { { -1, -1, -1 } };
-  for (int dimension : space) {
-    const int axis = this->AxisOfDimension(dimension);
-    if (axis < 0 || told[static_cast<size_t>(axis)] >= 0) {
-      return;
-    }
-    told[static_cast<size_t>(axis)] = dimension;
-  }
-  this->Dimensions = told;
+  this->Description += this->Layout.Describe();
 }
 
 int vtkStratusCFGrid::AxisOfDimension(int dimension) const
 {
   const std::string& name = this->File.NameOf(dimension);
-  const Variable* own = this->File.Find(name);
+  const Variable* own = this->File.CoordinateOf(dimension);
   const int axis = own ? this->AxisOf(*own) : -1;
   return axis >= 0 ? axis : AxisOfName(name);
 }
@@ -121,7 +86,7 @@ bool vtkStratusCFGrid::Fits(const Variable& variable) const
 {
   return variable.Type != NC_CHAR && variable.Type < NC_STRING &&
     std::all_of(variable.Dimensions.begin(), variable.Dimensions.end(), [this](int one) {
-      return one == this->TimeDimension || this->File.LengthOf(one) == 1 ||
+      return one == this->Layout.GetTime() || this->Layout.IsFixed(one) || this->File.LengthOf(one) == 1 ||
         std::find(this->Dimensions.begin(), this->Dimensions.end(), one) != this->Dimensions.end();
     });
 }
@@ -144,20 +109,38 @@ void vtkStratusCFGrid::FindCoordinates()
 {
   std::vector<const Variable*> others;
   for (const std::string& name : vtkStratusWords(this->File.Text(this->Of, "coordinates"))) {
-    const Variable* one = this->File.Find(name);
+    const Variable* one = this->File.Find(name, &this->Of);
     if (one && this->Fits(*one)) {
       others.push_back(one);
     }
   }
   for (size_t a = 0; a < 3; ++a) {
     const int dimension = this->Dimensions[a];
-    const auto along = [dimension](const Variable* one) { return one && one->Dimensions.size() == 1 && one->Dimensions[0] == dimension; };
-    const Variable* own = this->File.Find(this->File.NameOf(dimension));
+    const auto along = [dimension](const Variable* one) {
+      return one && one->Dimensions.size() == 1 && one->Dimensions[0] == dimension && one->Type != NC_CHAR && one->Type < NC_STRING;
+    };
+    const Variable* own = this->File.CoordinateOf(dimension);
     const auto other = std::find_if(others.begin(), others.end(), along);
     this->Along[a] = along(own) ? own : other == others.end() ? nullptr : *other;
   }
+<<<<<<< HEAD
   this->Vertical = std::make_unique<vtkStratusCFVertical>(*this, this->Along[2], others);
   this->FindHorizontal(others);
+=======
+  if (!this->Sources[0].Coordinate || !this->Sources[1].Coordinate) {
+    std::array<const Variable*, 2> found = { { nullptr, nullptr } };
+    for (const Variable* one : others) {
+      const int axis = one->Dimensions.size() >= 2 ? this->AxisOf(*one) < 0 ? AxisOfName(one->BaseName()) : this->AxisOf(*one) : -1;
+      if (axis == 0 || axis == 1) {
+        found[static_cast<size_t>(axis)] = one;
+      }
+    }
+    if (found[0] && found[1]) {
+      this->Horizontal = found;
+    }
+  }
+  this->FindHeight(others);
+>>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
   for (int a = 0; a < 3; ++a) {
     this->ReadAxis(a);
   }
@@ -194,6 +177,7 @@ void vtkStratusCFGrid::FindHorizontal(const std::vector<const Variable*>& others
 // WRF's ideal cases have longitudes and latitudes of 0 all over, and the distance of points as attributes of the file.
 bool vtkStratusCFGrid::FindWrfSpacing(const Variable& x, const Variable& y)
 {
+<<<<<<< HEAD
   Variable global = Variable();
   global.Id = NC_GLOBAL;
   for (const Variable* one : { &x, &y }) {
@@ -202,6 +186,17 @@ bool vtkStratusCFGrid::FindWrfSpacing(const Variable& x, const Variable& y)
     values->GetRange(range);
     if (range[0] < range[1]) {
       return false;
+=======
+  const std::vector<std::string> words = vtkStratusWords(terms);
+  for (size_t i = 0; i + 1 < words.size(); i += 2) {
+    if (words[i] == name + ":") {
+      const Variable* found = this->File.Find(words[i + 1], &this->Of);
+      if (!found || !this->Fits(*found)) {
+        this->File.Fail(
+          "formula_terms name '" + words[i + 1] + "' for '" + name + "', which " + (found ? "has another grid" : "is not there"));
+      }
+      return *found;
+>>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
     }
   }
   std::array<double, 2> spacing = { { 0.0, 0.0 } };
@@ -334,8 +329,13 @@ vtkStratusCFField vtkStratusCFGrid::ReadField(const Variable& variable, size_t s
   vtkStratusCFField field;
   std::vector<size_t> start, count;
   for (int dimension : variable.Dimensions) {
+<<<<<<< HEAD
     const bool space = std::find(axes.begin(), axes.end(), dimension) != axes.end();
     start.push_back(dimension == this->TimeDimension ? step : 0);
+=======
+    const bool space = std::find(this->Dimensions.begin(), this->Dimensions.end(), dimension) != this->Dimensions.end();
+    start.push_back(space ? 0 : this->Layout.IndexOf(dimension, step));
+>>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
     count.push_back(space ? this->File.LengthOf(dimension) : 1);
   }
   size_t stride = 1;

@@ -20,18 +20,33 @@
 vtkStandardNewMacro(vtkStratusCFReader);
 
 namespace {
-// Names of the variables that others refer to as coordinates, bounds or terms of a height.
-std::set<std::string> FindReferred(const vtkStratusNetCDFFile& file)
+using Variable = vtkStratusNetCDFFile::Variable;
+
+// The variables that others refer to as coordinates, bounds or terms of a height.
+std::set<const Variable*> FindReferred(const vtkStratusNetCDFFile& file)
 {
-  std::set<std::string> names;
-  for (const vtkStratusNetCDFFile::Variable& one : file.GetVariables()) {
+  std::set<const Variable*> referred;
+  for (const Variable& one : file.GetVariables()) {
     for (const char* attribute : { "coordinates", "bounds", "formula_terms" }) {
       for (const std::string& word : vtkStratusWords(file.Text(one, attribute))) {
-        names.insert(word);
+        referred.insert(file.Find(word, &one));
       }
     }
   }
-  return names;
+  return referred;
+}
+
+// Tells that no variable is a volume, and which variables there are.
+[[noreturn]] void FailWithoutVolume(const vtkStratusNetCDFFile& file)
+{
+  constexpr size_t most = 10;
+  const std::vector<Variable>& all = file.GetVariables();
+  std::string text;
+  for (size_t i = 0; i < std::min(most, all.size()); ++i) {
+    text += (i > 0 ? "; '" : "'") + all[i].Name + "' has the dimensions " + file.DescribeDimensions(all[i]);
+  }
+  file.Fail("there is no variable on a grid of three dimensions in space that are longer than 1; " + (text.empty() ? "it has none" : text) +
+    (all.size() > most ? "; and " + std::to_string(all.size() - most) + " others" : ""));
 }
 
 void Hide(vtkDataSetAttributes* data, const std::vector<char>& hidden, unsigned char flag)
@@ -49,32 +64,43 @@ void Hide(vtkDataSetAttributes* data, const std::vector<char>& hidden, unsigned 
 
 std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
 {
-  const std::set<std::string> referred = FindReferred(file);
-  for (const vtkStratusNetCDFFile::Variable& one : file.GetVariables()) {
-    if (vtkStratusCFGrid::IsVolume(file, one) && referred.count(one.Name) == 0) {
+  const std::set<const Variable*> referred = FindReferred(file);
+  for (const Variable& one : file.GetVariables()) {
+    if (vtkStratusCFGrid::IsVolume(file, one) && referred.count(&one) == 0) {
       this->Variables.push_back({ one.Name, file.Text(one, "units"), file.Text(one, "long_name") });
     }
   }
-  const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName()));
+  const Variable* wanted = this->VariableName && *this->VariableName ? file.Find(this->VariableName) : nullptr;
+  if (wanted && !vtkStratusCFGrid::IsVolume(file, *wanted)) {
+    vtkStratusCFGrid(file, *wanted); // fails with the reason
+  }
+  if (this->Variables.empty()) {
+    FailWithoutVolume(file);
+  }
+  const Variable& chosen = *file.Find(this->ChosenName());
+  const vtkStratusCFGrid grid(file, chosen);
   for (int a = 0; a < 3; ++a) {
     if (grid.GetLength(a) > static_cast<size_t>(INT_MAX)) {
       file.Fail("a dimension of " + std::to_string(grid.GetLength(a)) + " values is longer than VTK's grids, 2147483647");
     }
     this->WholeExtent[2 * a + 1] = static_cast<int>(grid.GetLength(a)) - 1;
   }
-  if (grid.GetTime()) {
-    this->Times = file.ReadTimes(*grid.GetTime());
-    this->TimeUnits = file.Text(*grid.GetTime(), "units");
-    if (this->Times.empty()) {
-      file.Fail("time '" + grid.GetTime()->Name + "' has no steps");
-    }
+  this->Description = grid.Describe() + file.DescribeValues(chosen);
+  if (grid.GetTime() >= 0) {
+    const vtkStratusNetCDFFile::TimeSteps steps = file.ReadTimes(grid.GetTime());
+    this->Times = steps.Values;
+    this->TimeUnits = steps.Units;
+    this->Description += steps.Note;
   }
+<<<<<<< HEAD
   this->Description = grid.Describe() + file.DescribeValues(*file.Find(this->ChosenName()));
   if (grid.IsSheet()) {
     vtkWarningMacro(
       << file.GetPath() << ": the levels of '" << this->ChosenName()
       << "' have no unit of length or pressure, and no formula that is known: heights are mere numbers beside x and y in metres");
   }
+=======
+>>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
   this->LengthUnits = grid.IsInMetres() ? "m" : "";
   return grid.IsCurved() ? "vtkStructuredGrid" : grid.IsUniform() ? "vtkImageData" : "vtkRectilinearGrid";
 }

@@ -9,6 +9,17 @@
  * - two-dimensional ones (latitude and longitude of a turned or curved grid), or heights that differ from column to column, give a
  *   vtkStructuredGrid, anew at each time step where they change in time.
  *
+ * Variables in groups have their path in their names ("run1/rho"). Coordinates and terms are looked up in the variable's group, in the
+ * groups above it, then in all groups.
+ *
+ * A variable may have more dimensions than three:
+ * - A time is a dimension whose variable has units "... since ...", standard_name time, axis T or a time's name, numbers or texts
+ *   ("2020-06-01_12:00:00" becomes seconds since the first), or that itself has a time's name ("Time", "month").
+ * - An ensemble (standard_name realization, axis E, or its name) is read at index 0.
+ * - If more than three dimensions of several values are left, those that tell their axes are the axes, else the last three. The outermost
+ *   one of the others is the time if there is none and this dimension has no coordinates. The rest is read at index 0.
+ * - A dimension that SetSelection() names is read at its index, whatever it is.
+ *
  * Axes are told by axis, standard_name, units and names, else by their order (time, z, y, x). Coordinates that decrease are turned round
  * with their values. Units are any that UDUNITS knows where the module is built with it, else common ones.
  *

@@ -70,40 +70,99 @@ void vtkStratusNetCDFFile::Check(int status, const std::string& what) const
   }
 }
 
-vtkStratusNetCDFFile::vtkStratusNetCDFFile(const std::string& path) : Path(path)
+vtkStratusNetCDFFile::vtkStratusNetCDFFile(const std::string& path, const std::string& selection) : Path(path)
 {
   this->Check(nc_open(path.c_str(), NC_NOWRITE, &this->Id), "no netCDF file that can be read");
   try {
-    int dimensions = 0, variables = 0, attributes = 0, unlimited = 0;
-    char name[NC_MAX_NAME + 1] = "";
-    this->Check(nc_inq(this->Id, &dimensions, &variables, &attributes, &unlimited), "contents");
-    for (int i = 0; i < dimensions; ++i) {
-      size_t length = 0;
-      this->Check(nc_inq_dim(this->Id, i, name, &length), "dimension");
-      this->Names.push_back(name);
-      this->Lengths.push_back(length);
-    }
-    for (int i = 0; i < variables; ++i) {
-      Variable one = { i, NC_NAT, "", {} };
-      int count = 0;
-      this->Check(nc_inq_varndims(this->Id, i, &count), "variable");
-      one.Dimensions.resize(static_cast<size_t>(count));
-      this->Check(nc_inq_var(this->Id, i, name, &one.Type, nullptr, one.Dimensions.data(), nullptr), "variable");
-      one.Name = name;
-      this->Variables.push_back(one);
-    }
-    this->CheckLength(attributes, unlimited);
+    this->Load(this->Id, "");
+    this->CheckLength();
+    this->Select(selection);
   } catch (const vtkStratusReadError&) {
     nc_close(this->Id);
     throw;
   }
 }
 
+// Lists the dimensions and variables of a group, then those of the groups in it. `path` has a slash at its end.
+void vtkStratusNetCDFFile::Load(int group, const std::string& path)
+{
+  char name[NC_MAX_NAME + 1] = "";
+  int dimensions = 0, variables = 0, groups = 0, unlimited = 0;
+  this->Check(nc_inq_dimids(group, &dimensions, nullptr, 0), "dimensions");
+  this->Check(nc_inq_varids(group, &variables, nullptr), "variables");
+  this->Check(nc_inq_grps(group, &groups, nullptr), "groups");
+  this->Check(nc_inq_unlimdims(group, &unlimited, nullptr), "unlimited dimensions");
+  std::vector<int> dimension_ids(static_cast<size_t>(dimensions)), variable_ids(static_cast<size_t>(variables)),
+    group_ids(static_cast<size_t>(groups)), unlimited_ids(static_cast<size_t>(unlimited));
+  this->Check(nc_inq_dimids(group, nullptr, dimension_ids.data(), 0), "dimensions");
+  this->Check(nc_inq_varids(group, nullptr, variable_ids.data()), "variables");
+  this->Check(nc_inq_grps(group, nullptr, group_ids.data()), "groups");
+  this->Check(nc_inq_unlimdims(group, nullptr, unlimited_ids.data()), "unlimited dimensions");
+  for (int id : dimension_ids) {
+    size_t length = 0;
+    this->Check(nc_inq_dim(group, id, name, &length), "dimension");
+    this->Numbers[id] = static_cast<int>(this->Names.size());
+    this->Names.push_back(name);
+    this->Paths.push_back(path);
+    this->Lengths.push_back(length);
+    this->Unlimited.push_back(std::count(unlimited_ids.begin(), unlimited_ids.end(), id) > 0 ? 1 : 0);
+    this->Selected.push_back(-1);
+  }
+  for (int id : variable_ids) {
+    Variable one = { group, id, NC_NAT, "", {} };
+    int count = 0;
+    this->Check(nc_inq_varndims(group, id, &count), "variable");
+    one.Dimensions.resize(static_cast<size_t>(count));
+    this->Check(nc_inq_var(group, id, name, &one.Type, nullptr, one.Dimensions.data(), nullptr), "variable");
+    one.Name = path + name;
+    for (int& dimension : one.Dimensions) {
+      dimension = this->Numbers.at(dimension);
+    }
+    this->Variables.push_back(one);
+  }
+  for (int id : group_ids) {
+    this->Check(nc_inq_grpname(id, name), "group");
+    this->Load(id, path + name + "/");
+  }
+}
+
+void vtkStratusNetCDFFile::Select(const std::string& selection)
+{
+  std::istringstream stream(selection);
+  for (std::string part; std::getline(stream, part, ',');) {
+    const size_t equal = part.rfind('=');
+    const std::string name = part.substr(0, equal), number = equal == std::string::npos ? "" : part.substr(equal + 1);
+    if (name.empty() || number.empty() || number.size() > 18 || number.find_first_not_of("0123456789") != std::string::npos) {
+      this->Fail("the selection '" + part + "' is not NAME=INDEX, with a dimension's name and an index from 0");
+    }
+    const long long index = std::stoll(number);
+    std::string names;
+    bool found = false;
+    for (size_t i = 0; i < this->Names.size(); ++i) {
+      const std::string path = this->Paths[i] + this->Names[i];
+      names += (names.empty() ? "" : ", ") + path + " (" + std::to_string(this->Lengths[i]) + ")";
+      if (name != path && name != "/" + path && name != this->Names[i]) {
+        continue;
+      }
+      if (static_cast<size_t>(index) >= this->Lengths[i]) {
+        this->Fail("the selection '" + part + "' is out of range: '" + path + "' has " + std::to_string(this->Lengths[i]) + " values" +
+          (this->Lengths[i] > 0 ? ", the index must be 0 to " + std::to_string(this->Lengths[i] - 1) : ""));
+      }
+      this->Selected[i] = index;
+      found = true;
+    }
+    if (!found) {
+      this->Fail("there is no dimension '" + name + "' to select; those that are: " + (names.empty() ? "none" : names));
+    }
+  }
+}
+
 // libnetcdf takes zeros for what a file of the classic formats lacks at its end, so its least length is computed from its contents, as the
 // format's specification has it. Other formats are checked by HDF5.
-void vtkStratusNetCDFFile::CheckLength(int attributes, int unlimited) const
+void vtkStratusNetCDFFile::CheckLength() const
 {
-  int format = 0;
+  int format = 0, attributes = 0, unlimited = 0;
+  this->Check(nc_inq(this->Id, nullptr, nullptr, &attributes, &unlimited), "contents");
   this->Check(nc_inq_format(this->Id, &format), "format");
   if (format != NC_FORMAT_CLASSIC && format != NC_FORMAT_64BIT_OFFSET) {
     return;
@@ -141,11 +200,53 @@ vtkStratusNetCDFFile::~vtkStratusNetCDFFile()
   nc_close(this->Id);
 }
 
-const vtkStratusNetCDFFile::Variable* vtkStratusNetCDFFile::Find(const std::string& name) const
+const vtkStratusNetCDFFile::Variable* vtkStratusNetCDFFile::Find(const std::string& name, const Variable* from) const
 {
+  const auto named = [this](const std::string& path) -> const Variable* {
+    const auto found =
+      std::find_if(this->Variables.begin(), this->Variables.end(), [&path](const Variable& one) { return one.Name == path; });
+    return found == this->Variables.end() ? nullptr : &*found;
+  };
+  if (!from || (!name.empty() && name[0] == '/')) {
+    return named(name.substr(name.find_first_not_of('/') == std::string::npos ? name.size() : name.find_first_not_of('/')));
+  }
+  std::string path = from->Name;
+  while (path.find('/') != std::string::npos) {
+    path.resize(path.rfind('/'));
+    if (const Variable* found = named(path + "/" + name)) {
+      return found;
+    }
+  }
+  if (const Variable* found = named(name)) {
+    return found;
+  }
   const auto found =
-    std::find_if(this->Variables.begin(), this->Variables.end(), [&name](const Variable& one) { return one.Name == name; });
+    std::find_if(this->Variables.begin(), this->Variables.end(), [&name](const Variable& one) { return one.BaseName() == name; });
   return found == this->Variables.end() ? nullptr : &*found;
+}
+
+const vtkStratusNetCDFFile::Variable* vtkStratusNetCDFFile::CoordinateOf(int dimension) const
+{
+  const auto found = std::find_if(this->Variables.begin(), this->Variables.end(), [this, dimension](const Variable& one) {
+    return one.Dimensions.size() == 1 && one.Dimensions[0] == dimension && one.BaseName() == this->NameOf(dimension);
+  });
+  return found == this->Variables.end() ? nullptr : &*found;
+}
+
+std::string vtkStratusNetCDFFile::DescribeDimensions(const Variable& variable) const
+{
+  std::string text;
+  for (int dimension : variable.Dimensions) {
+    text += (text.empty() ? "" : ", ") + this->NameOf(dimension) + " (" + std::to_string(this->LengthOf(dimension)) + ")";
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string vtkStratusNetCDFFile::DescribeIndex(int dimension) const
+{
+  const std::string& name = this->NameOf(dimension);
+  return "; '" + name + "' at index " + std::to_string(this->IndexOf(dimension)) + " of 0.." +
+    std::to_string(this->LengthOf(dimension) - 1) + (this->IsSelected(dimension) ? "" : ", select " + name + "=INDEX for another");
 }
 
 int vtkStratusNetCDFFile::FindDimension(const std::string& name) const
@@ -167,16 +268,16 @@ std::string vtkStratusNetCDFFile::Text(const Variable& variable, const char* att
 {
   nc_type type = NC_NAT;
   size_t length = 0;
-  if (nc_inq_att(this->Id, variable.Id, attribute, &type, &length) != NC_NOERR) {
+  if (nc_inq_att(variable.Group, variable.Id, attribute, &type, &length) != NC_NOERR) {
     return "";
   }
   std::string text;
   if (type == NC_CHAR) {
     text.resize(length);
-    this->Check(nc_get_att_text(this->Id, variable.Id, attribute, &text[0]), "attribute");
+    this->Check(nc_get_att_text(variable.Group, variable.Id, attribute, &text[0]), "attribute");
   } else if (type == NC_STRING && length > 0) {
     std::vector<char*> strings(length);
-    this->Check(nc_get_att_string(this->Id, variable.Id, attribute, strings.data()), "attribute");
+    this->Check(nc_get_att_string(variable.Group, variable.Id, attribute, strings.data()), "attribute");
     text = strings[0] ? strings[0] : "";
     nc_free_string(length, strings.data());
   }
@@ -187,11 +288,12 @@ bool vtkStratusNetCDFFile::Number(const Variable& variable, const char* attribut
 {
   nc_type type = NC_NAT;
   size_t length = 0;
-  if (nc_inq_att(this->Id, variable.Id, attribute, &type, &length) != NC_NOERR || length < 1 || type == NC_CHAR || type == NC_STRING) {
+  if (nc_inq_att(variable.Group, variable.Id, attribute, &type, &length) != NC_NOERR || length < 1 || type == NC_CHAR ||
+    type == NC_STRING) {
     return false;
   }
   std::vector<double> values(length);
-  this->Check(nc_get_att_double(this->Id, variable.Id, attribute, values.data()), "attribute");
+  this->Check(nc_get_att_double(variable.Group, variable.Id, attribute, values.data()), "attribute");
   value = values[0];
   return true;
 }
@@ -202,7 +304,7 @@ vtkStratusNetCDFValues vtkStratusNetCDFFile::ValuesOf(const Variable& variable) 
     this->Fail("variable '" + variable.Name + "' holds no numbers");
   }
   try {
-    return vtkStratusNetCDFValues(this->Id, variable.Id, variable.Type, variable.Name);
+    return vtkStratusNetCDFValues(variable.Group, variable.Id, variable.Type, variable.Name);
   } catch (const std::string& why) {
     this->Fail(why);
   }
@@ -242,36 +344,4 @@ std::vector<double> vtkStratusNetCDFFile::ReadComplete(const Variable& variable,
     }
   }
   return values;
-}
-
-const vtkStratusNetCDFFile::Variable* vtkStratusNetCDFFile::TimeOf(int dimension) const
-{
-  const auto is_time = [this](const Variable& one) {
-    return this->Text(one, "units").find(" since ") != std::string::npos || this->Text(one, "standard_name") == "time" ||
-      this->Text(one, "axis") == "T";
-  };
-  const std::string& name = this->NameOf(dimension);
-  const Variable* own = this->Find(name);
-  const bool named = name == "time" || name == "Time" || name == "TIME" || name == "t";
-  if (own && own->Dimensions.size() == 1 && own->Dimensions[0] == dimension && (named || is_time(*own))) {
-    return own;
-  }
-  for (const Variable& one : this->Variables) { // WRF's XTIME along the dimension Time
-    if (one.Dimensions.size() == 1 && one.Dimensions[0] == dimension && is_time(one)) {
-      return &one;
-    }
-  }
-  return nullptr;
-}
-
-std::vector<double> vtkStratusNetCDFFile::ReadTimes(const Variable& variable) const
-{
-  std::vector<double> times = this->ReadComplete(variable, "time");
-  for (size_t i = 1; i < times.size(); ++i) {
-    if (!(times[i] > times[i - 1])) {
-      this->Fail("time '" + variable.Name + "' must increase: step " + std::to_string(i) + " is at " + vtkStratusNumberText(times[i]) +
-        ", after " + vtkStratusNumberText(times[i - 1]));
-    }
-  }
-  return times;
 }

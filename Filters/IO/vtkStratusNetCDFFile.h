@@ -9,6 +9,7 @@
 #include "vtkDataArray.h"
 #include "vtkSmartPointer.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,22 +19,44 @@ class vtkStratusNetCDFFile
 {
 public:
   struct Variable {
-    int Id;
-    int Type; // nc_type
-    std::string Name;
+    int Group, Id;               // numbers of libnetcdf
+    int Type;                    // nc_type
+    std::string Name;            // with the path of its group: "run1/rho", "rho" in the root group
     std::vector<int> Dimensions; // numbers of dimensions, slowest first
+
+    std::string BaseName() const { return this->Name.substr(this->Name.rfind('/') + 1); }
+  };
+  struct TimeSteps {
+    std::vector<double> Values; // ascending
+    std::string Units;          // "hours since 2001-01-01", "" if the file does not say
+    std::string Note;           // "; ..." if steps are numbers because the file has no numbers for them, else ""
   };
 
-  explicit vtkStratusNetCDFFile(const std::string& path); // throws vtkStratusReadError, as all members do
+  // selection: "NAME=INDEX,NAME=INDEX...", dimensions that are read at one index only; "": none.
+  explicit vtkStratusNetCDFFile(
+    const std::string& path, const std::string& selection = ""); // throws vtkStratusReadError, as all members do
   ~vtkStratusNetCDFFile();
   vtkStratusNetCDFFile(const vtkStratusNetCDFFile&) = delete;
   void operator=(const vtkStratusNetCDFFile&) = delete;
 
   const std::string& GetPath() const { return this->Path; }
   const std::vector<Variable>& GetVariables() const { return this->Variables; }
-  const Variable* Find(const std::string& name) const; // nullptr if there is none
+  // Returns the variable of a name, nullptr if there is none. A name without a path is looked up in the group of `from`, then in the groups
+  // above it, then in all groups.
+  const Variable* Find(const std::string& name, const Variable* from = nullptr) const;
+  // Returns the variable that has the dimension's name and this dimension only, nullptr if there is none.
+  const Variable* CoordinateOf(int dimension) const;
   size_t LengthOf(int dimension) const { return this->Lengths[static_cast<size_t>(dimension)]; }
-  const std::string& NameOf(int dimension) const { return this->Names[static_cast<size_t>(dimension)]; }
+  const std::string& NameOf(int dimension) const { return this->Names[static_cast<size_t>(dimension)]; } // without its group
+  bool IsUnlimited(int dimension) const { return this->Unlimited[static_cast<size_t>(dimension)] != 0; }
+  // Returns whether the selection names the dimension, and at which index it is read; 0 without selection.
+  bool IsSelected(int dimension) const { return this->Selected[static_cast<size_t>(dimension)] >= 0; }
+  size_t IndexOf(int dimension) const
+  {
+    return this->IsSelected(dimension) ? static_cast<size_t>(this->Selected[static_cast<size_t>(dimension)]) : 0;
+  }
+  // Returns whether a variable on the dimension has several values along it.
+  bool IsSpread(int dimension) const { return this->LengthOf(dimension) > 1 && !this->IsSelected(dimension); }
   int FindDimension(const std::string& name) const; // -1 if there is none
   size_t CountOf(const Variable& variable) const;   // values
 
@@ -49,22 +72,38 @@ public:
   // Reads all values of integers or reals, in doubles; one that is missing is an error that names `what`.
   std::vector<double> ReadComplete(const Variable& variable, const std::string& what) const;
 
-  // The variable of times along a dimension, nullptr for a dimension that is no time.
-  const Variable* TimeOf(int dimension) const;
-  // Times, which must increase.
-  std::vector<double> ReadTimes(const Variable& variable) const;
+  // "time (12), lat (90), lon (180)"
+  std::string DescribeDimensions(const Variable& variable) const;
+  // "; 'number' at index 0 of 0..9, select number=INDEX for another"
+  std::string DescribeIndex(int dimension) const;
+
+  // Returns whether a dimension is a time: its variable is one, by units, standard_name, axis or name, or its own name is a time's. One
+  // that is selected is none.
+  bool IsTime(int dimension) const;
+  // Reads the steps of a dimension. Numbers must increase. Texts ("2020-06-01_12:00:00") become seconds since the first. Steps without
+  // either, and numbers that are no moments and do not increase (months), are counted from 0.
+  TimeSteps ReadTimes(int dimension) const;
 
   [[noreturn]] void Fail(const std::string& why) const;
 
 private:
   void Check(int status, const std::string& what) const;
-  void CheckLength(int attributes, int unlimited) const;
+  void CheckLength() const;
+  void Load(int group, const std::string& path);
+  void Select(const std::string& selection);
+  const Variable* TimeOf(int dimension) const;
+  const Variable* TextsOf(int dimension) const;
+  std::vector<std::string> ReadTexts(const Variable& variable) const;
   vtkStratusNetCDFValues ValuesOf(const Variable& variable) const;
 
   std::string Path;
   int Id = -1;
   std::vector<std::string> Names;
+  std::vector<std::string> Paths; // of the dimensions' groups, with a slash behind
   std::vector<size_t> Lengths;
+  std::vector<char> Unlimited;
+  std::vector<long long> Selected; // index, or -1
+  std::map<int, int> Numbers;      // of libnetcdf's numbers of dimensions
   std::vector<Variable> Variables;
 };
 

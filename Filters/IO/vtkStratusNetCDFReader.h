@@ -27,9 +27,20 @@ public:
   vtkTypeMacro(vtkStratusNetCDFReader, vtkStratusVariableReader);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  //@{
+  /**
+   * Set/Get the dimensions that are read at one index only: "NAME=INDEX,NAME=INDEX...", indices from 0. A dimension that is selected is
+   * neither an axis nor the time, so that a variable of more than three dimensions can be cut as one likes. A name with the path of its
+   * group ("run1/number") is this group's dimension; without a path it is each dimension of this name. A name that the file does not have,
+   * and an index out of range, are errors. Default none: what is neither axis nor time is read at index 0.
+   */
+  vtkSetStringMacro(Selection);
+  vtkGetStringMacro(Selection);
+  //@}
+
 protected:
   vtkStratusNetCDFReader() = default;
-  ~vtkStratusNetCDFReader() override = default;
+  ~vtkStratusNetCDFReader() override;
 
   /// As those of the superclass, with the file open.
   virtual std::string InspectFile(const vtkStratusNetCDFFile& file) = 0;
@@ -37,6 +48,8 @@ protected:
 
   std::string Inspect() override;
   void Build(size_t step, vtkDataObject* output) override;
+
+  char* Selection = nullptr;
 
 private:
   vtkStratusNetCDFReader(const vtkStratusNetCDFReader&) = delete;

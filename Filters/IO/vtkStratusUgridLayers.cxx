@@ -30,8 +30,8 @@ vtkStratusUgridLayers::vtkStratusUgridLayers(const vtkStratusUgridMesh& mesh) : 
   }
   this->FindOrder();
   for (const Variable* one : { this->Source, this->Surface, this->Bed, this->Wet }) {
-    const Variable* time = one ? this->Mesh.FindTime(*one) : nullptr;
-    this->Time = time ? time : this->Time;
+    const int time = one ? this->Mesh.FindTime(*one) : -1;
+    this->Time = time >= 0 ? time : this->Time;
   }
 }
 
@@ -63,7 +63,7 @@ void vtkStratusUgridLayers::FindHeights()
   for (const Variable& one : this->File.GetVariables()) {
     const std::string name = this->File.Text(one, "standard_name");
     const int layers = this->Mesh.FindLayers(one);
-    const bool named = IsOneOf(one.Name, { "zCoordinates", "zcor", "z_coordinates" }) || IsOneOf(name, { "altitude", "height" });
+    const bool named = IsOneOf(one.BaseName(), { "zCoordinates", "zcor", "z_coordinates" }) || IsOneOf(name, { "altitude", "height" });
     if (named && this->Mesh.IsOnNodes(one) && layers >= 0) {
       this->Kind = Heights;
       this->Source = &one;
@@ -93,10 +93,11 @@ bool vtkStratusUgridLayers::FindLevels(bool sigma)
   for (const Variable& one : this->File.GetVariables()) {
     const std::string name = this->File.Text(one, "standard_name");
     const bool named = sigma
-      ? name == "ocean_sigma_coordinate" || IsOneOf(one.Name, { "siglev", "siglay" }) || EndsWith(one.Name, "_sigma")
-      : IsOneOf(name, { "altitude", "height", "depth" }) || EndsWith(one.Name, "_layer_z") || EndsWith(one.Name, "_interface_z");
+      ? name == "ocean_sigma_coordinate" || IsOneOf(one.BaseName(), { "siglev", "siglay" }) || EndsWith(one.BaseName(), "_sigma")
+      : IsOneOf(name, { "altitude", "height", "depth" }) || EndsWith(one.BaseName(), "_layer_z") ||
+        EndsWith(one.BaseName(), "_interface_z");
     const bool shaped = (one.Dimensions.size() == 1 || (sigma && one.Dimensions.size() == 2 && this->Mesh.IsOnNodes(one))) &&
-      !this->File.TimeOf(one.Dimensions[0]) && !(one.Dimensions.size() == 1 && (this->Mesh.IsOnNodes(one) || this->Mesh.IsOnFaces(one)));
+      this->Mesh.FindTime(one) < 0 && !(one.Dimensions.size() == 1 && (this->Mesh.IsOnNodes(one) || this->Mesh.IsOnFaces(one)));
     if (!named || !shaped) {
       continue;
     }
@@ -131,7 +132,7 @@ bool vtkStratusUgridLayers::FindTerm(const char* term, const Variable*& found) c
   for (const Variable& one : this->File.GetVariables()) {
     const std::vector<std::string> words = vtkStratusWords(this->File.Text(one, "formula_terms"));
     for (size_t i = 0; i + 1 < words.size() && !found; i += 2) {
-      found = words[i] == std::string(term) + ":" ? this->File.Find(words[i + 1]) : nullptr;
+      found = words[i] == std::string(term) + ":" ? this->File.Find(words[i + 1], &one) : nullptr;
     }
   }
   return found != nullptr;
@@ -152,17 +153,17 @@ void vtkStratusUgridLayers::FindSurfaces()
     }
     if (!this->Surface &&
       (name.compare(0, 18, "sea_surface_height") == 0 || name.compare(0, 20, "water_surface_height") == 0 ||
-        IsOneOf(one.Name, { "zeta", "elevation", "elev" }) || EndsWith(one.Name, "_s1"))) {
+        IsOneOf(one.BaseName(), { "zeta", "elevation", "elev" }) || EndsWith(one.BaseName(), "_s1"))) {
       this->Surface = &one;
     }
     if (!this->Bed &&
-      (name.compare(0, 15, "sea_floor_depth") == 0 || IsOneOf(one.Name, { "h", "depth" }) || EndsWith(one.Name, "_flowelem_bl") ||
-        EndsWith(one.Name, "_node_z"))) {
+      (name.compare(0, 15, "sea_floor_depth") == 0 || IsOneOf(one.BaseName(), { "h", "depth" }) ||
+        EndsWith(one.BaseName(), "_flowelem_bl") || EndsWith(one.BaseName(), "_node_z"))) {
       this->Bed = &one;
     }
-    if (IsOneOf(one.Name, { "wet_cells", "wetdry_elem" }) || EndsWith(one.Name, "_wet_cells")) {
+    if (IsOneOf(one.BaseName(), { "wet_cells", "wetdry_elem" }) || EndsWith(one.BaseName(), "_wet_cells")) {
       this->Wet = &one;
-      this->WetIsOne = one.Name != "wetdry_elem";
+      this->WetIsOne = one.BaseName() != "wetdry_elem";
     }
   }
   if (this->Bed) {

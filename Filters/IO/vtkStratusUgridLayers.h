@@ -16,12 +16,13 @@ public:
   explicit vtkStratusUgridLayers(const vtkStratusUgridMesh& mesh); // throws vtkStratusReadError
 
   size_t GetCount() const { return this->Count; }
+  std::array<int, 2> GetDimensions() const { return { { this->LayerDimension, this->BorderDimension } }; } // -1: unknown
   // Which of the borders or layers of a variable is this one, since files count from the top or from the bottom.
   size_t FromBottom(size_t number, size_t of) const { return this->TopFirst ? of - 1 - number : number; }
   // Returns whether a variable has values for each layer, or for each border; neither: it has no layers, or others.
   bool IsOnLayers(const Variable& variable) const;
   bool IsOnBorders(const Variable& variable) const;
-  const Variable* GetTime() const { return this->Time; }
+  int GetTime() const { return this->Time; } // a dimension, or -1
   std::string Describe() const;
   bool Uses(const Variable& variable) const; // as a height
 
@@ -57,7 +58,7 @@ private:
   enum BedType { Altitude, Depth, WaterDepth } BedMeans = Depth;
   const Variable* Wet = nullptr;
   bool WetIsOne = true;
-  const Variable* Time = nullptr;
+  int Time = -1;
 };
 
 #endif

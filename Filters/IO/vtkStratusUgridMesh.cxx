@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <netcdf.h>
 
 namespace {
@@ -18,7 +19,7 @@ const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindTopology(const vtk
     if (file.Text(one, "cf_role") == "mesh_topology" && (!file.Number(one, "topology_dimension", dimension) || dimension == 2.0)) {
       return &one;
     }
-    found = one.Name == "nv" && one.Dimensions.size() == 2 ? &one : found;
+    found = one.BaseName() == "nv" && one.Dimensions.size() == 2 ? &one : found;
   }
   return found;
 }
@@ -29,16 +30,16 @@ vtkStratusUgridMesh::vtkStratusUgridMesh(const vtkStratusNetCDFFile& file) : Fil
   if (!topology) {
     file.Fail("there is no mesh: no variable of cf_role mesh_topology and topology_dimension 2, and no 'nv' of FVCOM");
   }
-  const bool fvcom = topology->Dimensions.size() == 2 && topology->Name == "nv" && file.Text(*topology, "cf_role") != "mesh_topology";
+  const bool fvcom = topology->Dimensions.size() == 2 && topology->BaseName() == "nv" && file.Text(*topology, "cf_role") != "mesh_topology";
   const auto named = [&](const std::string& name, const char* what) -> const Variable& {
-    const Variable* one = file.Find(name);
+    const Variable* one = name.empty() ? nullptr : file.Find(name, topology);
     if (!one) {
       file.Fail("the mesh '" + topology->Name + "' has no " + what + (name.empty() ? "" : ": there is no variable '" + name + "'"));
     }
     return *one;
   };
   if (fvcom) {
-    const Variable* x = file.Find("x");
+    const Variable* x = file.Find("x", topology);
     const std::vector<double> own = x && x->Dimensions.size() == 1 ? file.ReadComplete(*x, "coordinate") : std::vector<double>();
     const bool plane = std::any_of(own.begin(), own.end(), [](double one) { return one != 0.0; }); // FVCOM writes zeros on a sphere
     this->ReadNodes(named(plane ? "x" : "lon", "coordinates"), named(plane ? "y" : "lat", "coordinates"));
@@ -91,6 +92,12 @@ void vtkStratusUgridMesh::ReadFaces(const Variable& connectivity, int first)
   const bool turned = first == 1 ? lengths[0] <= 4 : lengths[1] > MostCorners && lengths[0] <= MostCorners;
   const size_t faces = lengths[turned ? 1 : 0], corners = lengths[turned ? 0 : 1];
   this->FaceDimension = connectivity.Dimensions[turned ? 1 : 0];
+  for (int dimension : { this->NodeDimension, this->FaceDimension }) {
+    if (this->File.IsSelected(dimension)) {
+      this->File.Fail("'" + this->File.NameOf(dimension) + "' is the dimension of the mesh's " +
+        (dimension == this->NodeDimension ? "nodes" : "faces") + ", which cannot be selected");
+    }
+  }
   double start = first;
   this->File.Number(connectivity, "start_index", start);
   if (faces == 0 || corners < 3 || corners > MostCorners) {
@@ -140,26 +147,62 @@ bool vtkStratusUgridMesh::Has(const Variable& variable, int dimension) const
   return std::find(variable.Dimensions.begin(), variable.Dimensions.end(), dimension) != variable.Dimensions.end();
 }
 
-int vtkStratusUgridMesh::FindLayers(const Variable& variable) const
+// The dimensions besides time, nodes and faces that have several values, or none.
+std::vector<int> vtkStratusUgridMesh::FindOthers(const Variable& variable) const
 {
-  int found = -1;
-  for (int dimension : variable.Dimensions) {
-    if (dimension != this->NodeDimension && dimension != this->FaceDimension && !this->File.TimeOf(dimension) &&
-      this->File.LengthOf(dimension) != 1) {
-      found = found == -1 ? dimension : -2;
-    }
-  }
-  return found;
+  std::vector<int> others;
+  std::copy_if(variable.Dimensions.begin(), variable.Dimensions.end(), std::back_inserter(others),
+    [this](int one) { return !this->IsPlace(one) && !this->IsTime(one) && !this->File.IsSelected(one) && this->File.LengthOf(one) != 1; });
+  return others;
 }
 
-const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindTime(const Variable& variable) const
+void vtkStratusUgridMesh::SetLayers(const std::array<int, 2>& dimensions, size_t count)
 {
-  for (int dimension : variable.Dimensions) {
-    if (const Variable* time = this->File.TimeOf(dimension)) {
-      return time;
-    }
+  this->Layers = dimensions;
+  this->LayerCount = count;
+}
+
+int vtkStratusUgridMesh::FindLayers(const Variable& variable) const
+{
+  const std::vector<int> others = this->FindOthers(variable);
+  if (others.size() < 2) {
+    return others.empty() ? -1 : others[0];
   }
-  return nullptr;
+  const auto known =
+    std::find_if(others.begin(), others.end(), [this](int one) { return one == this->Layers[0] || one == this->Layers[1]; });
+  if (known != others.end()) {
+    return *known;
+  }
+  const auto fits = [this](int one) {
+    return this->LayerCount > 0 && (this->File.LengthOf(one) == this->LayerCount || this->File.LengthOf(one) == this->LayerCount + 1);
+  };
+  return std::count_if(others.begin(), others.end(), fits) == 1 ? *std::find_if(others.begin(), others.end(), fits) : -2;
+}
+
+std::string vtkStratusUgridMesh::DescribeOthers(const Variable& variable) const
+{
+  std::string text;
+  for (int dimension : variable.Dimensions) {
+    text += this->File.IsSelected(dimension) ? this->File.DescribeIndex(dimension) : "";
+  }
+  for (int dimension : this->FindOthers(variable)) {
+    text += dimension != this->FindLayers(variable) ? this->File.DescribeIndex(dimension) : "";
+  }
+  return text;
+}
+
+int vtkStratusUgridMesh::FindTime(const Variable& variable) const
+{
+  const auto found =
+    std::find_if(variable.Dimensions.begin(), variable.Dimensions.end(), [this](int dimension) { return this->IsTime(dimension); });
+  return found == variable.Dimensions.end() ? -1 : *found;
+}
+
+// An unlimited dimension without coordinates is a time, too, because neither meshes nor layers grow.
+bool vtkStratusUgridMesh::IsTime(int dimension) const
+{
+  const bool grows = this->File.IsUnlimited(dimension) && !this->File.CoordinateOf(dimension) && !this->File.IsSelected(dimension);
+  return this->File.IsTime(dimension) || (grows && this->File.LengthOf(dimension) > 1 && !this->IsPlace(dimension));
 }
 
 vtkStratusUgridValues vtkStratusUgridMesh::Read(const Variable& variable, size_t step) const
@@ -167,16 +210,16 @@ vtkStratusUgridValues vtkStratusUgridMesh::Read(const Variable& variable, size_t
   const int layers = this->FindLayers(variable);
   std::vector<size_t> start, count;
   for (int dimension : variable.Dimensions) {
-    const bool time = this->File.TimeOf(dimension) != nullptr;
-    const bool whole = dimension == this->NodeDimension || dimension == this->FaceDimension || dimension == layers;
-    start.push_back(time ? std::min(step, this->File.LengthOf(dimension) - 1) : 0);
+    const bool time = this->IsTime(dimension);
+    const bool whole = this->IsPlace(dimension) || dimension == layers;
+    start.push_back(whole ? 0 : time ? std::min(step, this->File.LengthOf(dimension) - 1) : this->File.IndexOf(dimension));
     count.push_back(whole ? this->File.LengthOf(dimension) : 1);
   }
   vtkStratusUgridValues result;
   size_t stride = 1;
   for (size_t i = count.size(); i-- > 0;) {
     const int dimension = variable.Dimensions[i];
-    if (dimension == this->NodeDimension || dimension == this->FaceDimension) {
+    if (this->IsPlace(dimension)) {
       result.Across = stride;
     } else if (dimension == layers) {
       result.Along = stride;

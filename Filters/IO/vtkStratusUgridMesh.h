@@ -5,6 +5,7 @@
 
 #include "vtkStratusNetCDFFile.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -42,15 +43,23 @@ public:
   bool IsCoordinate(const Variable& variable) const { return variable.Name == this->XName || variable.Name == this->YName; }
   bool IsOnNodes(const Variable& variable) const { return this->Has(variable, this->NodeDimension); }
   bool IsOnFaces(const Variable& variable) const { return this->Has(variable, this->FaceDimension); }
-  // The one dimension besides time, nodes and faces, and those of length 1: -1 if there is none, -2 where there are several.
+  // The one dimension besides time, nodes and faces, and those of length 1 or selected: -1 if there is none, -2 where there are several.
+  // Of several, the one that SetLayers() names.
   int FindLayers(const Variable& variable) const;
-  const Variable* FindTime(const Variable& variable) const;
+  // dimensions: of layers and of their borders, -1: unknown. Another one of `count` or `count` + 1 values may take their place.
+  void SetLayers(const std::array<int, 2>& dimensions, size_t count);
+  // Returns "; ..." for each dimension that is read at one of several indices, "" if there is none.
+  std::string DescribeOthers(const Variable& variable) const;
+  int FindTime(const Variable& variable) const; // a dimension, or -1
   vtkStratusUgridValues Read(const Variable& variable, size_t step) const;
   // Reads values without layers, at nodes: values at faces are averaged over those around the node that have one.
   std::vector<double> ReadAtNodes(const Variable& variable, size_t step) const;
   const vtkStratusNetCDFFile& GetFile() const { return this->File; }
 
 private:
+  bool IsTime(int dimension) const;
+  bool IsPlace(int dimension) const { return dimension == this->NodeDimension || dimension == this->FaceDimension; }
+  std::vector<int> FindOthers(const Variable& variable) const;
   bool Has(const Variable& variable, int dimension) const;
   void ReadNodes(const Variable& x, const Variable& y);
   void ReadFaces(const Variable& connectivity, int first);
@@ -58,6 +67,8 @@ private:
 
   const vtkStratusNetCDFFile& File;
   int NodeDimension = -1, FaceDimension = -1;
+  std::array<int, 2> Layers = { { -1, -1 } };
+  size_t LayerCount = 0; // 0: unknown
   std::string XName, YName;
   std::vector<double> X, Y;
   std::vector<size_t> Offsets = { 0 };

@@ -131,8 +131,9 @@ bool vtkStratusUgridReader::CanReadFile(const char* name)
 
 std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
 {
-  const vtkStratusUgridMesh mesh(file);
+  vtkStratusUgridMesh mesh(file);
   const vtkStratusUgridLayers layers(mesh);
+  mesh.SetLayers(layers.GetDimensions(), layers.GetCount());
   for (bool layered : { true, false }) {
     for (const Variable& one : file.GetVariables()) {
       if (IsValues(mesh, layers, one) && layered == (mesh.FindLayers(one) >= 0)) {
@@ -141,24 +142,24 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
     }
   }
   const Variable& chosen = *file.Find(this->ChosenName());
-  const Variable* time = mesh.FindTime(chosen) ? mesh.FindTime(chosen) : layers.GetTime();
-  if (time) {
-    this->Times = file.ReadTimes(*time);
-    this->TimeUnits = file.Text(*time, "units");
-    if (this->Times.empty()) {
-      file.Fail("time '" + time->Name + "' has no steps");
-    }
-  }
   this->LengthUnits = mesh.IsInMetres() ? "m" : "";
-  this->Description = mesh.Describe() + "; " + layers.Describe() + file.DescribeValues(chosen);
+  this->Description = mesh.Describe() + "; " + layers.Describe() + mesh.DescribeOthers(chosen) + file.DescribeValues(chosen);
+  const int time = mesh.FindTime(chosen) >= 0 ? mesh.FindTime(chosen) : layers.GetTime();
+  if (time >= 0) {
+    const vtkStratusNetCDFFile::TimeSteps steps = file.ReadTimes(time);
+    this->Times = steps.Values;
+    this->TimeUnits = steps.Units;
+    this->Description += steps.Note;
+  }
   return "vtkUnstructuredGrid";
 }
 
 void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
 {
   vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(output);
-  const vtkStratusUgridMesh mesh(file);
+  vtkStratusUgridMesh mesh(file);
   const vtkStratusUgridLayers layers(mesh);
+  mesh.SetLayers(layers.GetDimensions(), layers.GetCount());
   std::vector<double> z;
   std::vector<char> dry;
   layers.Read(step, z, dry);
