@@ -123,24 +123,8 @@ void vtkStratusCFGrid::FindCoordinates()
     const auto other = std::find_if(others.begin(), others.end(), along);
     this->Along[a] = along(own) ? own : other == others.end() ? nullptr : *other;
   }
-<<<<<<< HEAD
   this->Vertical = std::make_unique<vtkStratusCFVertical>(*this, this->Along[2], others);
   this->FindHorizontal(others);
-=======
-  if (!this->Sources[0].Coordinate || !this->Sources[1].Coordinate) {
-    std::array<const Variable*, 2> found = { { nullptr, nullptr } };
-    for (const Variable* one : others) {
-      const int axis = one->Dimensions.size() >= 2 ? this->AxisOf(*one) < 0 ? AxisOfName(one->BaseName()) : this->AxisOf(*one) : -1;
-      if (axis == 0 || axis == 1) {
-        found[static_cast<size_t>(axis)] = one;
-      }
-    }
-    if (found[0] && found[1]) {
-      this->Horizontal = found;
-    }
-  }
-  this->FindHeight(others);
->>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
   for (int a = 0; a < 3; ++a) {
     this->ReadAxis(a);
   }
@@ -157,14 +141,14 @@ void vtkStratusCFGrid::FindHorizontal(const std::vector<const Variable*>& others
   }
   std::vector<const Variable*> candidates = others;
   for (const Variable& one : this->File.GetVariables()) {
-    const bool named = one.Name.compare(0, 5, "XLONG") == 0 || one.Name.compare(0, 4, "XLAT") == 0;
+    const bool named = one.BaseName().compare(0, 5, "XLONG") == 0 || one.BaseName().compare(0, 4, "XLAT") == 0;
     if (this->Vertical->IsWrf() && named && this->Fits(one)) {
       candidates.push_back(&one);
     }
   }
   std::array<const Variable*, 2> found = { { nullptr, nullptr } };
   for (const Variable* one : candidates) {
-    const int told = this->AxisOf(*one), axis = told < 0 ? AxisOfName(one->Name) : told;
+    const int told = this->AxisOf(*one), axis = told < 0 ? AxisOfName(one->BaseName()) : told;
     if (this->Has(*one, 0) && this->Has(*one, 1) && (axis == 0 || axis == 1) && !found[static_cast<size_t>(axis)]) {
       found[static_cast<size_t>(axis)] = one;
     }
@@ -177,8 +161,7 @@ void vtkStratusCFGrid::FindHorizontal(const std::vector<const Variable*>& others
 // WRF's ideal cases have longitudes and latitudes of 0 all over, and the distance of points as attributes of the file.
 bool vtkStratusCFGrid::FindWrfSpacing(const Variable& x, const Variable& y)
 {
-<<<<<<< HEAD
-  Variable global = Variable();
+  Variable global = x; // in the same group
   global.Id = NC_GLOBAL;
   for (const Variable* one : { &x, &y }) {
     const vtkSmartPointer<vtkDataArray> values = this->File.Read(*one);
@@ -186,17 +169,6 @@ bool vtkStratusCFGrid::FindWrfSpacing(const Variable& x, const Variable& y)
     values->GetRange(range);
     if (range[0] < range[1]) {
       return false;
-=======
-  const std::vector<std::string> words = vtkStratusWords(terms);
-  for (size_t i = 0; i + 1 < words.size(); i += 2) {
-    if (words[i] == name + ":") {
-      const Variable* found = this->File.Find(words[i + 1], &this->Of);
-      if (!found || !this->Fits(*found)) {
-        this->File.Fail(
-          "formula_terms name '" + words[i + 1] + "' for '" + name + "', which " + (found ? "has another grid" : "is not there"));
-      }
-      return *found;
->>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
     }
   }
   std::array<double, 2> spacing = { { 0.0, 0.0 } };
@@ -329,13 +301,8 @@ vtkStratusCFField vtkStratusCFGrid::ReadField(const Variable& variable, size_t s
   vtkStratusCFField field;
   std::vector<size_t> start, count;
   for (int dimension : variable.Dimensions) {
-<<<<<<< HEAD
     const bool space = std::find(axes.begin(), axes.end(), dimension) != axes.end();
-    start.push_back(dimension == this->TimeDimension ? step : 0);
-=======
-    const bool space = std::find(this->Dimensions.begin(), this->Dimensions.end(), dimension) != this->Dimensions.end();
     start.push_back(space ? 0 : this->Layout.IndexOf(dimension, step));
->>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
     count.push_back(space ? this->File.LengthOf(dimension) : 1);
   }
   size_t stride = 1;

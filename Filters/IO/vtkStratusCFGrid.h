@@ -5,11 +5,8 @@
 
 #include "vtkStratusCFVertical.h"
 #include "vtkStratusNetCDFFile.h"
-<<<<<<< HEAD
-#include "vtkStratusUnits.h"
-=======
 #include "vtkStratusNetCDFLayout.h"
->>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
+#include "vtkStratusUnits.h"
 
 #include <array>
 #include <memory>
@@ -40,16 +37,12 @@ public:
   bool IsUniform() const;
   std::string Describe() const { return this->Description; }
   bool IsInMetres() const { return this->Metres; }
-<<<<<<< HEAD
   bool IsSheet() const { return this->Flat && !this->Metres; } // x and y are in metres, and z is not
-  const Variable* GetTime() const { return this->Time; }
+  int GetTime() const { return this->Layout.GetTime(); }       // a dimension, or -1
+  const Variable& GetVariable() const { return this->Of; }
   const vtkStratusNetCDFFile& GetFile() const { return this->File; }
   int GetDimension(int axis) const { return this->Dimensions[static_cast<size_t>(axis)]; }
   size_t GetLength(int axis) const { return this->File.LengthOf(this->GetDimension(axis)); }
-=======
-  int GetTime() const { return this->Layout.GetTime(); } // a dimension, or -1
-  size_t GetLength(int axis) const { return this->Axes[axis].size(); }
->>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
   const std::vector<double>& GetAxis(int axis) const { return this->Axes[axis]; } // ascending
   // Returns 0, 1, 2 for a coordinate along x, y, z, and -1 where its attributes tell nothing.
   int AxisOf(const Variable& coordinate) const;
@@ -65,15 +58,6 @@ public:
   vtkSmartPointer<vtkDataArray> ReadPoints(size_t step, std::vector<char>& hidden_points, std::vector<char>& hidden_cells) const;
 
 private:
-<<<<<<< HEAD
-  void FindDimensions();
-  void SortDimensions(std::vector<int> space);
-=======
-  struct Source {
-    const Variable* Coordinate = nullptr; // of one dimension
-    std::string Units;
-  };
->>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
   void FindCoordinates();
   void FindHorizontal(const std::vector<const Variable*>& others);
   bool FindWrfSpacing(const Variable& x, const Variable& y);
@@ -89,16 +73,9 @@ private:
 
   const vtkStratusNetCDFFile& File;
   const Variable& Of;
-<<<<<<< HEAD
-  std::array<int, 3> Dimensions = { { -1, -1, -1 } }; // of x, y, z
-  int TimeDimension = -1;
-  const Variable* Time = nullptr;
-  std::array<const Variable*, 3> Along = { { nullptr, nullptr, nullptr } }; // coordinates of one dimension
-=======
   vtkStratusNetCDFLayout Layout;
-  std::array<int, 3> Dimensions; // of x, y, z
-  std::array<Source, 3> Sources;
->>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
+  std::array<int, 3> Dimensions;                                            // of x, y, z
+  std::array<const Variable*, 3> Along = { { nullptr, nullptr, nullptr } }; // coordinates of one dimension
   std::array<std::vector<double>, 3> Axes;
   std::array<bool, 3> Flipped = { { false, false, false } };
   std::array<const Variable*, 2> Horizontal = { { nullptr, nullptr } }; // of two dimensions or more

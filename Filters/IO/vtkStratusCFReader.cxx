@@ -92,15 +92,11 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
     this->TimeUnits = steps.Units;
     this->Description += steps.Note;
   }
-<<<<<<< HEAD
-  this->Description = grid.Describe() + file.DescribeValues(*file.Find(this->ChosenName()));
   if (grid.IsSheet()) {
     vtkWarningMacro(
       << file.GetPath() << ": the levels of '" << this->ChosenName()
       << "' have no unit of length or pressure, and no formula that is known: heights are mere numbers beside x and y in metres");
   }
-=======
->>>>>>> c8d9e1c2 (Read netCDF groups, ensembles, bare dimensions and times of texts)
   this->LengthUnits = grid.IsInMetres() ? "m" : "";
   return grid.IsCurved() ? "vtkStructuredGrid" : grid.IsUniform() ? "vtkImageData" : "vtkRectilinearGrid";
 }

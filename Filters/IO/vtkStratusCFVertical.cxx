@@ -78,7 +78,7 @@ const vtkStratusCFVertical::Variable& vtkStratusCFVertical::Term(const std::map<
   if (named == names.end()) {
     this->File.Fail("formula_terms '" + this->File.Text(*this->Source, "formula_terms") + "' have no '" + name + "'");
   }
-  const Variable* found = this->File.Find(named->second);
+  const Variable* found = this->File.Find(named->second, this->Source);
   if (!found || !this->Grid.Fits(*found)) {
     this->File.Fail(
       "formula_terms name '" + named->second + "' for '" + name + "', which " + (found ? "has another grid" : "is not there"));
@@ -105,7 +105,7 @@ double vtkStratusCFVertical::TermFactor(const Variable& variable, const vtkStrat
 void vtkStratusCFVertical::FindAir()
 {
   for (const Variable& one : this->File.GetVariables()) {
-    const std::string standard = this->File.Text(one, "standard_name"), name = vtkStratusLower(one.Name);
+    const std::string standard = this->File.Text(one, "standard_name"), name = vtkStratusLower(one.BaseName());
     const vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(one, "units"));
     const bool fits = this->Grid.Fits(one), horizontal = fits && this->Grid.Has(one, 0) && this->Grid.Has(one, 1);
     const bool temperature = standard == "air_temperature" || (standard.empty() && IsOneOf(name, { "t", "ta", "temp", "temperature" }));
@@ -124,7 +124,8 @@ void vtkStratusCFVertical::FindAir()
 bool vtkStratusCFVertical::FindWrf()
 {
   const std::string& name = this->File.NameOf(this->Grid.GetDimension(2));
-  const Variable *perturbation = this->File.Find("PH"), *base = this->File.Find("PHB");
+  const Variable *perturbation = this->File.Find("PH", &this->Grid.GetVariable()),
+                 *base = this->File.Find("PHB", &this->Grid.GetVariable());
   if (!IsOneOf(name, { "bottom_top", "bottom_top_stag" }) || !perturbation || !base) {
     return false;
   }
