@@ -73,7 +73,8 @@ class Read:
         if self.data.IsA("vtkStructuredGrid"):
             self.points = vtk_to_numpy(self.data.GetPoints().GetData()).reshape(nz, ny, nx, 3)
         else:
-            x, y, z = ([self.data.GetPoint(i * step)[a] for i in range(n)] for a, (n, step) in enumerate(((nx, 1), (ny, nx), (nz, nx * ny))))
+            x, y, z = ([self.data.GetPoint(i * step)[a] for i in range(n)] for a, (n, step) in enumerate(((nx, 1), (ny, nx), (nz,
+                nx * ny))))
             self.points = numpy.stack(numpy.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
         arrays = self.data.GetPointData()
         names = [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())]

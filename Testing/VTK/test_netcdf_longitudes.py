@@ -96,6 +96,7 @@ if not got.error:
     sea = ~land
     across = degree * numpy.cos(numpy.radians(.5 * (latitude[sea].min() + latitude[sea].max())))
     turns = (got.points[0, :, :, 0] / across - longitude - 73)[sea] / 360
-    check(numpy.abs(turns - numpy.round(turns[0])).max() < 1e-9 and near(got.points[0, :, :, 1][sea], degree * latitude[sea]), "land: places at sea")
+    check(numpy.abs(turns - numpy.round(turns[0])).max() < 1e-9 and near(got.points[0, :, :, 1][sea], degree * latitude[sea]),
+        "land: places at sea")
     check(numpy.array_equal(got.hidden_points()[0], land) and numpy.isfinite(got.points).all(), "land: points on land are hidden")
 finish()
