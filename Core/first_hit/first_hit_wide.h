@@ -114,9 +114,11 @@ static inline vfloat wide_planes(const uint8_t bytes[STRATUS_WIDTH])
 }
 #endif
 
-/* Pushes the children of the node that the ray may meet before its end. */
+/* Pushes the children of the node that the ray may meet before its end. Places without a child are masked out by number: a ray that begins
+ * very far away meets all planes at one distance, as floats round it, and so a box of any planes. */
 static inline void wide_node(const stratus_wide_node* node, wide_ray* r)
 {
+  const uint32_t children = (1u << node->count) - 1;
   const float scale = float_of((uint32_t)(node->shift + 127) << 23); /* 2^shift */
 #if STRATUS_ISA != 2
   const int least = r->top;
@@ -133,11 +135,11 @@ static inline void wide_node(const stratus_wide_node* node, wide_ray* r)
     }
     const vmask met = v_le(enter, leave);
 #if STRATUS_ISA == 2
-    wide_push_all(r, node, enter, met);
+    wide_push_all(r, node, enter, met & (__mmask16)children);
 #else
     if (m_any(met)) {
       for (int i = 0; i < STRATUS_WIDTH; ++i) {
-        if (met[i]) {
+        if (met[i] && (children >> (part + i) & 1)) {
           wide_push(r, least, (uint64_t)bits_of(enter[i]) << 32 | wide_child(node, part + i));
         }
       }

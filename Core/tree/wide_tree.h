@@ -16,8 +16,8 @@
 #define STRATUS_WIDE_STACK (15 * 14 + STRATUS_WIDE)
 
 /* The root is node 0, and parents come before children. Child c is node `node + c` if c < inner, else brick `brick + c - inner`. Its box is
- * at + (lo[c] << shift) .. at + (hi[c] << shift) in voxels, tight where shift is 0. Places behind `count` have lo 255 and hi 0, so that no
- * ray meets them. */
+ * at + (lo[c] << shift) .. at + (hi[c] << shift) in voxels, tight where shift is 0. Places behind `count` have lo 255 and hi 0, and no
+ * child: whoever reads 16 places at once masks them out. */
 typedef struct stratus_wide_node {
   float at[3]; /* whole numbers */
   uint32_t node, brick;

@@ -103,6 +103,19 @@ static void device_and_host_hit_the_same(void** state)
   stratus_context_destroy(host);
 }
 
+static void rays_from_very_far_visit_no_place_without_a_child(void** state)
+{
+  (void)state;
+  stratus_context* host = open_context("host", false);
+  for (int as_gpu = 0; as_gpu < 2; ++as_gpu) {
+    stratus_context* device = open_context("0", as_gpu);
+    assert_non_null(device);
+    rays_from_very_far_visit_only_children(host, device);
+    stratus_context_destroy(device);
+  }
+  stratus_context_destroy(host);
+}
+
 /* --tiny: a few rays, for a simulator that checks each access. */
 int test_first_hit_device(void)
 {
@@ -110,6 +123,7 @@ int test_first_hit_device(void)
   if (stratus_device_count() == 0) {
     return test_skip("no OpenCL device on this machine");
   }
-  const struct CMUnitTest tests[] = { cmocka_unit_test_prestate(device_and_host_hit_the_same, &most) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test_prestate(device_and_host_hit_the_same, &most),
+    cmocka_unit_test(rays_from_very_far_visit_no_place_without_a_child) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -163,4 +163,40 @@ static inline void compare_hits(
   free(theirs);
 }
 
+/* Checks a wide hierarchy of one voxel: its node has one child and 15 places without. From very far away, all planes are at one distance as
+ * floats round it, so that the boxes of all 16 places seem to be met. Host: builds the tree. */
+static inline void rays_from_very_far_visit_only_children(stratus_context* host, stratus_context* context)
+{
+  enum { RAYS = 4000, VISITS = 6 }; /* visits: the leaf, the node and the brick, and again in doubles */
+  static const int64_t dimensions[3] = { 9, 9, 9 };
+  static const int32_t position[3] = { 3, 4, 5 };
+  static stratus_ray rays[RAYS];
+  static stratus_hit ours[RAYS], theirs[RAYS];
+  stratus_tree_options options = stratus_tree_options_default();
+  stratus_voxels* voxels = NULL;
+  stratus_tree* tree = NULL;
+  uint32_t random = 5;
+  options.method = STRATUS_TREE_WIDE;
+  assert_int_equal(stratus_voxels_create_list(host, dimensions, position, 1, &voxels), STRATUS_OK);
+  assert_int_equal(stratus_tree_create(host, voxels, &options, &tree), STRATUS_OK);
+  for (int i = 0; i < RAYS; ++i) {
+    const double far = pow(10.0, 30.0 * unit_random(&random));
+    rays[i] = (stratus_ray){ .t_max = INFINITY };
+    for (int a = 0; a < 3; ++a) {
+      rays[i].direction[a] = unit_random(&random) - 0.5;
+      rays[i].origin[a] = position[a] + unit_random(&random) - far * rays[i].direction[a];
+    }
+  }
+  assert_int_equal(stratus_voxels_first_hit(host, voxels, rays, RAYS, theirs), STRATUS_OK);
+  assert_int_equal(stratus_tree_first_hit(context, tree, rays, RAYS, ours), STRATUS_OK);
+  for (int i = 0; i < RAYS; ++i) {
+    if (ours[i].visited > VISITS || (ours[i].t < INFINITY && ours[i].t != theirs[i].t)) {
+      fail_msg("ray %d from %g %g %g: %u visits, hit at %.17g; by the walk at %.17g", i, rays[i].origin[0], rays[i].origin[1],
+        rays[i].origin[2], ours[i].visited, ours[i].t, theirs[i].t);
+    }
+  }
+  stratus_tree_destroy(tree);
+  stratus_voxels_destroy(voxels);
+}
+
 #endif

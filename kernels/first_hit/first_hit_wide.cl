@@ -103,6 +103,9 @@ INLINE void wide_node(__global const stratus_wide_node* node, wide_ray* r)
       leave = v_min(v_fma(far, v_set(speed[a]), v_set(base_late[a])), leave);
     }
     uint met = wide_bits(v_le(enter, leave));
+#if STRATUS_WIDTH == 16
+    met &= (1u << node->count) - 1u; /* the others' planes do not keep rays out: see first_hit_wide.h */
+#endif
     v_store(enters, enter);
     while (met) {
       const uint low = met & (0u - met);

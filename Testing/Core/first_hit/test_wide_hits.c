@@ -229,9 +229,20 @@ static void rays_far_from_each_other_make_no_beam(void** state)
   }
 }
 
+static void rays_from_very_far_visit_no_place_without_a_child(void** state)
+{
+  (void)state;
+  for (int isa = 0; isa <= 2; ++isa) {
+    stratus_context* context = host_with_isa(isa, 1);
+    rays_from_very_far_visit_only_children(context, context);
+    stratus_context_destroy(context);
+  }
+}
+
 int test_wide_hits(void)
 {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(rays_from_very_far_visit_no_place_without_a_child),
     cmocka_unit_test(beams_of_all_kinds_hit_what_the_walk_hits),
     cmocka_unit_test(rays_side_by_side_share_what_they_visit),
     cmocka_unit_test(rays_far_from_each_other_make_no_beam),
