@@ -57,28 +57,7 @@ void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, co
   }
 }
 
-/* ---- colour */
-
-/* Interpolates the colour linearly at value x; beyond the end points, their colours hold. */
-static void color_at(const stratus_transfer* transfer, double x, double rgb[3])
-{
-  const double* points = transfer->color;
-  size_t below = 0, above = transfer->color_count; /* the number of points <= x lies in below..above */
-  while (below < above) {
-    const size_t middle = below + (above - below) / 2;
-    if (points[4 * middle] <= x) {
-      below = middle + 1;
-    } else {
-      above = middle;
-    }
-  }
-  const double* left = points + 4 * (below > 0 ? below - 1 : 0);
-  const bool inside = below > 0 && below < transfer->color_count;
-  const double t = inside ? (x - left[0]) / (left[4] - left[0]) : 0.0;
-  for (int c = 0; c < 3; ++c) {
-    rgb[c] = left[1 + c] + (inside ? t * (left[5 + c] - left[1 + c]) : 0.0);
-  }
-}
+/* ---- values */
 
 static double value_at(const stratus_shader* shader, const int64_t at[3])
 {
@@ -216,12 +195,12 @@ void stratus_shader_apply(
   const stratus_shader* shader, const stratus_ray* ray, uint32_t cut, const int32_t voxel[3], float rgba[4], float* depth)
 {
   const int64_t at[3] = { voxel[0], voxel[1], voxel[2] };
-  double direction[3], rgb[3], index[3], point[3], normal[3];
+  double direction[3], shown[4], index[3], point[3], normal[3];
   int face;
   const double t = entry(shader->borders, ray, voxel, &face);
   stratus_matrix_vector(shader->index_to_world, ray->direction, direction);
   const double length = sqrt(stratus_vector_dot(direction, direction));
-  color_at(shader->transfer, value_at(shader, at) + shader->bias, rgb);
+  stratus_transfer_at(shader->transfer, value_at(shader, at) + shader->bias, shown);
   if (shader->options->shading.on) {
     for (int axis = 0; axis < 3; ++axis) {
       direction[axis] /= length;
@@ -235,10 +214,10 @@ void stratus_shader_apply(
         normal[axis] = (face & 1 ? 1.0 : -1.0) * shader->face[face / 2][axis];
       }
     }
-    illuminate(shader, point, normal, direction, rgb);
+    illuminate(shader, point, normal, direction, shown);
   }
   for (int c = 0; c < 3; ++c) {
-    rgba[c] = (float)fmin(fmax(rgb[c], 0.0), 1.0);
+    rgba[c] = (float)fmin(fmax(shown[c], 0.0), 1.0);
   }
   rgba[3] = 1.0f;
   *depth = (float)(t * length);

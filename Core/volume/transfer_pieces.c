@@ -138,7 +138,7 @@ static double value_in(const stratus_curve* curve, double x, size_t until)
   if (until == curve->count) {
     return curve->at[i];
   }
-  const double t = (x - curve->x[i]) / (curve->x[until] - curve->x[i]);
+  const double t = stratus_part_between(x, curve->x[i], curve->x[until]);
   return curve->at[i] + t * (curve->left[until] - curve->at[i]);
 }
 

@@ -25,6 +25,13 @@ typedef struct stratus_pieces {
 
 stratus_status stratus_pieces_create(stratus_context* context, const stratus_transfer* transfer, stratus_pieces** pieces);
 void stratus_pieces_destroy(stratus_pieces* pieces);
+/* Returns where x is between left and right, left <= x <= right, left < right: 0 at left, 1 at right, never outside 0..1. Differences of
+ * large numbers may overflow, those of their halves do not. */
+static inline double stratus_part_between(double x, double left, double right)
+{
+  const double width = right - left;
+  return isfinite(width) ? (x - left) / width : (0.5 * x - 0.5 * left) / (0.5 * right - 0.5 * left);
+}
 /* The curve at x. */
 double stratus_curve_at(const stratus_curve* curve, double x);
 /* Gives the greatest lower and the least upper bound of the curve over the closed interval lo..hi, whose ends may be infinite. They are

@@ -78,12 +78,22 @@ stratus_status stratus_transfer_check(stratus_context* context, const stratus_tr
   return STRATUS_OK;
 }
 
-/* Returns the piecewise linear function at x, in calls with rising x. *at is the last point with value <= x, or -1, and begins at -1. */
-static double walk(const double* points, size_t count, size_t width, size_t component, double x, ptrdiff_t* at)
+/* Moves *at to the last point with value <= x, or to -1. Calls mostly have rising x, and *at begins at -1. The values of entries may fall:
+ * a cell that no float is in has its own middle, and its neighbours have those of their floats. */
+static void walk_to(const double* points, size_t count, size_t width, double x, ptrdiff_t* at)
 {
+  while (*at >= 0 && points[(size_t)*at * width] > x) {
+    --*at;
+  }
   while (*at + 1 < (ptrdiff_t)count && points[(size_t)(*at + 1) * width] <= x) {
     ++*at;
   }
+}
+
+/* Returns the piecewise linear function at x. *at: as in walk_to(). */
+static double walk(const double* points, size_t count, size_t width, size_t component, double x, ptrdiff_t* at)
+{
+  walk_to(points, count, width, x, at);
   if (*at < 0) {
     return points[component];
   }
@@ -92,7 +102,7 @@ static double walk(const double* points, size_t count, size_t width, size_t comp
     return left[component];
   }
   const double* right = left + width;
-  const double t = (x - left[0]) / (right[0] - left[0]);
+  const double t = stratus_part_between(x, left[0], right[0]);
   return left[component] + t * (right[component] - left[component]);
 }
 
@@ -251,11 +261,14 @@ static void fill_sums(stratus_table* table, const stratus_transfer* transfer, co
 }
 
 /* True if the function is 1 not only at `value`, where it is known to be 1, but over an interval. *at: a point below the value, kept
- * between calls with rising values. */
+ * between calls with values that mostly rise. */
 static bool stays_opaque(const stratus_transfer* transfer, double value, size_t* at)
 {
   const double* p = transfer->opacity;
   const size_t last = transfer->opacity_count - 1;
+  while (*at > 0 && p[2 * *at] >= value) { /* as walk_to() */
+    --*at;
+  }
   while (*at < last && p[2 * *at + 2] < value) {
     ++*at;
   }

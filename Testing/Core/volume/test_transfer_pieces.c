@@ -172,6 +172,66 @@ static void tables_take_the_function_at_every_value(void** state)
   stratus_context_destroy(context);
 }
 
+/* Points between neighbouring floats: most cells of a table have no float, and their middles are no rising sequence with the floats of the
+ * others. No entry has or adds a colour below 0 or above its opacity. */
+static void points_between_floats_give_no_colour_beyond_theirs(void** state)
+{
+  enum { FLOATS = 24 };
+  uint32_t random = 11;
+  (void)state;
+  stratus_context* context = make_context("host", 1);
+  for (int pass = 0; pass < 1000; ++pass) {
+    const stratus_table_values v = { .lo = 6e6f, .hi = 6e6f + 0.5f * FLOATS };
+    random_function f;
+    make_function(&f, pass % 2 ? 1.0 : 0.5 * FLOATS, &random);
+    for (size_t i = 0; i < f.transfer.opacity_count; ++i) {
+      f.opacity[i][0] += (double)v.lo + 2.0;
+      f.color[i][0] += (double)v.lo + 2.0 + 0.4 * random_unit(&random) * (i + 1 == f.transfer.opacity_count);
+    }
+    for (int sampling = STRATUS_SAMPLING_MIDPOINT; sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
+      stratus_table* table = NULL;
+      assert_int_equal(stratus_table_create(context, &f.transfer, &v, (stratus_sampling)sampling, 1.0, &table), STRATUS_OK);
+      for (int e = 0; e < table->size; ++e) {
+        for (int c = 0; c < 3; ++c) {
+          if (table->rgba) {
+            const float* entry = table->rgba + 4 * e;
+            assert_true(entry[c] >= 0.0f && entry[c] <= entry[3] && entry[3] <= 1.0f);
+          } else { /* whole numbers, which are rounded one by one; a faint entry's depth is at least 1 */
+            const int32_t *from = table->sums + 4 * e, *to = from + 4;
+            assert_true(to[c] >= from[c] && (int64_t)to[c] - from[c] <= (int64_t)to[3] - from[3] + table->size);
+          }
+        }
+      }
+      stratus_table_destroy(table);
+    }
+  }
+  stratus_context_destroy(context);
+}
+
+/* Between points that are farther apart than the largest double, the function is still a line. */
+static void points_at_the_ends_of_doubles_are_joined_by_a_line(void** state)
+{
+  static const double opacity[] = { -0x1.8p1023, 0.25, 0x1.8p1023, 0.75 };
+  static const double color[] = { -0x1.8p1023, 0.0, 1.0, 0.5, 0x1.8p1023, 1.0, 0.0, 0.5 };
+  (void)state;
+  stratus_context* context = make_context("host", 1);
+  stratus_transfer transfer = stratus_transfer_default();
+  stratus_pieces* pieces = NULL;
+  transfer.opacity = opacity;
+  transfer.color = color;
+  transfer.opacity_count = transfer.color_count = 2;
+  assert_int_equal(stratus_pieces_create(context, &transfer, &pieces), STRATUS_OK);
+  for (int i = -12; i <= 12; ++i) {
+    const double x = ldexp(i / 8.0, 1023), t = (i + 12) / 24.0;
+    double rgba[4];
+    stratus_transfer_at(&transfer, x, rgba);
+    assert_true(fabs(rgba[0] - t) < 1e-15 && fabs(rgba[1] - (1.0 - t)) < 1e-15 && rgba[2] == 0.5);
+    assert_true(fabs(rgba[3] - (0.25 + 0.5 * t)) < 1e-15 && stratus_curve_at(&pieces->opacity, x) == rgba[3]);
+  }
+  stratus_pieces_destroy(pieces);
+  stratus_context_destroy(context);
+}
+
 /* Label windows as VTK's functions give them, whose steps lie at the number above the half: their tables are those of steps at the half,
  * and no cell is divided. Floats may have the half itself, so that theirs are divided. */
 static void steps_above_a_half_divide_no_cell_of_whole_numbers(void** state)
@@ -285,6 +345,8 @@ int test_transfer_pieces(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(extremes_are_those_of_all_points),
     cmocka_unit_test(tables_take_the_function_at_every_value),
+    cmocka_unit_test(points_between_floats_give_no_colour_beyond_theirs),
+    cmocka_unit_test(points_at_the_ends_of_doubles_are_joined_by_a_line),
     cmocka_unit_test(steps_above_a_half_divide_no_cell_of_whole_numbers),
     cmocka_unit_test(a_plateau_of_a_millionth_has_entries),
     cmocka_unit_test(windows_of_labels_show_their_label_alone),
