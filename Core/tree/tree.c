@@ -312,7 +312,7 @@ stratus_status stratus_tree_create(
   tree->origin = voxels->origin;
   tree->entry_bytes = 2; /* distance fields may set 3; without fields or nodes the width must be valid, too */
   memcpy(tree->index_to_world, voxels->index_to_world, sizeof tree->index_to_world);
-  stratus_matrix_invert_affine(tree->index_to_world, tree->world_to_index);
+  (void)stratus_matrix_invert_affine(tree->index_to_world, tree->world_to_index); /* stratus_voxels_place() has refused what has none */
   for (int a = 0; a < 3; ++a) {
     tree->dimensions[a] = (int32_t)voxels->dimensions[a];
   }

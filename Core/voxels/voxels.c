@@ -2,6 +2,8 @@
  * Effective voxels: the set, made from one mask for each brick, and queries of it. */
 #include "voxels_build.h"
 
+#include "matrix.h"
+
 #include <string.h>
 
 /* Nanoseconds of one thread for a possible brick, and for one with voxels. */
@@ -37,6 +39,19 @@ stratus_status stratus_voxels_create_empty(stratus_context* context, const int64
     return status;
   }
   *out = voxels;
+  return STRATUS_OK;
+}
+
+stratus_status stratus_voxels_place(stratus_voxels* voxels, const double index_to_world[16])
+{
+  double inverse[16];
+  if (!stratus_matrix_invert_affine(index_to_world, inverse)) {
+    const double* m = index_to_world;
+    return stratus_fail(voxels->context, STRATUS_INVALID_ARGUMENT,
+      "the voxels' matrix with the columns (%g, %g, %g), (%g, %g, %g), (%g, %g, %g), (%g, %g, %g) has no inverse within doubles", m[0],
+      m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10], m[3], m[7], m[11]);
+  }
+  memcpy(voxels->index_to_world, index_to_world, sizeof voxels->index_to_world);
   return STRATUS_OK;
 }
 

@@ -36,6 +36,8 @@ stratus_status stratus_device_voxels(stratus_context* context, const stratus_sca
 
 /* Creates an empty set. It checks the dimensions: 1..2^18 along each axis. */
 stratus_status stratus_voxels_create_empty(stratus_context* context, const int64_t dimensions[3], stratus_voxels** voxels);
+/* Sets the matrix from voxel coordinates to the world, or fails if that has no inverse within doubles: rays need it, and saved trees. */
+stratus_status stratus_voxels_place(stratus_voxels* voxels, const double index_to_world[16]);
 /* Sets bricks, count and bounds from one mask for each of bricks_along[0]*[1]*[2] bricks, x fastest. */
 stratus_status stratus_voxels_take_masks(stratus_voxels* voxels, const uint64_t* masks);
 /* Sets each brick's count, and the total count and bounds, from bricks that have their places and masks. */

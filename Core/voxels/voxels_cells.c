@@ -31,16 +31,17 @@ static stratus_status mark_blocks(const stratus_voxels* voxels, const stratus_va
 
 /* Voxel (i,j,k) is cell (i,j,k), whose middle lies half a step beyond value (i,j,k). A volume with coordinates has its cells in index
  * coordinates, for no matrix takes those to the world. */
-static void place_cells(const stratus_volume* volume, double index_to_world[16])
+static stratus_status place_cells(const stratus_volume* volume, stratus_voxels* voxels)
 {
   static const double half[3] = { 0.5, 0.5, 0.5 };
   const stratus_volume plain = stratus_volume_default();
-  double first[3];
+  double index_to_world[16], first[3];
   stratus_volume_index_to_world(stratus_volume_is_stretched(volume) ? &plain : volume, index_to_world);
   stratus_matrix_point(index_to_world, half, first);
   for (int a = 0; a < 3; ++a) {
     index_to_world[4 * a + 3] = first[a];
   }
+  return stratus_voxels_place(voxels, index_to_world);
 }
 
 /* ranges: of blocks of 4^3 cells of the volume, whose hash this is. */
@@ -55,7 +56,7 @@ static stratus_status create_from_ranges(stratus_context* context, const stratus
     dimensions[a] = STRATUS_BRICK * ranges->blocks[a];
   }
   TRY(stratus_voxels_create_empty(context, dimensions, &voxels));
-  place_cells(volume, voxels->index_to_world);
+  TRY_CLEANUP(place_cells(volume, voxels));
   TRY_CLEANUP(stratus_origin_take_cells(context, ranges, criterion, &voxels->origin));
   voxels->origin.hash = hash;
   TRY_CLEANUP(stratus_allocate(context, (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]), sizeof(uint64_t), &masks));

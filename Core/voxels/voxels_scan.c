@@ -254,6 +254,7 @@ stratus_status stratus_voxels_create(
   stratus_voxels* voxels = NULL;
   stratus_status status;
   void* intervals = NULL;
+  double index_to_world[16];
   TRY(stratus_volume_check(context, volume));
   TRY(stratus_criterion_check(context, criterion));
   if (!out) {
@@ -266,7 +267,8 @@ stratus_status stratus_voxels_create(
   const stratus_stage stage = stratus_stage_begin(context);
   TRY(stratus_progress(context, "effective voxels", 0.0));
   TRY(stratus_voxels_create_empty(context, volume->dimensions, &voxels));
-  stratus_volume_index_to_world(volume, voxels->index_to_world);
+  stratus_volume_index_to_world(volume, index_to_world);
+  TRY_CLEANUP(stratus_voxels_place(voxels, index_to_world));
   stratus_scan s = { .volume = volume };
   s.ghosts = volume->cell_centered ? volume->cell_ghosts : volume->point_ghosts;
   s.hidden = STRATUS_GHOST_DUPLICATE | (volume->cell_centered ? STRATUS_GHOST_HIDDEN_CELL : STRATUS_GHOST_HIDDEN_POINT);

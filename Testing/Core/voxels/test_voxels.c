@@ -626,6 +626,39 @@ static void what_is_out_of_range_is_refused_by_its_value(void** state)
   stratus_context_destroy(context);
 }
 
+/* A matrix has an inverse or has none for volumes, sets, trees, rays and saved trees alike. Half a cell moves this volume's cells to where
+ * no inverse leads back from. */
+static void a_set_whose_matrix_has_no_inverse_is_refused(void** state)
+{
+  static const float values[8] = { 1, 1, 1, 1, 1, 1, 1, 1 };
+  (void)state;
+  stratus_context* context = make_context("host", 1);
+  const stratus_criterion all = stratus_criterion_default();
+  stratus_volume v = stratus_volume_default();
+  v.values = values;
+  v.dimensions[0] = v.dimensions[2] = 2; /* one layer: its points are within doubles */
+  for (int far = 0; far < 2; ++far) {    /* far away, and not */
+    stratus_voxels* s = NULL;
+    v.origin[1] = v.direction[4] = far ? -DBL_MAX : -1.0;
+    if (far) {
+      REFUSED(stratus_voxels_create_cells(context, &v, &all, &s), "has no inverse");
+      continue;
+    }
+    stratus_tree *tree = NULL, *back = NULL;
+    assert_int_equal(stratus_voxels_create_cells(context, &v, &all, &s), STRATUS_OK);
+    assert_int_equal(stratus_tree_create(context, s, NULL, &tree), STRATUS_OK);
+    const size_t size = stratus_tree_bytes(tree);
+    void* bytes = malloc(size);
+    stratus_tree_save(tree, bytes);
+    assert_int_equal(stratus_tree_load(context, bytes, size, &back), STRATUS_OK);
+    free(bytes);
+    stratus_tree_destroy(back);
+    stratus_tree_destroy(tree);
+    stratus_voxels_destroy(s);
+  }
+  stratus_context_destroy(context);
+}
+
 static stratus_status make_one(stratus_context* context, int which, const stratus_volume* v, const stratus_criterion* c, stratus_voxels** s)
 {
   static const int64_t dense[3] = { 9, 9, 9 }, sparse[3] = { 1 << 18, 1 << 18, 1 << 18 };
@@ -700,6 +733,7 @@ int test_voxels(void)
     cmocka_unit_test(only_the_same_voxels_stand_in_for_first_hits),
     cmocka_unit_test(any_change_of_the_content_changes_the_hash),
     cmocka_unit_test(what_is_out_of_range_is_refused_by_its_value),
+    cmocka_unit_test(a_set_whose_matrix_has_no_inverse_is_refused),
     cmocka_unit_test(memory_refused_at_any_request_is_told_and_leaves_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
