@@ -8,6 +8,7 @@
 #include "vtkStratusCFReader.h"
 #include "vtkStratusUgridReader.h"
 #endif
+#include "vtkStratusImageReader.h"
 #include "vtkStratusTetGenReader.h"
 #ifdef STRATUS_VDB
 #include "vtkStratusVDBReader.h"
@@ -24,9 +25,6 @@
 #include <vtkHDFReader.h>
 #include <vtkImageReader2.h>
 #include <vtkImageReader2Factory.h>
-#include <vtkMetaImageReader.h>
-#include <vtkNIFTIImageReader.h>
-#include <vtkNrrdReader.h>
 #include <vtkOpenFOAMReader.h>
 #include <vtkPointData.h>
 #include <vtkVersionMacros.h>
@@ -200,11 +198,11 @@ constexpr struct {
   { "controldict", openfoam },
   { ".case", ensight },
   { ".encas", ensight },
-  { ".mha", reader_for<vtkMetaImageReader> },
-  { ".mhd", reader_for<vtkMetaImageReader> },
-  { ".nrrd", reader_for<vtkNrrdReader> },
-  { ".nhdr", reader_for<vtkNrrdReader> },
-  { ".nii", reader_for<vtkNIFTIImageReader> },
+  { ".mha", reader_for<vtkStratusImageReader> },
+  { ".mhd", reader_for<vtkStratusImageReader> },
+  { ".nrrd", reader_for<vtkStratusImageReader> },
+  { ".nhdr", reader_for<vtkStratusImageReader> },
+  { ".nii", reader_for<vtkStratusImageReader> },
 };
 
 // The reader's variable of that name, or the one whose component it names; "" where there is none.
@@ -229,8 +227,9 @@ std::string extension_of(const std::string& path)
 {
   std::string name = path.substr(path.find_last_of('/') + 1);
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (name.size() > 7 && name.compare(name.size() - 7, 7, ".nii.gz") == 0) {
-    return ".nii";
+  if (name.size() > 3 && name.compare(name.size() - 3, 3, ".gz") == 0) { // NIfTI's, of which the extension comes before
+    const std::string inner = extension_of(name.substr(0, name.size() - 3));
+    return inner == ".nii" || inner == ".hdr" || inner == ".img" ? inner : ".gz";
   }
   const size_t dot = name.find_last_of('.');
   return name == "controldict" ? name : dot == std::string::npos ? "" : name.substr(dot);
@@ -263,6 +262,9 @@ file_format choose_format(const std::string& path, const std::string& raw)
   }
   if (is_tetgen(path)) {
     return { reader_for<vtkStratusTetGenReader>(path), "" };
+  }
+  if (vtkStratusImageReader::CanReadFile(path.c_str())) { // .hdr and .img, or under another name
+    return { reader_for<vtkStratusImageReader>(path), "" };
   }
   vtkSmartPointer<vtkImageReader2> other;
   other.TakeReference(vtkImageReader2Factory::CreateImageReader2(path.c_str()));

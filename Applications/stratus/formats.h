@@ -10,7 +10,8 @@
 
 namespace cli {
 
-// The extension with its dot, in small letters; ".nii" for .nii.gz, and "controldict" for OpenFOAM's file of that name.
+// The extension with its dot, in small letters; ".nii" for .nii.gz (.hdr.gz, .img.gz alike), and "controldict" for OpenFOAM's file of that
+// name.
 std::string extension_of(const std::string& path);
 // Returns whether the name is that of a TetGen file: .node, .ele, .face, .edge, .neigh.
 bool is_tetgen(const std::string& path);

@@ -8,30 +8,19 @@
 #endif
 
 #include <algorithm>
-#include <cctype>
 
 namespace cli {
 
-namespace {
-bool ends_with_exr(const std::string& path)
-{
-  std::string end = path.size() < 4 ? "" : path.substr(path.size() - 4);
-  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return end == ".exr";
-}
-} // namespace
-
 frame::frame(const options& o)
     : Width(o.width), Height(o.height), Behind(parse_background(o.background)), Color(o.color),
-      IsExr(ends_with_exr(o.frames.empty() ? o.output : o.frames)), ShowsSamples(o.shows_samples)
+      Format(format_of_picture(o.frames.empty() ? o.output : o.frames)), IsExr(Format == picture_format::exr), ShowsSamples(o.shows_samples)
 {
-#ifndef STRATUS_EXR
-  if (this->IsExr) {
-    throw usage("'" + o.output + "': this program was built without OpenEXR, it writes PNG only");
+  if (this->Behind.transparent && !this->IsExr && this->Format != picture_format::png) {
+    throw usage("'" + (o.frames.empty() ? o.output : o.frames) + "': only .png and .exr pictures can be transparent");
   }
-#endif
   if (this->IsExr && this->ShowsSamples) {
-    throw usage("--show samples is a picture for people, in PNG; '" + o.output + "' has the samples themselves without it");
+    throw usage(
+      "--show samples is a picture for people, of another format than OpenEXR; '" + o.output + "' has the samples themselves without it");
   }
   if (this->IsExr && (o.axes || o.color_bar || !o.caption.empty())) {
     throw usage("an OpenEXR file has values alone: leave out --axes, --color-bar and --caption");
@@ -104,9 +93,10 @@ void frame::write(output_file& file) const
   if (this->IsExr) {
     file.write(this->encode_exr());
   } else if (this->ShowsSamples) {
-    file.write(encode_png(heat_map(this->Samples, this->Width, this->Height, this->Color), this->Width + heat_bar_width, this->Height));
+    file.write(
+      encode(this->Format, heat_map(this->Samples, this->Width, this->Height, this->Color), this->Width + heat_bar_width, this->Height));
   } else {
-    file.write(encode_png(to_bytes(this->Rgba, this->Width, this->Height, this->Behind), this->Width, this->Height));
+    file.write(encode(this->Format, to_bytes(this->Rgba, this->Width, this->Height, this->Behind), this->Width, this->Height));
   }
 }
 } // namespace cli

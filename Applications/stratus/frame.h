@@ -30,6 +30,7 @@ private:
   int Width, Height;
   background Behind;
   std::string Color;
+  picture_format Format;
   bool IsExr, ShowsSamples;
   std::vector<float> Rgba, Depth;
   std::vector<uint32_t> Samples;

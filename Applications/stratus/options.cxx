@@ -23,7 +23,7 @@ std::string help()
 {
   return R"(stratus - draws volumes
 
-  stratus render INPUT -o OUT.png [options]   draw a picture; OUT.exr has floats: R, G, B, A, depth Z, Samples
+  stratus render INPUT -o OUT.png [options]   draw a picture; also .jpg, .tif, .bmp; OUT.exr has floats: R, G, B, A, depth Z, Samples
   stratus render INPUT --frames OUT-%04d.png  draw every step in time
   stratus render INPUT INPUT ... -o OUT.png   draw up to eight as one medium; --array, --opacity, --color and --unit-distance
                                               are for the INPUT before them
@@ -35,7 +35,7 @@ std::string help()
   stratus --version                           tell the versions of what this consists of, and the OpenCL devices
   stratus --help
 
-INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png .hdf .vtkhdf .vdb .nvdb and what else VTK reads as an
+INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .hdr .tif .png .hdf .vtkhdf .vdb .nvdb and what else VTK reads as an
 image) or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels, cumulus-rectilinear; to be
 drawn or told of also a rectilinear grid (.vtr .pvtr), or a grid of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu
 .vtk .hdf, TetGen's .node .ele), curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .vtmb), in steps (.pvd), of OpenFOAM (.foam,

@@ -1,15 +1,67 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "picture.h"
+
+#include "formats.h"
 #include "support.h"
 
+#include <vtkBMPWriter.h>
 #include <vtkImageData.h>
+#include <vtkJPEGWriter.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
+#include <vtkTIFFWriter.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <iterator>
+#include <memory>
+#include <unistd.h>
+
+namespace {
+
+[[noreturn]] void fail_to_encode(const std::string& name)
+{
+  throw cli::failure("the picture could not be encoded as " + name);
+}
+
+template <class Writer> std::vector<uint8_t> encode_in_memory(vtkImageData* image, const std::string& name)
+{
+  vtkNew<Writer> writer;
+  writer->SetInputData(image);
+  writer->WriteToMemoryOn();
+  writer->Write();
+  vtkUnsignedCharArray* result = writer->GetResult();
+  if (writer->GetErrorCode() != 0 || !result || result->GetNumberOfValues() == 0) {
+    fail_to_encode(name);
+  }
+  return std::vector<uint8_t>(result->GetPointer(0), result->GetPointer(0) + result->GetNumberOfValues());
+}
+
+// VTK's writer of TIFF opens its file by name: here one without a place in a folder, so that nothing is left of it whatever happens.
+std::vector<uint8_t> encode_tiff(vtkImageData* image)
+{
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), &std::fclose);
+  if (!file) {
+    fail_to_encode("TIFF");
+  }
+  vtkNew<vtkTIFFWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName(("/dev/fd/" + std::to_string(fileno(file.get()))).c_str());
+  writer->Write();
+  std::vector<uint8_t> bytes;
+  std::rewind(file.get());
+  for (int c; (c = std::fgetc(file.get())) != EOF;) {
+    bytes.push_back(static_cast<uint8_t>(c));
+  }
+  if (writer->GetErrorCode() != 0 || bytes.empty()) {
+    fail_to_encode("TIFF");
+  }
+  return bytes;
+}
+} // namespace
 
 namespace cli {
 
@@ -88,21 +140,46 @@ std::vector<uint8_t> to_bytes(const std::vector<float>& rgba, int width, int hei
   return bytes;
 }
 
-std::vector<uint8_t> encode_png(const std::vector<uint8_t>& bytes, int width, int height)
+picture_format format_of_picture(const std::string& path)
+{
+  constexpr struct {
+    const char* extension;
+    picture_format format;
+  } known[] = { { "", picture_format::png }, { ".", picture_format::png }, { ".png", picture_format::png },
+    { ".jpg", picture_format::jpeg }, { ".jpeg", picture_format::jpeg }, { ".tif", picture_format::tiff },
+    { ".tiff", picture_format::tiff }, { ".bmp", picture_format::bmp }, { ".exr", picture_format::exr } };
+  const std::string extension = extension_of(path);
+#ifdef STRATUS_EXR
+  const std::string names = ".png, .jpg, .tif, .bmp and .exr";
+#else
+  const std::string names = ".png, .jpg, .tif and .bmp";
+  if (extension == ".exr") {
+    throw usage("'" + path + "': this program was built without OpenEXR, it writes " + names);
+  }
+#endif
+  const auto found = std::find_if(std::begin(known), std::end(known), [&extension](const auto& one) { return extension == one.extension; });
+  if (found == std::end(known)) {
+    throw usage("'" + path + "': pictures can't be written as " + extension + ", but as " + names);
+  }
+  return found->format;
+}
+
+std::vector<uint8_t> encode(picture_format format, const std::vector<uint8_t>& bytes, int width, int height)
 {
   const size_t channels = bytes.size() / (static_cast<size_t>(width) * static_cast<size_t>(height));
   vtkNew<vtkImageData> image;
   image->SetDimensions(width, height, 1);
   image->AllocateScalars(VTK_UNSIGNED_CHAR, static_cast<int>(channels));
   std::memcpy(image->GetScalarPointer(), bytes.data(), bytes.size());
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputData(image);
-  writer->WriteToMemoryOn();
-  writer->Write();
-  vtkUnsignedCharArray* result = writer->GetResult();
-  if (writer->GetErrorCode() != 0 || !result || result->GetNumberOfValues() == 0) {
-    throw failure("the picture could not be encoded as PNG");
+  switch (format) {
+    case picture_format::jpeg:
+      return encode_in_memory<vtkJPEGWriter>(image, "JPEG");
+    case picture_format::tiff:
+      return encode_tiff(image);
+    case picture_format::bmp:
+      return encode_in_memory<vtkBMPWriter>(image, "BMP");
+    default:
+      return encode_in_memory<vtkPNGWriter>(image, "PNG");
   }
-  return std::vector<uint8_t>(result->GetPointer(0), result->GetPointer(0) + result->GetNumberOfValues());
 }
 } // namespace cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Converts float pixels to 8 bits over a background, and encodes them as PNG.
+// Converts float pixels to 8 bits over a background, and encodes them as PNG, JPEG, TIFF or BMP.
 #pragma once
 
 #include <cstdint>
@@ -20,5 +20,11 @@ background parse_background(const std::string& text);
 // Returns 3 bytes per pixel, or 4 for a transparent background, bottom row first. With 4 bytes alpha is not premultiplied, as PNG requires.
 std::vector<uint8_t> to_bytes(const std::vector<float>& rgba, int width, int height, const background& behind);
 
-std::vector<uint8_t> encode_png(const std::vector<uint8_t>& bytes, int width, int height);
+enum class picture_format { png, jpeg, tiff, bmp, exr };
+// Returns the format that the name's extension says, PNG for a name without one. Throws usage, with the list of what can be written, for
+// another extension, and for OpenEXR where this was built without it.
+picture_format format_of_picture(const std::string& path);
+
+// Encodes pixels of 3 or 4 bytes, bottom row first. 4 go with PNG alone; OpenEXR takes none, since it has floats.
+std::vector<uint8_t> encode(picture_format format, const std::vector<uint8_t>& bytes, int width, int height);
 } // namespace cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusVDBReader.h"
 
+#include "vtkStratusMakeArray.h"
 #include "vtkStratusSparseGrid.h"
 
 #include "vtkDataArray.h"
@@ -16,8 +17,6 @@
 #include <climits>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <new>
 
 vtkStandardNewMacro(vtkStratusVDBReader);
 
@@ -44,20 +43,6 @@ double Length(const vtkStratusSparseGrid& grid, size_t axis)
 {
   return std::sqrt(
     grid.Matrix[axis] * grid.Matrix[axis] + grid.Matrix[3 + axis] * grid.Matrix[3 + axis] + grid.Matrix[6 + axis] * grid.Matrix[6 + axis]);
-}
-
-// An array whose memory comes zeroed from the system, which gives a page only where something is written.
-vtkSmartPointer<vtkDataArray> MakeArray(int type, int components, vtkIdType tuples)
-{
-  auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
-  const vtkIdType values = tuples * components;
-  void* memory = std::calloc(static_cast<size_t>(values), static_cast<size_t>(array->GetDataTypeSize()));
-  if (!memory) {
-    throw std::bad_alloc();
-  }
-  array->SetNumberOfComponents(components);
-  array->SetVoidArray(memory, values, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
-  return array;
 }
 } // namespace
 
@@ -182,7 +167,7 @@ void vtkStratusVDBReader::BuildImage(vtkImageData* image, const vtkStratusSparse
   image->SetOrigin(grid.Offset.data());
   image->SetSpacing(spacing);
   image->SetDirectionMatrix(direction);
-  const vtkSmartPointer<vtkDataArray> values = MakeArray(grid.Type, grid.Components, image->GetNumberOfPoints());
+  const vtkSmartPointer<vtkDataArray> values = vtkStratusMakeArray(grid.Type, grid.Components, image->GetNumberOfPoints());
   grid.Write(values->GetVoidPointer(0), low, high);
   values->SetName(this->GridName.c_str());
   image->GetPointData()->AddArray(values);

@@ -6,7 +6,7 @@
  * A reader puts out one variable on its grid, at the time step that the pipeline asks for (the nearest one before it, else the first). An
  * error names the file and what is wrong, and empties the output.
  *
- * @sa vtkStratusCFReader vtkStratusUgridReader vtkStratusVDBReader
+ * @sa vtkStratusCFReader vtkStratusImageReader vtkStratusUgridReader vtkStratusVDBReader
  */
 #ifndef vtkStratusVariableReader_h
 #define vtkStratusVariableReader_h

@@ -2,6 +2,7 @@
 """fuzz_files.py STRATUS FOLDER COUNT SEED: damaged files through the command line, COUNT of them. Each must be drawn, or refused with a sentence and
 exit status 1; a signal, a silent failure, an output of what was refused and a file left over are findings. A finding names its file, which stays in
 FOLDER; the same seed makes the same files again."""
+import gzip
 import os
 import random
 import re
@@ -45,6 +46,13 @@ def files():
     yield "image.nrrd", (f"NRRD0004\ntype: float\ndimension: 3\nsizes: {SIDE} {SIDE} {SIDE}\nkinds: domain domain domain\nendian: little\nencoding: raw\n"
                          "spacings: 1 1 1\n\n").encode() + raw
     yield "ascii.nrrd", f"NRRD0004\ntype: float\ndimension: 3\nsizes: {SIDE} {SIDE} {SIDE}\nkinds: domain domain domain\nencoding: ascii\n\n{text}\n".encode()
+    yield "packed.nrrd", (f"NRRD0005\ntype: float\ndimension: 4\nsizes: 1 {SIDE} {SIDE} {SIDE}\nkinds: list domain domain domain\nspace: RAS\n"
+                          "space directions: none (0,1,0) (-1,0,0) (0,.2,1)\nendian: little\nencoding: gzip\n\n").encode() + gzip.compress(raw, mtime=0)
+    head = bytearray(352)
+    for at, kind, *numbers in ((0, "i", 348), (40, "8h", 3, SIDE, SIDE, SIDE, 1, 1, 1, 1), (70, "h", 16), (76, "8f", 1, 1, 1, 1, 0, 0, 0, 0),
+                               (108, "3f", 352, 2, 1), (252, "2h", 1, 0), (256, "3f", 0, 0, .6), (344, "4s", b"n+1")):
+        struct.pack_into("<" + kind, head, at, *numbers)
+    yield "image.nii", bytes(head) + raw
     yield "grid.vtk", (f"# vtk DataFile Version 3.0\ngrid\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {n} float\n{lines(points)}\n"
                        f"CELLS {len(cubes)} {5 * len(cubes)}\n{lines([4, *c] for c in cubes)}\nCELL_TYPES {len(cubes)}\n{lines([10] for _ in cubes)}\n"
                        f"POINT_DATA {n}\nSCALARS density float 1\nLOOKUP_TABLE default\n{text}\n").encode()

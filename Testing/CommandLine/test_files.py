@@ -2,10 +2,12 @@
 """Files of every kind of grid, in steps and in parts, as `stratus` reads them. Usage: test_files.py PATH-OF-STRATUS FOLDER
 [PATHS OF make-cumulus AND make-river, where libnetcdf was there to build with, OF write-vdb, where OpenVDB and NanoVDB were,
 AND OF write-vtkhdf]"""
+import gzip
 import math
 import os
 import re
 import shutil
+import struct
 import subprocess
 import sys
 
@@ -14,7 +16,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (
     vtkImageData, vtkMultiBlockDataSet, vtkRectilinearGrid, vtkStructuredGrid, vtkUnstructuredGrid)
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
-from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkIOImage import vtkBMPReader, vtkJPEGReader, vtkPNGReader
 from vtkmodules.vtkIOXML import (
     vtkXMLImageDataWriter, vtkXMLMultiBlockDataWriter, vtkXMLRectilinearGridWriter, vtkXMLStructuredGridWriter,
     vtkXMLUniformGridAMRWriter, vtkXMLUnstructuredGridWriter)
@@ -313,8 +315,8 @@ def test_memory():
             fail(f"memory grows: {few} MiB in 20 steps of .{ending}, {many} MiB in 220")
 
 
-def pixels(name):
-    reader = vtkPNGReader()
+def pixels(name, reader=vtkPNGReader):
+    reader = reader()
     reader.SetFileName(name)
     reader.Update()
     data = reader.GetOutput()
@@ -657,6 +659,90 @@ def test_refined():
     expect(2, "is AMR, which is drawn alone", "render", "refined.vthb", "fine.vti", "-o", "no.png")
     write(vtkXMLUniformGridAMRWriter, Refined(uneven(), cells=False).data(vtkCommonDataModel), "points.vthb")
     expect(1, "nearest interpolation of AMR's values of points", "render", "points.vthb", "-o", "no.png", "--nearest")
+
+
+def pixels_of_tiff(name):
+    """One strip, packed or not, since VTK's reader puts the first row at the bottom."""
+    with open(name, "rb") as file:
+        data = file.read()
+    at = struct.unpack_from("<I", data, 4)[0]
+    tags = {}
+    for i in range(struct.unpack_from("<H", data, at)[0]):
+        tag, kind, _, value = struct.unpack_from("<HHII", data, at + 2 + 12 * i)
+        tags[tag] = value & 0xffff if kind == 3 else value
+    width, height, strip, bytes_in, runs = tags[256], tags[257], tags[273], tags[279], tags[259] == 32773
+    rows, at = bytearray(), strip
+    while runs and at < strip + bytes_in:
+        count = data[at]
+        if count < 128:
+            rows += data[at + 1:at + count + 2]
+        elif count > 128:
+            rows += data[at + 1:at + 2] * (257 - count)
+        at += count + 2 if count < 128 else 1 if count == 128 else 2
+    if tags[274] != 1:
+        fail(f"{name} has its first row elsewhere than at the top")
+    rows = bytes(rows) if runs else data[strip:strip + bytes_in]
+    return numpy.frombuffer(rows, numpy.uint8).reshape(height, width, 3)[::-1].astype(int)
+
+
+def test_picture_formats():
+    """A picture is what its name says, by the file's first bytes and its pixels."""
+    render = ("render", "image.vti", *LOOK)
+    expect(0, "picture", *render, "-o", "out.png")
+    sound = pixels("out.png")
+    for name, begin, reader, most in (("out.jpg", b"\xff\xd8\xff", vtkJPEGReader, 40), ("OUT.JPEG", b"\xff\xd8\xff", vtkJPEGReader, 40),
+                                      ("out.tif", b"II*\0", None, 0), ("out.tiff", b"II*\0", None, 0), ("out.bmp", b"BM", vtkBMPReader, 0),
+                                      ("out", b"\x89PNG", vtkPNGReader, 0)):
+        expect(0, "picture", *render, "-o", name)
+        with open(name, "rb") as file:
+            if not file.read(4).startswith(begin):
+                fail(f"{name} does not begin with {begin}")
+        difference = abs((pixels(name, reader) if reader else pixels_of_tiff(name)) - sound)
+        if difference.max() > most or difference.mean() > most / 10:
+            fail(f"{name} is up to {difference.max()} of 255 from the PNG")
+    for name in "out.webp", "out.gif", "out.pdf", "out.0001":
+        told = expect(2, rf"'{name}': pictures can't be written as \{name[3:]}, but as \.png, \.jpg, \.tif, \.bmp", *render, "-o", name)
+        if os.path.exists(name):
+            fail(f"{name} was written: {told}")
+    expect(2, r"'out-%d\.webp': pictures can't be written as \.webp", "render", "image.vti", *LOOK, "--frames", "out-%d.webp")
+    for name in "out.jpg", "out.tif", "out.bmp":
+        expect(2, rf"'{name}': only .png and .exr pictures can be transparent", *render, "-o", name, "--background", "transparent")
+    expect(0, "picture", "render", "image.vti", "-o", "cost.bmp", "--size", "48x40", "--device", "host", "--show", "samples")
+    pixels("cost.bmp", vtkBMPReader)
+
+
+def test_scans():
+    """Where a scan lies, and what its values are; vtkStratusImageReader's own test has the rest."""
+    raw = numpy.arange(4 * 3 * 2, dtype=">i2").tobytes()
+    with open("turned.mhd", "w") as file:
+        file.write("ObjectType = Image\nNDims = 3\nDimSize = 4 3 2\nElementByteOrderMSB = True\nTransformMatrix = 0 1 0 -1 0 0 0 0 1\n"
+                   "Offset = 10 20 30\nElementSpacing = 1 1.5 2\nElementType = MET_SHORT\nElementDataFile = turned.raw\n")
+    with open("turned.raw", "wb") as file:
+        file.write(raw)
+    expect(0, r"bounds +7 \.\. 10, 20 \.\. 23, 30 \.\. 32$", "info", "turned.mhd")
+    head = bytearray(352)
+    for at, kind, *numbers in ((0, "i", 348), (40, "8h", 3, 4, 3, 2, 1, 1, 1, 1), (70, "h", 4), (76, "8f", 1, 1, 1, 1, 0, 0, 0, 0), (108, "3f", 352, 0.5, -100),
+                               (123, "b", 2), (254, "h", 1), (280, "12f", -1, 0, 0, 90, 0, 1.5, 0, -126, 0, 0, 2, -72), (344, "4s", b"n+1")):
+        struct.pack_into(">" + kind, head, at, *numbers)
+    for name, write_to in (("scan.nii", open), ("scan.nii.gz", gzip.open), ("otherwise", open)):
+        with write_to(name, "wb") as file:
+            file.write(bytes(head) + raw)
+        expect(0, r"range +-100 \.\. -88\.5$", "info", name)
+        expect(0, r"bounds +87 \.\. 90, -126 \.\. -123, -72 \.\. -70$", "info", name)
+        expect(0, "values are 0.5 \\* stored \\+ -100", "info", name)
+        expect(0, "picture", "render", name, "-o", "out.png", "--size", "48x40", "--device", "host", "--axes")
+    pair = bytes(head[:344]) + b"ni1\0" + bytes(4)
+    with open("scan.hdr", "wb") as file:
+        file.write(pair[:108] + bytes(4) + pair[112:])
+    with open("scan.img", "wb") as file:
+        file.write(raw)
+    for name in "scan.hdr", "scan.img":
+        expect(0, r"bounds +87 \.\. 90, -126 \.\. -123, -72 \.\. -70$", "info", name)
+    with open("turned.mhd") as file:
+        text = file.read()
+    with open("turned.mhd", "w") as file:
+        file.write(text.replace("4 3 2", "4 3 3"))
+    expect(1, "cannot read 'turned.mhd': turned.raw: has 48 bytes, which can't be the 36 values of 2 bytes", "info", "turned.mhd")
 
 
 if __name__ == "__main__":

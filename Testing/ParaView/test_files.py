@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pvbatch with the plugin: File > Open and Save Data. What the project's writers write, its readers open by its extension; meshes in layers,
-CF's grids and sparse grids give their variables, times and values.
+CF's grids, sparse grids and scans give their variables, times, values and places.
 pvbatch test_files.py PLUGIN STRATUS COMPARE-PICTURES FOLDER; sparse grids are read where the test of their reader has left them in FOLDER/.."""
+import gzip
 import os
 import sys
 
@@ -122,6 +123,23 @@ def grid_of_cf():
     check(list(vtk_to_numpy(grid.GetZCoordinates())) == [0, 1, 4], "uneven levels")
 
 
+def images_of_scans():
+    """Big-endian and compressed, turned and mirrored; ParaView's own reader leaves both out."""
+    values = numpy.arange(24, dtype=">i2").reshape(4, 3, 2)
+    path = os.path.join(folder, "scan.nrrd")
+    with open(path, "wb") as file:
+        file.write(b"NRRD0004\ntype: short\ndimension: 3\nsizes: 2 3 4\nspace: RAS\nspace directions: (0,2,0) (-1.5,0,0) (0,0,-3)\n"
+                   b"space origin: (5,6,7)\nendian: big\nencoding: gzip\n\n" + gzip.compress(values.tobytes()))
+    check("StratusImageReader" in readers_of(path), f"ours is offered, not {readers_of(path)}")
+    reader = simple.StratusImageReader(FileName=path)
+    reader.UpdatePipeline()
+    image = reader.GetClientSideObject().GetOutputDataObject(0)
+    check((vtk_to_numpy(image.GetPointData().GetArray("ImageFile")) == numpy.arange(24)).all(), "values")
+    place = [0.0, 0.0, 0.0]
+    image.TransformContinuousIndexToPhysicalPoint([1, 2, 3], place)
+    check(numpy.allclose(place, (2, 8, -2)) and image.GetSpacing() == (2, 1.5, 3), f"the last sample's place, {place}")
+
+
 def sparse_grids():
     path = os.path.join(folder, "..", "float.vdb")
     if not os.path.exists(path):
@@ -142,4 +160,5 @@ tetgen_files()
 pictures_as_floats()
 mesh_in_layers()
 grid_of_cf()
+images_of_scans()
 leave(sparse_grids())

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkStratusImageReader
+ * @brief   reads an image of NRRD, MetaImage or NIfTI, with its orientation and its scaling
+ *
+ * The file's first bytes tell the format: NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), NIfTI-1 and NIfTI-2 (.nii, .nii.gz, .hdr with .img).
+ * The output is a vtkImageData with one array, named as VTK's readers name theirs: "ImageFile", "MetaImage", "NIFTI".
+ *
+ * Place: a sample's place is the one that the file tells, in the file's own coordinates (GetDescription() says which). The spacing is the
+ * length of the way from a sample to the next one, and the direction matrix has the directions of these ways as its columns. It may mirror
+ * and shear: VTK's images and the Stratus mappers use the whole matrix. Axes that lie in one plane are an error.
+ *
+ * Values: bytes are put into the machine's order. NIfTI's scl_slope and scl_inter and MetaImage's ElementToIntensityFunction are applied;
+ * scaled values are float, or double where they are stored in 32 bits of integers or more than 32 bits.
+ *
+ * Components: of NRRD an axis of a kind such as vector, RGB-color or list, wherever it stands; of MetaImage the channels; of NIfTI the
+ * fifth dimension, and colours. A vector's array is the active vectors, others are the active scalars.
+ *
+ * Time: of NRRD an axis of time, of MetaImage and NIfTI the fourth dimension. Steps of which the file does not tell the length are
+ * numbered.
+ *
+ * A file is an error if it has less than it tells of, or needs something that can't be read: the message names it.
+ * docs/command-line.md has a table of what is read.
+ *
+ * @sa vtkStratusVDBReader vtkStratusCFReader
+ */
+#ifndef vtkStratusImageReader_h
+#define vtkStratusImageReader_h
+
+#include "vtkStratusVariableReader.h"
+
+#include <memory> // For std::unique_ptr
+
+class vtkDataArray;
+struct vtkStratusImageFile;
+
+class STRATUSFILTERSIO_EXPORT vtkStratusImageReader : public vtkStratusVariableReader
+{
+public:
+  static vtkStratusImageReader* New();
+  vtkTypeMacro(vtkStratusImageReader, vtkStratusVariableReader);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * Return 1 if the file begins as one of NRRD, MetaImage or NIfTI, else 0.
+   */
+  static int CanReadFile(const char* path);
+
+protected:
+  vtkStratusImageReader();
+  ~vtkStratusImageReader() override;
+
+  std::string Inspect() override;
+  void Build(size_t step, vtkDataObject* output) override;
+  int RequestInformation(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkStratusImageReader(const vtkStratusImageReader&) = delete;
+  void operator=(const vtkStratusImageReader&) = delete;
+
+  void FindFrame();
+  vtkSmartPointer<vtkDataArray> ReadStored(size_t step);
+
+  std::unique_ptr<vtkStratusImageFile> File;
+  double Origin[3], Spacing[3], Direction[9];
+  int Components = 1;
+};
+
+#endif
