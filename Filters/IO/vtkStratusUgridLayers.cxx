@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusUgridLayers.h"
 
+#include "vtkStratusHeights.h"
+
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <netcdf.h>
 
 namespace {
 bool IsOneOf(const std::string& word, std::initializer_list<const char*> words)
@@ -20,13 +23,15 @@ bool EndsWith(const std::string& text, const std::string& end)
 vtkStratusUgridLayers::vtkStratusUgridLayers(const vtkStratusUgridMesh& mesh) : Mesh(mesh), File(mesh.GetFile())
 {
   this->FindHeights();
-  if (this->Kind == Flat && !this->FindLevels(true)) {
-    this->FindLevels(false);
+  if (this->Kind == Flat && !this->FindSigma()) {
+    this->FindLevels();
   }
   this->FindSurfaces();
   if ((this->Kind == Flat || this->Kind == Sigma) && (!this->Surface || !this->Bed)) {
     this->File.Fail(std::string("there is no ") + (this->Surface ? "bottom" : "free surface") +
-      " to stand layers on: neither formula_terms nor standard_name nor the names of Delft3D FM, SCHISM or FVCOM tell it");
+      " to stand layers on: neither formula_terms nor standard_name nor the names of Delft3D FM, SCHISM or FVCOM tell it, and no dimension "
+      "of "
+      "layers has a coordinate of a length, a pressure or a direction");
   }
   this->FindOrder();
   for (const Variable* one : { this->Source, this->Surface, this->Bed, this->Wet }) {
@@ -44,17 +49,28 @@ void vtkStratusUgridLayers::FindOrder()
   const vtkStratusUgridValues values = this->Mesh.Read(*this->Source, 0);
   const size_t last = this->OfBorders ? this->Count : this->Count - 1;
   for (size_t node = 0; node < (values.Across > 0 ? this->Mesh.GetNodes() : 1); ++node) {
-    const double difference = values.At(node, 0) - values.At(node, last);
+    const double difference = this->ToHeight(values.At(node, 0)) - this->ToHeight(values.At(node, last));
     if (std::isfinite(difference) && difference != 0.0) {
-      this->TopFirst = (difference > 0.0) != this->IsDown();
+      this->TopFirst = difference > 0.0;
       return;
     }
   }
 }
 
-bool vtkStratusUgridLayers::IsDown() const
+// The height of a fixed level in metres; other values as they are.
+double vtkStratusUgridLayers::ToHeight(double level) const
 {
-  return this->Kind == Levels && this->File.Text(*this->Source, "positive") == "down";
+  if (this->Kind != Levels) {
+    return this->Kind == Heights ? this->Unit.Convert(level) : level;
+  }
+  const double value = this->Unit.Convert(level);
+  if (this->Unit.IsPressure()) {
+    if (value < 0.0) {
+      this->File.Fail("'" + this->Source->Name + "' has a pressure of " + vtkStratusNumberText(level) + ", it must not be negative");
+    }
+    return this->Unit.Scale == 10000.0 ? vtkStratusHeightInSea(value) : vtkStratusHeightOfPressure(value);
+  }
+  return this->Down ? -value : value;
 }
 
 // The heights of the layers' borders, node by node.
@@ -67,6 +83,7 @@ void vtkStratusUgridLayers::FindHeights()
     if (named && this->Mesh.IsOnNodes(one) && layers >= 0) {
       this->Kind = Heights;
       this->Source = &one;
+      this->Unit = vtkStratusUnitOf(this->File.Text(one, "units"));
       this->TakeCount(one, layers, true);
       return;
     }
@@ -85,18 +102,15 @@ void vtkStratusUgridLayers::TakeCount(const Variable& variable, int dimension, b
   this->OfBorders = borders;
 }
 
-// Sigma or fixed levels, at borders if the file has them there, else at centres. The other dimension belongs to the same layers.
-bool vtkStratusUgridLayers::FindLevels(bool sigma)
+// Sigma at borders if the file has it there, else at centres. The other dimension belongs to the same layers.
+bool vtkStratusUgridLayers::FindSigma()
 {
   const Variable* found[2] = { nullptr, nullptr }; // the shorter, the longer
   const auto length = [this](const Variable& one) { return this->File.LengthOf(one.Dimensions[0]); };
   for (const Variable& one : this->File.GetVariables()) {
-    const std::string name = this->File.Text(one, "standard_name");
-    const bool named = sigma
-      ? name == "ocean_sigma_coordinate" || IsOneOf(one.BaseName(), { "siglev", "siglay" }) || EndsWith(one.BaseName(), "_sigma")
-      : IsOneOf(name, { "altitude", "height", "depth" }) || EndsWith(one.BaseName(), "_layer_z") ||
-        EndsWith(one.BaseName(), "_interface_z");
-    const bool shaped = (one.Dimensions.size() == 1 || (sigma && one.Dimensions.size() == 2 && this->Mesh.IsOnNodes(one))) &&
+    const bool named = this->File.Text(one, "standard_name") == "ocean_sigma_coordinate" ||
+      IsOneOf(one.BaseName(), { "siglev", "siglay" }) || EndsWith(one.BaseName(), "_sigma");
+    const bool shaped = (one.Dimensions.size() == 1 || (one.Dimensions.size() == 2 && this->Mesh.IsOnNodes(one))) &&
       this->Mesh.FindTime(one) < 0 && !(one.Dimensions.size() == 1 && (this->Mesh.IsOnNodes(one) || this->Mesh.IsOnFaces(one)));
     if (!named || !shaped) {
       continue;
@@ -111,7 +125,7 @@ bool vtkStratusUgridLayers::FindLevels(bool sigma)
   if (!found[0]) {
     return false;
   }
-  this->Kind = sigma ? Sigma : Levels;
+  this->Kind = Sigma;
   if (found[1] && length(*found[1]) == length(*found[0]) + 1) {
     this->TakeCount(*found[0], found[0]->Dimensions[0], false);
     this->TakeCount(*found[1], found[1]->Dimensions[0], true);
@@ -121,9 +135,105 @@ bool vtkStratusUgridLayers::FindLevels(bool sigma)
   this->Source = found[0];
   const vtkStratusUgridValues values = this->Mesh.Read(*found[0], 0);
   const size_t count = length(*found[0]);
-  const bool ends = sigma && count > 1 && std::fabs(values.At(0, 0) - values.At(0, count - 1)) > 1.0 - 1e-6; // from -1 to 0
+  const bool ends = count > 1 && std::fabs(values.At(0, 0) - values.At(0, count - 1)) > 1.0 - 1e-6; // from -1 to 0
   this->TakeCount(*found[0], found[0]->Dimensions[0], ends);
   return true;
+}
+
+// Returns whether a variable tells heights, depths or pressures along one dimension, which is neither time nor the mesh's.
+bool vtkStratusUgridLayers::IsLevels(const Variable& one) const
+{
+  const std::string name = this->File.Text(one, "standard_name");
+  const vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(one, "units"));
+  const bool shaped = one.Dimensions.size() == 1 && one.Type != NC_CHAR && one.Type < NC_STRING && this->Mesh.FindTime(one) < 0 &&
+    !this->Mesh.IsOnNodes(one) && !this->Mesh.IsOnFaces(one);
+  return shaped &&
+    (unit.IsLength() || unit.IsPressure() || IsOneOf(name, { "altitude", "height", "depth" }) || EndsWith(one.BaseName(), "_layer_z") ||
+      EndsWith(one.BaseName(), "_interface_z") || !this->File.Text(one, "positive").empty() ||
+      vtkStratusLower(this->File.Text(one, "axis")) == "z");
+}
+
+// Fixed levels along the dimension of the first variable that has layers: at the layers' borders if the file has these, else in the middle
+// of layers, with bounds or without.
+bool vtkStratusUgridLayers::FindLevels()
+{
+  const auto along = [this](int dimension) {
+    const Variable* own = this->File.CoordinateOf(dimension);
+    const Variable* found = own && this->IsLevels(*own) ? own : nullptr;
+    for (const Variable& one : this->File.GetVariables()) {
+      found = found ? found : this->IsLevels(one) && one.Dimensions[0] == dimension ? &one : nullptr;
+    }
+    return found;
+  };
+  const Variable* levels = nullptr;
+  for (const Variable& one : this->File.GetVariables()) {
+    const int dimension = this->Mesh.IsOnNodes(one) != this->Mesh.IsOnFaces(one) ? this->Mesh.FindLayers(one) : -1;
+    levels = levels || dimension < 0 || one.Type == NC_CHAR || one.Type >= NC_STRING ? levels : along(dimension);
+  }
+  if (!levels) {
+    return false;
+  }
+  const Variable *middles = levels, *borders = nullptr;
+  for (const Variable& one : this->File.GetVariables()) {
+    const size_t length = this->File.LengthOf(levels->Dimensions[0]);
+    if (this->IsLevels(one) && this->File.LengthOf(one.Dimensions[0]) == length + 1) {
+      borders = &one;
+    } else if (this->IsLevels(one) && this->File.LengthOf(one.Dimensions[0]) + 1 == length && length > 2) {
+      middles = &one;
+      borders = levels;
+    }
+  }
+  this->Kind = Levels;
+  this->TakeCount(*middles, middles->Dimensions[0], false);
+  this->Source = borders ? borders : middles;
+  if (borders) {
+    this->TakeCount(*borders, borders->Dimensions[0], true);
+  }
+  const std::string units = this->File.Text(*this->Source, "units");
+  this->Unit = vtkStratusUnitOf(units);
+  if (!units.empty() && !this->Unit.IsLength() && !this->Unit.IsPressure()) {
+    this->File.Fail(
+      "the layers' coordinate '" + this->Source->Name + "' has the unit '" + units + "', it must be one of length or pressure");
+  }
+  this->Down = !this->Unit.IsPressure() && vtkStratusIsDown(this->File, *this->Source);
+  this->Stretched = EndsWith(this->Source->BaseName(), "_layer_z") || EndsWith(this->Source->BaseName(), "_interface_z");
+  const std::string bounds = this->File.Text(*this->Source, "bounds");
+  if (!borders && !bounds.empty()) {
+    this->ReadBounds(bounds);
+  }
+  return true;
+}
+
+// Reads the borders of layers from the bounds of their coordinate, which must meet.
+void vtkStratusUgridLayers::ReadBounds(const std::string& name)
+{
+  const Variable* bounds = this->File.Find(name, this->Source);
+  if (!bounds || bounds->Dimensions.size() != 2 || bounds->Dimensions[0] != this->LayerDimension ||
+    this->File.LengthOf(bounds->Dimensions[1]) != 2) {
+    this->File.Fail("the bounds '" + name + "' of '" + this->Source->Name + "' " +
+      (bounds ? "must have the dimension of layers, and one of 2" : "are not there"));
+  }
+  std::vector<double> at = this->File.ReadComplete(*bounds, "bounds of layers");
+  std::transform(at.begin(), at.end(), at.begin(), [this](double one) { return this->ToHeight(one); });
+  if (at[0] > at[1]) {
+    for (size_t i = 0; i < at.size(); i += 2) {
+      std::swap(at[i], at[i + 1]);
+    }
+  }
+  const bool top_first = at.size() > 2 && at[2] < at[0];
+  for (size_t i = 0; i < this->Count; ++i) {
+    const size_t layer = top_first ? this->Count - 1 - i : i;
+    const double low = at[2 * layer], high = at[2 * layer + 1];
+    if (!(low < high) || (i > 0 && std::fabs(low - this->Fixed.back()) > 1e-5 * std::max(std::fabs(low), std::fabs(high)))) {
+      this->File.Fail("the bounds '" + name + "' of layer " + std::to_string(layer) + " are " + vtkStratusNumberText(low) + " and " +
+        vtkStratusNumberText(high) + " in metres, they must " +
+        (low < high ? "begin at " + vtkStratusNumberText(this->Fixed.back()) + ", where the layer below ends" : "differ, in one order"));
+    }
+    if (i == 0) {
+      this->Fixed.push_back(low);
+    }
+    this->Fixed.push_back(high);
+  }
 }
 
 // Looks for a term of the heights' formula.
@@ -157,7 +267,7 @@ void vtkStratusUgridLayers::FindSurfaces()
       this->Surface = &one;
     }
     if (!this->Bed &&
-      (name.compare(0, 15, "sea_floor_depth") == 0 || IsOneOf(one.BaseName(), { "h", "depth" }) ||
+      (name.compare(0, 15, "sea_floor_depth") == 0 || IsOneOf(one.BaseName(), { "h", "depth", "bathymetry", "dv" }) ||
         EndsWith(one.BaseName(), "_flowelem_bl") || EndsWith(one.BaseName(), "_node_z"))) {
       this->Bed = &one;
     }
@@ -199,36 +309,47 @@ std::string vtkStratusUgridLayers::Describe() const
       (this->Kind == Heights    ? "heights"
           : this->Kind == Sigma ? "sigma"
                                 : "levels") +
-      " '" + this->Source->Name + "'";
+      " '" + this->Source->Name + "'" + (!this->Fixed.empty() ? " and its bounds" : "") + (this->Down ? ", downwards" : "");
   }
   text += this->Surface ? ", free surface '" + this->Surface->Name + "'" : "";
   return text + (this->Bed ? ", bottom '" + this->Bed->Name + "'" : "");
 }
 
+// A length at nodes, in metres.
+std::vector<double> vtkStratusUgridLayers::ReadLength(const Variable& variable, size_t step) const
+{
+  std::vector<double> values = this->Mesh.ReadAtNodes(variable, step);
+  const vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(variable, "units"));
+  const double scale = unit.IsLength() ? unit.Scale : 1.0;
+  std::transform(values.begin(), values.end(), values.begin(), [scale](double one) { return one * scale; });
+  return values;
+}
+
 // The bottom's heights at nodes.
 std::vector<double> vtkStratusUgridLayers::Bottom(size_t step, const std::vector<double>& surface) const
 {
-  std::vector<double> bottom = this->Mesh.ReadAtNodes(*this->Bed, step);
+  std::vector<double> bottom = this->ReadLength(*this->Bed, step);
   for (size_t node = 0; node < bottom.size(); ++node) {
     bottom[node] = this->BedMeans == Altitude ? bottom[node] : (this->BedMeans == WaterDepth ? surface[node] : 0.0) - bottom[node];
   }
   return bottom;
 }
 
-// The levels of the borders at a node, from the bottom up. Between centres they lie in the middle; the outermost ones are those of sigma,
-// or as far from the outermost centre as the next border.
+// The levels of the borders at a node, from the bottom up. Between centres they are in the middle. The outermost borders are those of
+// sigma, or as far from the outermost centre as the next border, but not beyond height 0 if all centres are on one side of it.
 std::vector<double> vtkStratusUgridLayers::BordersOf(const vtkStratusUgridValues& levels, size_t node) const
 {
+  if (!this->Fixed.empty()) {
+    return this->Fixed;
+  }
   const size_t given = this->OfBorders ? this->Count + 1 : this->Count;
   std::vector<double> at(given), borders(this->Count + 1);
   for (size_t i = 0; i < given; ++i) {
-    at[i] = levels.At(node, i);
+    at[i] = this->ToHeight(levels.At(node, i));
     if (!std::isfinite(at[i])) {
       this->File.Fail("'" + this->Source->Name + "' has no value (a fill value, or not finite) at layer " + std::to_string(i));
     }
   }
-  const bool down = this->IsDown();
-  std::transform(at.begin(), at.end(), at.begin(), [down](double one) { return down ? -one : one; });
   if (given > 1 && at.front() > at.back()) {
     std::reverse(at.begin(), at.end());
   }
@@ -247,6 +368,8 @@ std::vector<double> vtkStratusUgridLayers::BordersOf(const vtkStratusUgridValues
   const bool sigma = this->Kind == Sigma;
   borders.front() = sigma ? -1.0 : this->Count > 1 ? 2.0 * at.front() - borders[1] : at.front() - 0.5;
   borders.back() = sigma ? 0.0 : this->Count > 1 ? 2.0 * at.back() - borders[this->Count - 1] : at.back() + 0.5;
+  borders.back() = !sigma && at.back() < 0.0 ? std::min(borders.back(), 0.0) : borders.back();
+  borders.front() = !sigma && at.front() > 0.0 ? std::max(borders.front(), 0.0) : borders.front();
   return borders;
 }
 
@@ -259,7 +382,7 @@ void vtkStratusUgridLayers::ReadHeights(size_t step, std::vector<double>& z) con
   for (size_t node = 0; node < nodes; ++node) {
     double last = NAN;
     for (size_t b = borders; b-- > 0;) {
-      double height = values.At(node, top_first ? borders - 1 - b : b);
+      double height = this->ToHeight(values.At(node, top_first ? borders - 1 - b : b));
       height = std::isfinite(height) ? height : last;
       if (std::isfinite(last) && height > last) {
         this->File.Fail("layers are upside down: '" + this->Source->Name + "' has " + vtkStratusNumberText(height) + " under " +
@@ -273,7 +396,7 @@ void vtkStratusUgridLayers::ReadHeights(size_t step, std::vector<double>& z) con
 void vtkStratusUgridLayers::ReadLevels(size_t step, std::vector<double>& z, std::vector<char>& none) const
 {
   const size_t nodes = this->Mesh.GetNodes();
-  const std::vector<double> surface = this->Surface ? this->Mesh.ReadAtNodes(*this->Surface, step) : std::vector<double>(nodes, INFINITY);
+  const std::vector<double> surface = this->Surface ? this->ReadLength(*this->Surface, step) : std::vector<double>(nodes, INFINITY);
   const std::vector<double> bottom = this->Bed ? this->Bottom(step, surface) : std::vector<double>(nodes, -INFINITY);
   const vtkStratusUgridValues levels = this->Source ? this->Mesh.Read(*this->Source, step) : vtkStratusUgridValues();
   std::vector<double> borders = { -1.0, 0.0 };
@@ -289,8 +412,8 @@ void vtkStratusUgridLayers::ReadLevels(size_t step, std::vector<double>& z, std:
         this->Kind == Levels ? std::min(std::max(borders[b], low), surface[node]) : surface[node] + borders[b] * (surface[node] - low);
       z[b * nodes + node] = missing ? low : height;
     }
-    if (this->Kind == Levels && !missing) { // the outermost layers end at the bottom and at the free surface
-      z[node] = std::isfinite(low) ? low : z[node];
+    if (this->Kind == Levels && !missing) { // the uppermost layer ends at the free surface, and Delft3D FM's lowest one at the bottom
+      z[node] = this->Stretched && std::isfinite(low) ? low : z[node];
       z[this->Count * nodes + node] = std::isfinite(surface[node]) ? surface[node] : borders[this->Count];
     }
   }
@@ -310,7 +433,8 @@ void vtkStratusUgridLayers::FindDry(size_t step, const std::vector<char>& none, 
     int corners = 0;
     const int* nodes = this->Mesh.GetFace(face, corners);
     const bool all_wet = std::none_of(nodes, nodes + corners, [&none](int node) { return none[static_cast<size_t>(node)] != 0; });
-    dry[face] = !all_wet || (wet.Values && (wet.At(face, 0) == 1.0) != this->WetIsOne) || (own && !std::isfinite(surface.At(face, 0)));
+    dry[face] = !all_wet || this->Mesh.IsTorn(face) || (wet.Values && (wet.At(face, 0) == 1.0) != this->WetIsOne) ||
+      (own && !std::isfinite(surface.At(face, 0)));
   }
 }
 

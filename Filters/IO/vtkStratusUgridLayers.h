@@ -4,6 +4,7 @@
 #define vtkStratusUgridLayers_h
 
 #include "vtkStratusUgridMesh.h"
+#include "vtkStratusUnits.h"
 
 #include <string>
 #include <vector>
@@ -34,10 +35,14 @@ private:
 
   void FindHeights();
   void FindOrder();
-  bool IsDown() const;
+  double ToHeight(double level) const;
   bool FindTerm(const char* term, const Variable*& found) const;
   void FindSurfaces();
-  bool FindLevels(bool sigma);
+  bool FindSigma();
+  bool IsLevels(const Variable& one) const;
+  bool FindLevels();
+  void ReadBounds(const std::string& name);
+  std::vector<double> ReadLength(const Variable& variable, size_t step) const;
   void TakeCount(const Variable& variable, int dimension, bool borders);
   std::vector<double> Bottom(size_t step, const std::vector<double>& surface) const;
   std::vector<double> BordersOf(const vtkStratusUgridValues& levels, size_t node) const;
@@ -53,6 +58,10 @@ private:
   bool TopFirst = false;
   bool OfBorders = false;           // Levels are at borders
   const Variable* Source = nullptr; // heights, sigma or levels
+  vtkStratusUnit Unit;              // of heights or levels
+  bool Down = false;                // levels count downwards
+  bool Stretched = false;           // the lowest layer reaches to the bottom
+  std::vector<double> Fixed;        // borders by bounds, from the bottom up; empty: there are no bounds
   const Variable* Surface = nullptr;
   const Variable* Bed = nullptr;
   enum BedType { Altitude, Depth, WaterDepth } BedMeans = Depth;

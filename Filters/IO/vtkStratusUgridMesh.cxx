@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusUgridMesh.h"
 
+#include "vtkStratusLongitudes.h"
+#include "vtkStratusUnits.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <netcdf.h>
+#include <numeric>
 
 namespace {
 constexpr double EarthRadius = 6371000.0; // metres
@@ -68,14 +72,18 @@ void vtkStratusUgridMesh::ReadNodes(const Variable& x, const Variable& y)
   if (this->X.empty()) {
     this->File.Fail("the mesh has no nodes");
   }
-  const std::string units = this->File.Text(x, "units");
-  this->Metres = units == "m" || units == "meters" || units == "metres" || units.compare(0, 6, "degree") == 0;
-  if (units.compare(0, 6, "degree") == 0) {
+  const vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(x, "units"));
+  this->Metres = unit.IsLength() || unit.IsAngle();
+  this->Degrees = unit.IsAngle();
+  for (std::vector<double>* at : { &this->X, &this->Y }) {
+    std::transform(at->begin(), at->end(), at->begin(), [&unit](double one) { return unit.Convert(one); });
+  }
+  this->NodeOf.resize(this->X.size());
+  std::iota(this->NodeOf.begin(), this->NodeOf.end(), size_t{ 0 });
+  if (this->Degrees) {
     const auto ends = std::minmax_element(this->Y.begin(), this->Y.end());
     const double degree = std::acos(-1.0) / 180.0, middle = 0.5 * (*ends.first + *ends.second);
-    const double across = EarthRadius * degree * std::cos(middle * degree);
-    std::transform(this->X.begin(), this->X.end(), this->X.begin(), [across](double one) { return one * across; });
-    std::transform(this->Y.begin(), this->Y.end(), this->Y.begin(), [degree](double one) { return one * EarthRadius * degree; });
+    this->Factors = { { EarthRadius * degree * std::cos(middle * degree), EarthRadius * degree } };
     this->Description = "degrees as metres at latitude " + vtkStratusNumberText(middle) + "; ";
   }
   this->Description += "nodes at '" + x.Name + "' and '" + y.Name + "'";
@@ -123,23 +131,110 @@ void vtkStratusUgridMesh::ReadFaces(const Variable& connectivity, int first)
     if (face.size() < 3) {
       this->File.Fail("face " + std::to_string(f) + " has " + std::to_string(face.size()) + " nodes, at least 3 are needed");
     }
-    this->AddFace(face);
+    this->Corners.insert(this->Corners.end(), face.begin(), face.end());
+    this->Offsets.push_back(this->Corners.size());
+  }
+  if (this->Degrees) {
+    this->JoinLongitudes();
+  }
+  for (size_t node = 0; node < this->X.size(); ++node) {
+    this->X[node] *= this->Factors[0];
+    this->Y[node] *= this->Factors[1];
+  }
+  this->TurnFaces();
+}
+
+// Makes longitudes continuous over a mesh that spans less than the Earth. Around the Earth they stay as they are, and faces across the
+// meridian where they jump get copies of nodes.
+void vtkStratusUgridMesh::JoinLongitudes()
+{
+  const auto edges = [this](const std::function<void(size_t, size_t)>& call) {
+    for (size_t face = 0; face < this->GetFaces(); ++face) {
+      for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1]; ++c) {
+        const size_t next = c + 1 < this->Offsets[face + 1] ? c + 1 : this->Offsets[face];
+        call(static_cast<size_t>(this->Corners[c]), static_cast<size_t>(this->Corners[next]));
+      }
+    }
+  };
+  const auto jumps = [&edges](const std::vector<double>& longitudes) {
+    bool any = false;
+    edges([&](size_t a, size_t b) { any = any || std::fabs(longitudes[a] - longitudes[b]) > 180.0; });
+    return any;
+  };
+  if (!jumps(this->X)) {
+    return;
+  }
+  std::vector<double> continuous = this->X;
+  vtkStratusLongitudes::Unwrap(continuous, edges);
+  if (!jumps(continuous)) {
+    this->X = continuous;
+    this->Description += ", longitudes made continuous where they jump";
+    return;
+  }
+  this->Torn.assign(this->GetFaces(), 0);
+  for (size_t face = 0; face < this->GetFaces(); ++face) {
+    this->Torn[face] = std::fabs(this->TurnsAround(face)) > 0.5 ? 1 : 0;
+    if (!this->Torn[face]) {
+      this->CopyNodes(face);
+    }
+  }
+  this->Description += ", copies of nodes where longitudes jump";
+}
+
+// The turns that longitudes make around a face: 0, or 1 or -1 if the pole is in it.
+double vtkStratusUgridMesh::TurnsAround(size_t face) const
+{
+  double turns = 0.0;
+  for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1]; ++c) {
+    const size_t next = c + 1 < this->Offsets[face + 1] ? c + 1 : this->Offsets[face];
+    const double part = (this->X[static_cast<size_t>(this->Corners[next])] - this->X[static_cast<size_t>(this->Corners[c])]) / 360.0;
+    turns += part - std::round(part);
+  }
+  return turns;
+}
+
+// Puts copies into a face, a turn further east, of the nodes that are more than half a turn west of its easternmost one.
+void vtkStratusUgridMesh::CopyNodes(size_t face)
+{
+  double low = INFINITY, high = -INFINITY;
+  const auto longitude = [this](size_t c) { return this->X[static_cast<size_t>(this->Corners[c])]; };
+  for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1]; ++c) {
+    low = std::min(low, longitude(c));
+    high = std::max(high, longitude(c));
+  }
+  if (high - low <= 180.0) {
+    return;
+  }
+  for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1]; ++c) {
+    if (high - longitude(c) > 180.0) {
+      const int node = this->Corners[c];
+      const auto added = this->Copies.insert({ node, static_cast<int>(this->X.size()) });
+      if (added.second) {
+        this->X.push_back(this->X[static_cast<size_t>(node)] + 360.0);
+        this->Y.push_back(this->Y[static_cast<size_t>(node)]);
+        this->NodeOf.push_back(static_cast<size_t>(node));
+      }
+      this->Corners[c] = added.first->second;
+    }
   }
 }
 
-void vtkStratusUgridMesh::AddFace(const std::vector<int>& corners)
+// Turns faces so that their corners are counterclockwise.
+void vtkStratusUgridMesh::TurnFaces()
 {
-  double area = 0.0;
-  const double x0 = this->X[static_cast<size_t>(corners[0])], y0 = this->Y[static_cast<size_t>(corners[0])];
-  for (size_t i = 1; i + 1 < corners.size(); ++i) {
-    const auto a = static_cast<size_t>(corners[i]), b = static_cast<size_t>(corners[i + 1]);
-    area += (this->X[a] - x0) * (this->Y[b] - y0) - (this->X[b] - x0) * (this->Y[a] - y0);
+  for (size_t face = 0; face < this->GetFaces(); ++face) {
+    const auto first = this->Corners.begin() + static_cast<std::ptrdiff_t>(this->Offsets[face]),
+               end = this->Corners.begin() + static_cast<std::ptrdiff_t>(this->Offsets[face + 1]);
+    const double x0 = this->X[static_cast<size_t>(*first)], y0 = this->Y[static_cast<size_t>(*first)];
+    double area = 0.0;
+    for (auto corner = first + 1; corner + 1 < end; ++corner) {
+      const auto a = static_cast<size_t>(corner[0]), b = static_cast<size_t>(corner[1]);
+      area += (this->X[a] - x0) * (this->Y[b] - y0) - (this->X[b] - x0) * (this->Y[a] - y0);
+    }
+    if (area < 0.0) {
+      std::reverse(first, end);
+    }
   }
-  this->Corners.insert(this->Corners.end(), corners.begin(), corners.end());
-  if (area < 0.0) {
-    std::reverse(this->Corners.end() - static_cast<std::ptrdiff_t>(corners.size()), this->Corners.end());
-  }
-  this->Offsets.push_back(this->Corners.size());
 }
 
 bool vtkStratusUgridMesh::Has(const Variable& variable, int dimension) const
@@ -226,6 +321,7 @@ vtkStratusUgridValues vtkStratusUgridMesh::Read(const Variable& variable, size_t
     }
     stride *= count[i];
   }
+  result.Nodes = this->IsOnNodes(variable) && this->NodeOf.size() > this->File.LengthOf(this->NodeDimension) ? &this->NodeOf : nullptr;
   result.Values = this->File.Read(variable, start, count);
   return result;
 }
@@ -244,13 +340,13 @@ std::vector<double> vtkStratusUgridMesh::ReadAtNodes(const Variable& variable, s
   for (size_t face = 0; face < this->GetFaces(); ++face) {
     const double value = values.At(face, 0);
     for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1] && std::isfinite(value); ++c) {
-      const auto node = static_cast<size_t>(this->Corners[c]);
+      const size_t node = this->NodeOf[static_cast<size_t>(this->Corners[c])];
       result[node] += value;
       ++around[node];
     }
   }
   for (size_t node = 0; node < result.size(); ++node) {
-    result[node] = around[node] > 0 ? result[node] / around[node] : NAN;
+    result[node] = this->NodeOf[node] < node ? result[this->NodeOf[node]] : around[node] > 0 ? result[node] / around[node] : NAN;
   }
   return result;
 }

@@ -6,15 +6,18 @@
 #include "vtkStratusNetCDFFile.h"
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
 // Values of a step over nodes or faces, and over layers or their borders.
 struct vtkStratusUgridValues {
   vtkSmartPointer<vtkDataArray> Values;
-  size_t Across = 0, Along = 0; // steps from a node or face to the next, and from a layer to the next; 0: there is one
+  size_t Across = 0, Along = 0;               // steps from a node or face to the next, and from a layer to the next; 0: there is one
+  const std::vector<size_t>* Nodes = nullptr; // of values on nodes: the file's node of each of the mesh's
   double At(size_t place, size_t layer) const
   {
+    place = this->Nodes ? (*this->Nodes)[place] : place;
     return this->Values->GetComponent(static_cast<vtkIdType>(place * this->Across + layer * this->Along), 0);
   }
 };
@@ -29,6 +32,7 @@ public:
 
   size_t GetNodes() const { return this->X.size(); }
   size_t GetFaces() const { return this->Offsets.size() - 1; }
+  // Nodes are the file's, and behind these copies of nodes a turn further on, for faces across the meridian where longitudes jump.
   const std::vector<double>& GetX() const { return this->X; }
   const std::vector<double>& GetY() const { return this->Y; }
   // The nodes of a face, counterclockwise from above.
@@ -37,6 +41,8 @@ public:
     corners = static_cast<int>(this->Offsets[face + 1] - this->Offsets[face]);
     return &this->Corners[this->Offsets[face]];
   }
+  // Returns whether longitudes around a pole tear the face apart.
+  bool IsTorn(size_t face) const { return !this->Torn.empty() && this->Torn[face] != 0; }
   bool IsInMetres() const { return this->Metres; }
   const std::string& Describe() const { return this->Description; }
 
@@ -63,14 +69,22 @@ private:
   bool Has(const Variable& variable, int dimension) const;
   void ReadNodes(const Variable& x, const Variable& y);
   void ReadFaces(const Variable& connectivity, int first);
-  void AddFace(const std::vector<int>& corners);
+  void JoinLongitudes();
+  void CopyNodes(size_t face);
+  double TurnsAround(size_t face) const;
+  void TurnFaces();
 
   const vtkStratusNetCDFFile& File;
   int NodeDimension = -1, FaceDimension = -1;
   std::array<int, 2> Layers = { { -1, -1 } };
   size_t LayerCount = 0; // 0: unknown
   std::string XName, YName;
-  std::vector<double> X, Y;
+  std::vector<double> X, Y;   // in the file's units or degrees until faces are read, then in metres if they can be
+  std::vector<size_t> NodeOf; // the file's node of each node
+  std::map<int, int> Copies;  // of nodes, a turn further east
+  std::vector<char> Torn;
+  std::array<double, 2> Factors = { { 1.0, 1.0 } };
+  bool Degrees = false;
   std::vector<size_t> Offsets = { 0 };
   std::vector<int> Corners;
   std::string Description;

@@ -114,6 +114,12 @@ double Between(const vtkStratusUgridValues& values, const vtkStratusUgridLayers&
   }
   const auto height = [&](size_t one) { return z[one * nodes + node]; };
   const double under = height(border) - height(border - 1), over = height(border + 1) - height(border);
+  if ((under <= 0.0 && over > 0.0) || std::isnan(value(border - 1))) { // the layer below is under the bottom
+    return value(border);
+  }
+  if (std::isnan(value(border))) {
+    return value(border - 1);
+  }
   const double weight = under + over > 0.0 ? over / (under + over) : 0.5; // of the layer below: it is nearer where the one above is thicker
   return weight * value(border - 1) + (1.0 - weight) * value(border);
 }

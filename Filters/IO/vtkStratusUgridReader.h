@@ -14,10 +14,16 @@
  * - heights of the layers' borders at nodes (SCHISM's zCoordinates or zcor, any variable of standard_name altitude or height on nodes);
  * - sigma at the layers' borders or centres (standard_name ocean_sigma_coordinate, FVCOM's siglev and siglay), with the free surface and
  *   the bottom that formula_terms name;
- * - fixed levels at borders or centres, cut off at the bottom and the free surface;
+ * - fixed levels: a coordinate of one dimension along the layers, of a length or pressure, or with positive or axis Z, which counts up or
+ *   down as in vtkStratusCFReader. The layers' borders are another coordinate of one value more, or the coordinate's bounds, or midway
+ *   between its values; the outermost ones then are as far from the outermost value as the next border, but not beyond height 0 if all
+ *   values are on one side of it. Layers are cut off at the bottom and the free surface, if the file has them; the uppermost one rises to
+ *   the free surface, and Delft3D FM's lowest one reaches the bottom;
  * - one layer between the bottom and the free surface.
  * Free surface and bottom are otherwise found by standard_name and the names that the three models use; what is on faces is averaged at
- * nodes. Degrees become metres, as in vtkStratusCFReader.
+ * nodes. Degrees become metres, as in vtkStratusCFReader. Longitudes that jump by 360 degrees are made continuous. On a mesh around the
+ * Earth they stay, and faces across the meridian where they jump get copies of nodes, a turn further east, behind the file's nodes; a face
+ * around a pole is blanked.
  *
  * A variable on faces becomes cell data, one on nodes point data, both of its own name. Values at centres of layers on nodes are
  * interpolated to the layers' borders; values at borders on faces are averaged over the layer; one without layers is repeated in each.
