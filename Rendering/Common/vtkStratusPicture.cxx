@@ -455,10 +455,6 @@ bool vtkStratusClipPlanes(vtkAbstractMapper* mapper, int most, double (*planes)[
   }
   for (int p = 0; p < count; ++p) {
     vtkPlane* plane = given->GetItem(p);
-    if (plane->GetTransform()) {
-      error = "clipping planes with a transform are not supported, only those of origin and normal";
-      return false;
-    }
     double normal[3], origin[3];
     plane->GetNormal(normal);
     plane->GetOrigin(origin);

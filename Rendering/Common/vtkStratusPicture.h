@@ -71,8 +71,8 @@ private:
   const float* Ends = nullptr; // what ReadOpaqueDepth() returned last
 };
 
-// Converts a mapper's clipping planes to a x + b y + c z + d >= 0, in the world, of which there may be `most`. Returns false, with the
-// reason in `error`, for more of them and for one with a transform.
+// Converts a mapper's clipping planes to a x + b y + c z + d >= 0, in the world, of which there may be `most`. Transforms of planes are
+// ignored, as in VTK's mappers. Returns false, with the reason in `error`, if there are more planes.
 VTK_STRATUS_PRIVATE bool vtkStratusClipPlanes(vtkAbstractMapper* mapper, int most, double (*planes)[4], int& count, std::string& error);
 
 #endif

@@ -42,8 +42,10 @@
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
- * All else (isosurfaces of several, dependent ones in other modes than composite, two-dimensional transfer functions,
- * label maps, slices) is refused by an error, and nothing is drawn.
+ * A setting that has no meaning here is left out, as VTK's mappers leave it out, and one warning a mapper says so: Shade outside of
+ * composite and isosurface, gradient opacity outside of composite, functions of two variables and of labels, transforms of clipping planes.
+ *
+ * All else (isosurfaces of several, dependent ones in other modes than composite, slices) is refused by an error, and nothing is drawn.
  *
  * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.
  *

@@ -42,7 +42,7 @@ bool vtkStratusTetrahedraMapper::Internals::OnProgress(double fraction)
 
 // ---------------------------------------------------------------- settings and input
 
-bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* property, std::string& error) const
+bool vtkStratusTetrahedraMapper::Internals::CheckMapper(std::string& error) const
 {
   if (this->Mapper->BlendMode < COMPOSITE_BLEND || this->Mapper->BlendMode > ISOSURFACE_BLEND) {
     error = "blend mode " + std::to_string(this->Mapper->BlendMode) +
@@ -50,12 +50,21 @@ bool vtkStratusTetrahedraMapper::Internals::CheckProperty(vtkVolumeProperty* pro
   } else if (!std::isfinite(this->Mapper->GradientOpacityDistance)) {
     error = "GradientOpacityDistance is " + std::to_string(this->Mapper->GradientOpacityDistance) +
       ", it must be finite: 0 for optical depths, below 0 for half of the mean spacing";
-  } else if (property->GetTransferFunctionMode() != vtkVolumeProperty::TF_1D) {
-    error = "two-dimensional transfer functions are not supported, only TF_1D is";
-  } else if (property->GetNumberOfLabels() > 0) {
-    error = "label maps are not supported, only the scalar transfer functions are";
   }
   return error.empty();
+}
+
+// Notes the settings that the picture does not use. SetShading() notes Shade and gradient opacity, which depend on the components.
+void vtkStratusTetrahedraMapper::Internals::NoteLeftOut(vtkVolumeProperty* property)
+{
+  this->LeftOut.Begin();
+  if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D) {
+    this->LeftOut.Add("TransferFunction2D, which meshes do not use");
+  }
+  if (property->GetNumberOfLabels() > 0) {
+    this->LeftOut.Add("functions of labels, which meshes do not use");
+  }
+  this->LeftOut.AddTransforms(this->Mapper);
 }
 
 bool vtkStratusTetrahedraMapper::Internals::SetClipPlanes(stratus_tetra_options& options, std::string& error) const
@@ -78,16 +87,17 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
   const bool thins = std::any_of(
     this->Functions.begin(), this->Functions.begin() + media, [](const stratus_transfer& function) { return function.gradient_count > 0; });
   if (thins && options.mode != STRATUS_TETRA_COMPOSITE) {
-    error = "gradient opacity is supported in blend mode composite (0) only, elsewhere only a function that is 1 everywhere, or "
-            "DisableGradientOpacityOn";
-    return false;
+    this->LeftOut.AddUnused("GradientOpacity", stratus_tetra_mode_name(options.mode));
+    for (int c = 0; c < media; ++c) {
+      this->Functions[c].gradient_count = 0;
+    }
   }
   bool alike = true;
   const bool lit = vtkStratusSetMaterials(property, media, this->Materials.data(), alike);
   if (lit && options.mode != STRATUS_TETRA_COMPOSITE && options.mode != STRATUS_TETRA_ISOSURFACE) {
-    error = "shading is not supported in blend mode " + std::to_string(this->Mapper->BlendMode) +
-      ", only composite (0) and isosurface (5) are lit";
-    return false;
+    this->LeftOut.AddUnused("Shade", stratus_tetra_mode_name(options.mode));
+    options.shade = 0;
+    return true;
   }
   options.materials = alike ? nullptr : this->Materials.data();
   options.shade = property->GetShade();
@@ -271,10 +281,12 @@ bool vtkStratusTetrahedraMapper::Internals::Describe(vtkVolume* prop, vtkStratus
     description.Error = "light on a mesh is not supported among several volumes, only ShadeOff";
     return false;
   }
-  if (!this->CheckProperty(prop->GetProperty(), description.Error) || !this->PrepareInput(prop, empty, description.Error) ||
+  this->NoteLeftOut(prop->GetProperty());
+  if (!this->CheckMapper(description.Error) || !this->PrepareInput(prop, empty, description.Error) ||
     !this->SetOptions(prop->GetProperty(), description.Options, description.Error)) {
     return false;
   }
+  this->LeftOut.Warn(this->Mapper);
   if (!empty) {
     description.Mesh = &this->Mesh.GetMesh();
     description.Transfer = this->Functions.data();
@@ -293,6 +305,7 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(
   if (!this->SetOptions(property, options, error) || !this->SetShading(renderer, property, options, error)) {
     return false;
   }
+  this->LeftOut.Warn(this->Mapper);
   this->Renderer = renderer;
   const auto draw = [&] {
     this->Options = options;
@@ -323,7 +336,8 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   }
   bool empty = false;
   this->HasPicture = false;
-  if (!this->CheckProperty(prop->GetProperty(), error) || !this->PrepareInput(prop, empty, error) || !this->PrepareContext(error)) {
+  this->NoteLeftOut(prop->GetProperty());
+  if (!this->CheckMapper(error) || !this->PrepareInput(prop, empty, error) || !this->PrepareContext(error)) {
     return false;
   }
   if (empty) {

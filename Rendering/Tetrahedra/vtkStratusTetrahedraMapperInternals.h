@@ -7,6 +7,7 @@
 #include "vtkStratusCellFinder.h"
 #include "vtkStratusContext.h"
 #include "vtkStratusDisplay.h"
+#include "vtkStratusLeftOut.h"
 #include "vtkStratusMeshDescription.h"
 #include "vtkStratusMeshView.h"
 #include "vtkStratusPicture.h"
@@ -54,7 +55,8 @@ public:
 
 private:
   bool OnProgress(double fraction);
-  bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
+  bool CheckMapper(std::string& error) const;
+  void NoteLeftOut(vtkVolumeProperty* property);
   // What of the input is drawn, and its scalars: a grid, or several structured ones.
   struct Drawn {
     vtkDataSet* Grid;
@@ -83,7 +85,8 @@ private:
   vtkStratusVectors Vectors;
   vtkWeakPointer<vtkVolumeProperty> Property; // whose colour function tells which of several components is drawn
   vtkStratusBlocks Blocks;
-  std::string LastLeftOut; // told already
+  std::string LastLeftOut;   // blocks, told already
+  vtkStratusLeftOut LeftOut; // settings that the last picture did not use
   double Box[6] = { 0, 0, 0, 0, 0, 0 };
   std::vector<float> Rgba, Depth, PartDepth;
   stratus_tetra_options Options; // of the last picture

@@ -172,8 +172,10 @@ std::vector<Block> vtkStratusMultiBlockVolumeMapper::Internals::FindRefined(
   vtkVolumeProperty* property = volume->GetProperty();
   const bool solid = this->Settings->GetRenderMode() == vtkStratusVolumeMapper::FIRST_HIT_MODE;
   const bool nearest = solid || property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION;
-  const bool lit = solid ? this->Settings->GetNormals() == vtkStratusVolumeMapper::GRADIENT_NORMALS : property->GetShade() != 0;
-  if (lit || (!solid && (property->HasGradientOpacity() || property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D))) {
+  const bool composite = !solid && mapper->GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND;
+  const bool shade = property->GetShade() && (composite || mapper->GetBlendMode() == vtkVolumeMapper::ISOSURFACE_BLEND);
+  const bool lit = solid ? this->Settings->GetNormals() == vtkStratusVolumeMapper::GRADIENT_NORMALS : shade;
+  if (lit || (composite && (property->HasGradientOpacity() || property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D))) {
     error = std::string(lit                      ? "light by gradients"
                 : property->HasGradientOpacity() ? "gradient opacity"
                                                  : "a function of two variables") +
@@ -404,6 +406,7 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Render(vtkRenderer* renderer, 
   if (!this->Describe(renderer, volume, error) || !this->PrepareContext(error)) {
     return false;
   }
+  this->Mappers[0]->Internal->LeftOut.Warn(volume->GetMapper()); // each block leaves out the same
   this->Scene.Renderer = renderer;
   this->Scene.Prop = volume;
   this->Scene.Settings = this->Mappers[0];

@@ -125,7 +125,9 @@ bool vtkStratusMultiVolume::Internals::DescribeVolume(
     error = "first hits are not supported by vtkStratusMultiVolume, only render mode composite is";
     return false;
   }
-  mapper->Internal->Describe(renderer, volume, this->Options[this->Count], error);
+  if (mapper->Internal->Describe(renderer, volume, this->Options[this->Count], error)) {
+    mapper->Internal->LeftOut.Warn(mapper);
+  }
   this->First = this->First ? this->First : mapper;
   this->Inputs[this->Count].volume = &mapper->Internal->Image.GetVolume();
   this->Inputs[this->Count].transfer = mapper->Internal->Functions.data();

@@ -37,6 +37,10 @@
  * Lights of all kinds shine, with attenuation and cones (vtkLight; a ConeAngle of 90 and more is none). Maximum, minimum, average and
  * additive draw each of 2 to 4 independent components by itself, and add their weighted colours, as VTK's mappers do.
  *
+ * A setting that the mode does not use is left out, as VTK's mappers leave it out, and one warning a mapper says so: Shade outside of
+ * composite, isosurface and first hits; GradientOpacity, label maps and functions of two variables outside of composite; functions of
+ * labels without a label map; transforms of clipping planes and of SliceFunction.
+ *
  * All else (shaders of the prop's own, other data than these two) is refused by an error, and nothing is drawn. docs/vtk-parity.md has a
  * table.
  *

@@ -29,12 +29,13 @@ bool vtkStratusVolumeMapper::Internals::SetMaterials(vtkVolumeProperty* property
 bool vtkStratusVolumeMapper::Internals::SetShading(
   vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error)
 {
-  if (!this->SetMaterials(property, options) && !this->IsFirstHit() && !property->GetShade()) {
+  const bool shade = property->GetShade() && this->HasLight();
+  if (!this->SetMaterials(property, options) && !this->IsFirstHit() && !shade) {
     return true;
   }
   stratus_shading& shading = options.shading;
-  shading.on = property->GetShade() || options.materials ? 1 : 0;
-  options.shade = property->GetShade() ? 1 : 0;
+  shading.on = shade || options.materials ? 1 : 0;
+  options.shade = shade ? 1 : 0;
   return vtkStratusSetShading(renderer, property, shading, error);
 }
 

@@ -5,6 +5,7 @@
 #include "vtkContourValues.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkImplicitFunction.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
 #include "vtkRenderWindow.h"
@@ -76,8 +77,6 @@ bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
     error = "blend mode " + std::to_string(blend) + " is not supported, only composite (0) to slice (6) are";
   } else if (this->IsFirstHit() && blend != vtkVolumeMapper::COMPOSITE_BLEND) {
     error = "blend mode " + std::to_string(blend) + " is not supported in first hits, only composite (0) is";
-  } else if (this->HasLabels() && (this->IsFirstHit() || blend != vtkVolumeMapper::COMPOSITE_BLEND)) {
-    error = "label maps are supported in blend mode composite (0) only, and not in first hits";
   } else if (this->HasLabels() && mapper->MaskBlendFactor != 1.0f) {
     error = "MaskBlendFactor is " + std::to_string(mapper->MaskBlendFactor) + ", only 1 is supported: labels replace what the property has";
   } else if (!std::isfinite(mapper->GradientOpacityDistance)) {
@@ -100,23 +99,65 @@ bool vtkStratusVolumeMapper::Internals::CheckScene(vtkVolume* prop, std::string&
   return error.empty();
 }
 
-bool vtkStratusVolumeMapper::Internals::CheckProperty(vtkVolumeProperty* property, std::string& error) const
+stratus_mode vtkStratusVolumeMapper::Internals::GetMode() const
 {
-  const int blend = this->Mapper->BlendMode;
-  const bool light = blend == vtkVolumeMapper::COMPOSITE_BLEND || blend == vtkVolumeMapper::ISOSURFACE_BLEND;
-  if (property->GetShade() && !light) {
-    error = "shading is not supported in blend mode " + std::to_string(blend) + ", only composite (0) and isosurface (5) are lit";
-  } else if (property->GetNumberOfLabels() > 0 && !this->HasLabels()) {
-    error = "there are functions of labels, but no MaskInput of type label map to tell where";
-  } else if (HasTransfer2D(property)) {
-    return this->CheckTransfer2D(error);
-  }
-  return error.empty();
+  static const stratus_mode blends[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
+    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE, STRATUS_MODE_SLICE };
+  return this->IsFirstHit() ? STRATUS_MODE_FIRST_HIT : blends[this->Mapper->BlendMode];
+}
+
+bool vtkStratusVolumeMapper::Internals::HasLight() const
+{
+  const stratus_mode mode = this->GetMode();
+  return mode == STRATUS_MODE_COMPOSITE || mode == STRATUS_MODE_FIRST_HIT || mode == STRATUS_MODE_ISOSURFACE;
+}
+
+bool vtkStratusVolumeMapper::Internals::HasLabelMap() const
+{
+  return this->Mapper->MaskInput && this->Mapper->MaskType == LabelMapMaskType;
 }
 
 bool vtkStratusVolumeMapper::Internals::HasLabels() const
 {
-  return this->Mapper->MaskInput && this->Mapper->MaskType == LabelMapMaskType;
+  return this->HasLabelMap() && this->GetMode() == STRATUS_MODE_COMPOSITE;
+}
+
+bool vtkStratusVolumeMapper::Internals::IsSupported(vtkVolumeProperty* property) const
+{
+  std::string unused;
+  stratus_ray_cast_options options = stratus_ray_cast_options_default();
+  if (!this->CheckMapper(unused)) {
+    return false;
+  }
+  options.mode = this->GetMode();
+  return this->SetContours(property, options, unused) && this->SetSlice(property, options, unused);
+}
+
+// Notes the settings that the picture does not use. SetTransfers() notes gradient opacity.
+void vtkStratusVolumeMapper::Internals::NoteLeftOut(vtkVolumeProperty* property)
+{
+  const stratus_mode mode = this->GetMode();
+  const char* name = stratus_mode_name(mode);
+  this->LeftOut.Begin();
+  bool shade = false;
+  for (int c = 0; c < STRATUS_COMPONENTS_MAX; ++c) {
+    shade = shade || property->GetShade(c);
+  }
+  if (shade && !this->HasLight()) {
+    this->LeftOut.AddUnused("Shade", name);
+  }
+  if (this->HasLabelMap() && !this->HasLabels()) {
+    this->LeftOut.AddUnused("the label map", name);
+  } else if (property->GetNumberOfLabels() > 0 && !this->HasLabels()) {
+    this->LeftOut.Add("functions of labels, which need a MaskInput of type label map");
+  }
+  if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D && !this->HasTransfer2D(property)) {
+    this->LeftOut.AddUnused("TransferFunction2D", name);
+  }
+  if (mode == STRATUS_MODE_SLICE && property->GetSliceFunction() && property->GetSliceFunction()->GetTransform()) {
+    this->LeftOut.Add("the transform of SliceFunction, which is used as it is");
+  }
+  this->LeftOut.AddTransforms(this->Mapper);
 }
 
 vtkTypeUInt64 vtkStratusVolumeMapper::Internals::GetFunctionBuilds() const
@@ -132,7 +173,7 @@ vtkTypeUInt64 vtkStratusVolumeMapper::Internals::GetFunctionBuilds() const
 bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property, std::string& error)
 {
   const int components = this->Image.GetVolume().components;
-  const bool composite = this->Mapper->BlendMode == vtkVolumeMapper::COMPOSITE_BLEND && !this->IsFirstHit();
+  const bool composite = this->GetMode() == STRATUS_MODE_COMPOSITE;
   const int media = property->GetIndependentComponents() ? components : 1;
   const int labels = this->HasLabels() ? HighestLabel(property) : 0;
   this->Functions.resize(static_cast<size_t>(std::max(media, 1 + labels)));
@@ -144,16 +185,19 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
       "blend mode composite (0) takes dependent ones";
     return false;
   }
+  bool thins = false;
   for (int c = 0; c < media; ++c) {
     if (!this->Transfers[c].Set(property, c, error)) {
       return false;
     }
     this->Functions[c] = this->Transfers[c].GetTransfer();
     if (this->Functions[c].gradient_count > 0 && !composite) {
-      error = "gradient opacity is supported in blend mode composite (0) only, elsewhere only a function that is 1 everywhere, or "
-              "DisableGradientOpacityOn";
-      return false;
+      this->Functions[c].gradient_count = 0;
+      thins = true;
     }
+  }
+  if (thins) {
+    this->LeftOut.AddUnused("GradientOpacity", stratus_mode_name(this->GetMode()));
   }
   for (int l = 1; l <= labels; ++l) {
     if (!this->Transfers[l].SetLabel(property, l, this->Transfers[0], error)) {
@@ -221,7 +265,7 @@ vtkDataArray* vtkStratusVolumeMapper::Internals::FindArray(vtkDataSet* image, bo
 bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
 {
   vtkImageData* mask = this->Mapper->MaskInput;
-  if (!mask) {
+  if (!mask || (this->HasLabelMap() && !this->HasLabels())) {
     return true;
   }
   vtkUnsignedCharArray* bytes = vtkUnsignedCharArray::SafeDownCast(mask->GetPointData()->GetScalars());
@@ -271,10 +315,8 @@ bool vtkStratusVolumeMapper::Internals::SetContours(
 bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
 {
   const vtkStratusVolumeMapper* mapper = this->Mapper;
-  static const stratus_mode blends[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
-    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE, STRATUS_MODE_SLICE };
   options = stratus_ray_cast_options_default();
-  options.mode = this->IsFirstHit() ? STRATUS_MODE_FIRST_HIT : blends[mapper->BlendMode];
+  options.mode = this->GetMode();
   options.normals = static_cast<stratus_normals>(mapper->Normals);
   options.structure = static_cast<stratus_structure>(mapper->Structure);
   options.sampling = static_cast<stratus_sampling>(mapper->Sampling);

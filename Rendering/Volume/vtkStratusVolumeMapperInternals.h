@@ -7,6 +7,7 @@
 #include "vtkStratusContext.h"
 #include "vtkStratusDisplay.h"
 #include "vtkStratusInput.h"
+#include "vtkStratusLeftOut.h"
 #include "vtkStratusPicture.h"
 #include "vtkStratusVectors.h"
 #include "vtkStratusVolumeMapper.h"
@@ -42,7 +43,7 @@ public:
   void OfferTree(stratus_ray_caster* caster, stratus_context* context);
   vtkImageData* GetLastImage();
   vtkTypeUInt64 GetFunctionBuilds() const;
-  bool CheckProperty(vtkVolumeProperty* property, std::string& error) const;
+  bool IsSupported(vtkVolumeProperty* property) const; // whether a picture by this property may be drawn, whatever the data
   // Fills an image of the viewport's size, or empties it where there is no picture.
   void FillColorImage(vtkImageData* image) const;
   void FillDepthImage(vtkImageData* image, int type) const;
@@ -59,7 +60,8 @@ public:
   std::vector<vtkStratusTransferView> Transfers; // at least one per independent component, or per label
   std::vector<stratus_transfer> Functions;       // those of this picture, in the core's terms
   vtkStratusDisplay Display;
-  std::string LastError; // of the last picture, reported already; empty: none
+  std::string LastError;     // of the last picture, reported already; empty: none
+  vtkStratusLeftOut LeftOut; // settings that the last picture did not use
   double DrawMilliseconds = 0.0;
   double UsedCoarseness = 1.0;
   vtkSmartPointer<vtkDataObject> PickedOf;           // composite data whose block the input is; nullptr: the input is all
@@ -82,7 +84,11 @@ private:
   int GetVectorComponent(vtkDataArray* array) const;
   double GetGradientOpacityDistance() const;
   void WarnOfGradientOpacity(vtkVolumeProperty* property);
-  bool HasLabels() const;
+  stratus_mode GetMode() const; // by render mode and blend mode, which CheckMapper() has found in range
+  bool HasLight() const;        // whether the mode is lit
+  bool HasLabelMap() const;     // whether the mask is a label map
+  bool HasLabels() const;       // whether that map is drawn
+  void NoteLeftOut(vtkVolumeProperty* property);
   bool SetTransfers(vtkVolumeProperty* property, std::string& error);
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   // Light and first hits (vtkStratusVolumeMapperFirstHit.cxx).
@@ -91,8 +97,7 @@ private:
   bool SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options);
   bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   // Functions of two variables and slices (vtkStratusVolumeMapperLookup.cxx).
-  static bool HasTransfer2D(vtkVolumeProperty* property);
-  bool CheckTransfer2D(std::string& error) const;
+  bool HasTransfer2D(vtkVolumeProperty* property) const; // whether the function is drawn
   bool PrepareTransfer2D(vtkVolume* prop, vtkDataSet* image, vtkDataArray* array, bool cells, int component, std::string& error);
   vtkDataArray* FindSecond(vtkDataSet* image, bool cells, std::string& error) const;
   vtkDataArray* Pair(vtkDataArray* array, int component, vtkDataArray* second);

@@ -23,19 +23,9 @@
 
 // ---------------------------------------------------------------- functions of two variables
 
-bool vtkStratusVolumeMapper::Internals::HasTransfer2D(vtkVolumeProperty* property)
+bool vtkStratusVolumeMapper::Internals::HasTransfer2D(vtkVolumeProperty* property) const
 {
-  return property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D;
-}
-
-bool vtkStratusVolumeMapper::Internals::CheckTransfer2D(std::string& error) const
-{
-  const int blend = this->Mapper->BlendMode;
-  if (this->IsFirstHit() || blend != vtkVolumeMapper::COMPOSITE_BLEND) {
-    error = "two-dimensional transfer functions are supported in blend mode composite (0) only, and not in first hits; it is " +
-      std::to_string(blend);
-  }
-  return error.empty();
+  return property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D && this->GetMode() == STRATUS_MODE_COMPOSITE;
 }
 
 // Finds the array of the function's second variable, which is of the same points or cells as the scalars.
@@ -153,8 +143,8 @@ bool vtkStratusVolumeMapper::Internals::SetSlice(vtkVolumeProperty* property, st
   if (options.mode != STRATUS_MODE_SLICE) {
     return true;
   }
-  if (!function || function->GetTransform()) {
-    error = function ? "a SliceFunction with a transform is not supported" : "blend mode slice (6) needs a SliceFunction";
+  if (!function) {
+    error = "blend mode slice (6) needs a SliceFunction";
   } else if (vtkPlane* plane = vtkPlane::SafeDownCast(function)) {
     plane->GetOrigin(slice.center);
     plane->GetNormal(slice.linear);

@@ -114,8 +114,12 @@ bool vtkStratusVolumeMapper::Internals::Describe(
   vtkRenderer* renderer, vtkVolume* prop, stratus_ray_cast_options& options, std::string& error)
 {
   vtkVolumeProperty* property = prop->GetProperty();
-  return this->CheckMapper(error) && this->CheckScene(prop, error) && this->CheckProperty(property, error) &&
-    this->PrepareInput(prop, error) && this->SetOptions(property, options, error) && this->SetShading(renderer, property, options, error);
+  if (!this->CheckMapper(error) || !this->CheckScene(prop, error)) {
+    return false;
+  }
+  this->NoteLeftOut(property);
+  return this->PrepareInput(prop, error) && this->SetOptions(property, options, error) &&
+    this->SetShading(renderer, property, options, error);
 }
 
 bool vtkStratusVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume* prop, double choice[3])
@@ -161,6 +165,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     error = stratus_context_message(this->Context.Get());
     return false;
   }
+  this->LeftOut.Warn(this->Mapper);
   this->WarnOfGradientOpacity(prop->GetProperty());
   this->OfferTree(this->Caster, this->Context.Get());
   const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);

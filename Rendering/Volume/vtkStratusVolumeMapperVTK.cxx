@@ -114,8 +114,7 @@ void vtkStratusVolumeMapper::SetDepthImageScalarType(int type)
 
 int vtkStratusVolumeMapper::IsRenderSupported(vtkRenderWindow*, vtkVolumeProperty* property)
 {
-  std::string error;
-  return property && this->Internal->CheckProperty(property, error) ? 1 : 0;
+  return property && this->Internal->IsSupported(property) ? 1 : 0;
 }
 
 // ---------------------------------------------------------------- gradient opacity

@@ -155,11 +155,6 @@ void TestRefusals()
     scene.Render();
     CHECK(scene.GridErrors->Count == before + 1, "%s: told again", word);
   };
-  scene.Volume->GetProperty()->ShadeOn();
-  scene.Tetrahedra->SetBlendModeToMaximumIntensity();
-  refuses("shading");
-  scene.Tetrahedra->SetBlendModeToComposite();
-  scene.Volume->GetProperty()->ShadeOff();
   for (int p = 0; p < 7; ++p) {
     vtkNew<vtkPlane> plane;
     scene.Tetrahedra->AddClippingPlane(plane);

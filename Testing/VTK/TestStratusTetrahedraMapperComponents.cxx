@@ -188,9 +188,6 @@ void WhatIsRefused()
   scene.Volume->GetProperty()->ShadeOn(2);
   scene.Volume->GetProperty()->SetAmbient(2, -1.0);
   refuses("material of component 2");
-  scene.Tetrahedra->SetBlendModeToAdditive();
-  refuses("shading is not supported in blend mode 4");
-  scene.Tetrahedra->SetBlendModeToComposite();
   scene.Volume->GetProperty()->ShadeOff(2);
   scene.Volume->GetProperty()->IndependentComponentsOff();
   refuses("3 dependent components");

@@ -114,11 +114,51 @@ void WhatIsRefused()
   }
   refuses("more than 8 lights");
   scene.Volume->GetProperty()->ShadeOff();
-  scene.Volume->GetProperty()->GetGradientOpacity()->AddPoint(0, 0.5);
-  scene.Tetrahedra->SetBlendModeToMaximumIntensity();
-  refuses("gradient opacity is supported in blend mode composite");
-  scene.Tetrahedra->SetBlendModeToComposite();
   CHECK(scene.GridLight() > 0.0, "nothing is drawn after errors");
+}
+
+// Settings that have no meaning are left out with one warning, and the picture is the one without them.
+void WhatIsLeftOut()
+{
+  using Sets = std::function<void(GridScene&)>;
+  const auto leavesOut = [](int blend, const char* word, const Sets& sets) {
+    GridScene scene;
+    vtkNew<ErrorObserver> warnings;
+    scene.Tetrahedra->AddObserver(vtkCommand::WarningEvent, warnings);
+    scene.Tetrahedra->SetBlendMode(blend);
+    scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, 0.5);
+    const std::vector<float> before = scene.GridPicture();
+    CHECK(scene.GridLight() > 10.0 && warnings->Count == 0, "%d: nothing is drawn, %s", blend, warnings->Text.c_str());
+    sets(scene);
+    CHECK(scene.GridPicture() == before && scene.GridErrors->Count == 0, "%s in mode %d: %s", word, blend, scene.GridErrors->Text.c_str());
+    scene.Volume->GetProperty()->Modified();
+    scene.Render();
+    CHECK(warnings->Count == 1 && warnings->Has(word), "mode %d: %d warnings, '%s', not '%s'", blend, warnings->Count,
+      warnings->Text.c_str(), word);
+  };
+  const Sets lights = [](GridScene& scene) {
+    scene.Volume->GetProperty()->ShadeOn();
+    for (int l = 0; l < 9; ++l) { // which are too many where there is light
+      scene.Renderer->AddLight(vtkNew<vtkLight>());
+    }
+  };
+  const Sets thins = [](GridScene& scene) { scene.Volume->GetProperty()->GetGradientOpacity()->AddPoint(0, 0.5); };
+  const Sets labels = [](GridScene& scene) {
+    vtkNew<vtkColorTransferFunction> red;
+    red->AddRGBPoint(0, 1, 0, 0);
+    scene.Volume->GetProperty()->SetLabelColor(1, red);
+  };
+  const Sets twoVariables = [](GridScene& scene) { scene.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_2D); };
+  for (int blend = vtkVolumeMapper::COMPOSITE_BLEND; blend <= vtkVolumeMapper::ISOSURFACE_BLEND; ++blend) {
+    leavesOut(blend, "functions of labels", labels);
+    leavesOut(blend, "TransferFunction2D", twoVariables);
+    if (blend != vtkVolumeMapper::COMPOSITE_BLEND) {
+      leavesOut(blend, "GradientOpacity", thins);
+    }
+    if (blend != vtkVolumeMapper::COMPOSITE_BLEND && blend != vtkVolumeMapper::ISOSURFACE_BLEND) {
+      leavesOut(blend, "Shade", lights);
+    }
+  }
 }
 } // namespace
 
@@ -128,5 +168,6 @@ int main()
   Surfaces();
   GradientOpacity();
   WhatIsRefused();
+  WhatIsLeftOut();
   return Failures ? 1 : 0;
 }

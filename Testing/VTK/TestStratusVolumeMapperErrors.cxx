@@ -18,37 +18,9 @@ void Modes()
     "slice of nothing", "needs a SliceFunction", [](Scene& s) { s.Mapper->SetBlendModeToSlice(); },
     [](Scene& s) { s.Mapper->SetBlendModeToComposite(); });
   Refused(
-    "shading of a maximum", "shading",
-    [](Scene& s) {
-      s.Volume->GetProperty()->ShadeOn();
-      s.Mapper->SetBlendModeToMaximumIntensity();
-    },
-    [](Scene& s) {
-      s.Volume->GetProperty()->ShadeOff();
-      s.Mapper->SetBlendModeToComposite();
-    });
-  vtkNew<vtkPiecewiseFunction> gradient;
-  gradient->AddPoint(0, 0);
-  gradient->AddPoint(1, 1);
-  Refused(
-    "gradient opacity in first hits", "gradient opacity",
-    [&](Scene& s) {
-      s.Volume->GetProperty()->SetGradientOpacity(gradient);
-      s.Mapper->SetRenderModeToFirstHit();
-    },
-    [](Scene& s) {
-      s.Volume->GetProperty()->DisableGradientOpacityOn();
-      s.Mapper->SetRenderModeToComposite();
-    });
-  Refused(
     "2D transfer function", "TransferFunction2D is not set",
     [](Scene& s) { s.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_2D); },
     [](Scene& s) { s.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_1D); });
-  vtkNew<vtkColorTransferFunction> label;
-  label->AddRGBPoint(0, 1, 1, 1);
-  Refused(
-    "label functions without a label map", "label", [&](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, label); },
-    [](Scene& s) { s.Volume->GetProperty()->SetLabelColor(1, nullptr); });
   Refused(
     "isosurface without values", "0 contour values",
     [](Scene& s) {

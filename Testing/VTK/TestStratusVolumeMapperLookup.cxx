@@ -14,7 +14,6 @@
 #include "vtkPlaneCollection.h"
 #include "vtkQuadric.h"
 #include "vtkSphere.h"
-#include "vtkTransform.h"
 
 #include <functional>
 
@@ -299,13 +298,6 @@ void Refusals()
     s.Volume->GetProperty()->SetTransferFunction2D(function);
   };
   Refused(
-    "a maximum by two variables", "composite (0) only",
-    [&](Scene& s) {
-      on(s);
-      s.Mapper->SetBlendModeToMaximumIntensity();
-    },
-    off);
-  Refused(
     "cells of two variables", "sampling cells",
     [&](Scene& s) {
       on(s);
@@ -321,22 +313,12 @@ void Refusals()
     },
     off);
   vtkNew<vtkBox> box;
-  vtkNew<vtkPlane> turned;
-  vtkNew<vtkTransform> transform;
-  turned->SetTransform(transform);
   const auto composite = [](Scene& s) { s.Mapper->SetBlendModeToComposite(); };
   Refused(
     "a box", "vtkBox",
     [&](Scene& s) {
       s.Mapper->SetBlendModeToSlice();
       s.Volume->GetProperty()->SetSliceFunction(box);
-    },
-    composite);
-  Refused(
-    "a transform", "with a transform",
-    [&](Scene& s) {
-      s.Mapper->SetBlendModeToSlice();
-      s.Volume->GetProperty()->SetSliceFunction(turned);
     },
     composite);
 }

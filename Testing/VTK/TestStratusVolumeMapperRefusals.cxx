@@ -1,33 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What VTK's own mappers of volumes have and this one has not: each is refused by one error, never drawn wrong. (The table in
-// docs/vtk-parity.md.)
+// docs/vtk-parity.md.) What VTK's mappers ignore is left out here, too, with one warning.
 #include "refusal_testing.h"
 
+#include "vtkContourValues.h"
 #include "vtkExecutive.h"
 #include "vtkLight.h"
 #include "vtkMultiVolume.h"
 #include "vtkPlane.h"
+#include "vtkPlaneCollection.h"
 #include "vtkPoints.h"
 #include "vtkStructuredGrid.h"
 #include "vtkShaderProperty.h"
 #include "vtkTransform.h"
 
 namespace {
-void Shading()
+void Components()
 {
-  vtkNew<vtkPiecewiseFunction> gradient;
-  gradient->AddPoint(0, 0);
-  gradient->AddPoint(1, 1);
-  Refused(
-    "gradient opacity of a maximum", "gradient opacity",
-    [&](Scene& s) {
-      s.Volume->GetProperty()->SetGradientOpacity(gradient);
-      s.Mapper->SetBlendModeToMaximumIntensity();
-    },
-    [](Scene& s) {
-      s.Volume->GetProperty()->DisableGradientOpacityOn();
-      s.Mapper->SetBlendModeToComposite();
-    });
   vtkNew<vtkImageData> pairs;
   pairs->SetDimensions(5, 5, 5);
   pairs->AllocateScalars(VTK_UNSIGNED_CHAR, 2);
@@ -46,34 +35,115 @@ void Shading()
         s.Mapper->SetBlendModeToComposite();
       });
   }
+}
+
+void SetMode(Scene& scene, int blend)
+{
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(14, 14, 14);
+  plane->SetNormal(1, 1, 1);
+  scene.Volume->GetProperty()->SetSliceFunction(plane);
+  scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, 0.4);
+  scene.Mapper->SetRenderMode(blend < 0 ? vtkStratusVolumeMapper::FIRST_HIT_MODE : vtkStratusVolumeMapper::COMPOSITE_MODE);
+  scene.Mapper->SetBlendMode(std::max(blend, 0));
+  if (blend == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND) {
+    scene.Opacity->AddPoint(0.0, 0.5); // the least value, which all rays meet, must show
+  }
+}
+
+void SetGradientOpacity(Scene& scene)
+{
+  vtkNew<vtkPiecewiseFunction> gradient;
+  gradient->AddPoint(0, 0);
+  gradient->AddPoint(0.1, 1);
+  scene.Volume->GetProperty()->SetGradientOpacity(gradient);
+}
+
+// Half of the volume has labels, by which it is opaque and red.
+void SetLabels(Scene& scene)
+{
+  vtkNew<vtkColorTransferFunction> red;
+  vtkNew<vtkPiecewiseFunction> opaque;
+  red->AddRGBPoint(0, 1, 0, 0);
+  opaque->AddPoint(0, 1);
+  scene.Volume->GetProperty()->SetLabelColor(1, red);
+  scene.Volume->GetProperty()->SetLabelScalarOpacity(1, opaque);
+}
+
+void SetLabelMap(Scene& scene)
+{
   vtkNew<vtkImageData> labels;
-  for (bool first : { false, true }) {
-    Refused(
-      "labels in another mode", "label maps",
+  labels->CopyStructure(scene.Image);
+  labels->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  auto* bytes = static_cast<unsigned char*>(labels->GetScalarPointer());
+  std::fill_n(bytes, labels->GetNumberOfPoints(), static_cast<unsigned char>(0));
+  std::fill_n(bytes, labels->GetNumberOfPoints() / 2, static_cast<unsigned char>(1));
+  SetLabels(scene);
+  scene.Mapper->SetMaskInput(labels);
+  scene.Mapper->SetMaskTypeToLabelMap();
+  scene.Mapper->SetMaskBlendFactor(0.5f); // has no meaning, either
+}
+
+void SetTransfer2D(Scene& scene)
+{
+  vtkNew<vtkImageData> function;
+  function->SetDimensions(4, 4, 1);
+  function->AllocateScalars(VTK_FLOAT, 4);
+  function->GetPointData()->GetScalars()->Fill(0.5);
+  scene.Volume->GetProperty()->SetTransferFunction2D(function);
+  scene.Volume->GetProperty()->SetTransferFunctionMode(vtkVolumeProperty::TF_2D);
+}
+
+// Settings that VTK's mappers ignore: the picture is the one without them. Presets leave them on when a program changes the mode.
+void Unused()
+{
+  const int surfaces = vtkVolumeMapper::ISOSURFACE_BLEND, last = vtkVolumeMapper::SLICE_BLEND;
+  for (int blend = -1; blend <= last; ++blend) { // -1: first hits
+    const auto mode = [blend](Scene& s) { SetMode(s, blend); };
+    LeftOut("functions of labels without a label map", "functions of labels", mode, SetLabels);
+    LeftOut(
+      "a clipping plane's transform", "transforms of clipping planes",
       [&](Scene& s) {
-        labels->CopyStructure(s.Image);
-        labels->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
-        labels->GetPointData()->GetScalars()->Fill(1);
-        s.Mapper->SetMaskInput(labels);
-        s.Mapper->SetMaskTypeToLabelMap();
-        s.Mapper->SetBlendMode(first ? vtkVolumeMapper::COMPOSITE_BLEND : vtkVolumeMapper::ADDITIVE_BLEND);
-        s.Mapper->SetRenderMode(first ? vtkStratusVolumeMapper::FIRST_HIT_MODE : vtkStratusVolumeMapper::COMPOSITE_MODE);
+        mode(s);
+        vtkNew<vtkPlane> plane;
+        plane->SetOrigin(10, 10, 10);
+        s.Mapper->AddClippingPlane(plane);
       },
       [](Scene& s) {
-        s.Mapper->SetMaskInput(nullptr);
-        s.Mapper->SetBlendModeToComposite();
-        s.Mapper->SetRenderModeToComposite();
+        vtkNew<vtkTransform> transform;
+        transform->Translate(5, 6, 7);
+        s.Mapper->GetClippingPlanes()->GetItem(0)->SetTransform(transform);
       });
+    if (blend == vtkVolumeMapper::COMPOSITE_BLEND) {
+      continue;
+    }
+    LeftOut("gradient opacity", "GradientOpacity", mode, SetGradientOpacity);
+    LeftOut("a label map", "label map", mode, SetLabelMap);
+    LeftOut("a function of two variables", "TransferFunction2D", mode, SetTransfer2D);
+    if (blend >= 0 && blend != surfaces) {
+      LeftOut("light", "Shade", mode, [](Scene& s) {
+        s.Volume->GetProperty()->ShadeOn();
+        for (int l = 0; l < 9; ++l) { // which are too many where there is light
+          s.Renderer->AddLight(vtkNew<vtkLight>());
+        }
+      });
+    }
   }
-  vtkNew<vtkTransform> transform;
-  Refused(
-    "clipping plane with a transform", "transform",
-    [&](Scene& s) {
-      vtkNew<vtkPlane> plane;
-      plane->SetTransform(transform);
-      s.Mapper->AddClippingPlane(plane);
-    },
-    [](Scene& s) { s.Mapper->RemoveAllClippingPlanes(); });
+  LeftOut(
+    "a slice's transform", "transform of SliceFunction", [](Scene& s) { SetMode(s, vtkVolumeMapper::SLICE_BLEND); },
+    [](Scene& s) {
+      vtkNew<vtkTransform> transform;
+      transform->Translate(5, 6, 7);
+      s.Volume->GetProperty()->GetSliceFunction()->SetTransform(transform);
+    });
+  LeftOut(
+    "all at once", "Shade", [](Scene& s) { SetMode(s, vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND); },
+    [](Scene& s) {
+      s.Volume->GetProperty()->ShadeOn();
+      SetGradientOpacity(s);
+      SetLabelMap(s);
+      SetTransfer2D(s);
+    });
 }
 
 void Lights()
@@ -161,7 +231,8 @@ void SeveralVolumes()
 
 int main()
 {
-  Shading();
+  Components();
+  Unused();
   Lights();
   Props();
   Peeling();

@@ -364,8 +364,10 @@ void KeptCalls()
   CHECK(mapper->IsRenderSupported(scene.Window, nullptr) == 0, "no property is not");
   mapper->SetBlendModeToMaximumIntensity();
   scene.Volume->GetProperty()->ShadeOn();
-  CHECK(mapper->IsRenderSupported(scene.Window, scene.Volume->GetProperty()) == 0, "what is refused is not supported");
+  CHECK(mapper->IsRenderSupported(scene.Window, scene.Volume->GetProperty()) == 1, "what is left out is supported");
   scene.Volume->GetProperty()->ShadeOff();
+  mapper->SetBlendModeToSlice();
+  CHECK(mapper->IsRenderSupported(scene.Window, scene.Volume->GetProperty()) == 0, "what is refused is not supported");
   mapper->SetBlendModeToComposite();
   CHECK(mapper->GetRequestedRenderMode() == vtkStratusVolumeMapper::DefaultRenderMode, "mode %d", mapper->GetRequestedRenderMode());
   mapper->SetRequestedRenderModeToGPU();

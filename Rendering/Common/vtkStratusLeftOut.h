@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Settings that a picture has no use for, such as Shade in blend mode maximum. VTK's mappers ignore such settings, and so do these
+// mappers, with one warning. Private to the modules.
+#ifndef vtkStratusLeftOut_h
+#define vtkStratusLeftOut_h
+
+#include "vtkStratusPrivate.h"
+
+#include <set>
+#include <string>
+#include <vector>
+
+class vtkAbstractMapper;
+class vtkObject;
+
+class VTK_STRATUS_PRIVATE vtkStratusLeftOut
+{
+public:
+  // Begins a picture.
+  void Begin() { this->Now.clear(); }
+  // Adds a setting that the picture ignores, with the reason: "Shade, which mode maximum does not use".
+  void Add(const std::string& what) { this->Now.push_back(what); }
+  // Adds a setting that the mode does not use.
+  void AddUnused(const char* setting, const char* mode);
+  // Adds the transforms of clipping planes, of which origin and normal are used as they are.
+  void AddTransforms(vtkAbstractMapper* mapper);
+  // Raises one warning of `object` about all settings that no earlier warning named.
+  void Warn(vtkObject* object);
+
+private:
+  std::vector<std::string> Now;
+  std::set<std::string> Told;
+};
+
+#endif
