@@ -9,6 +9,7 @@
 #include "vtkStratusUgridReader.h"
 #endif
 #include "vtkStratusImageReader.h"
+#include "vtkStratusTIFFFile.h"
 #include "vtkStratusTetGenReader.h"
 #ifdef STRATUS_VDB
 #include "vtkStratusVDBReader.h"
@@ -205,6 +206,20 @@ constexpr struct {
   { ".nii", reader_for<vtkStratusImageReader> },
 };
 
+// Refuses what a reader would put elsewhere than the file says.
+void check_orientation(vtkImageReader2* reader, const std::string& path)
+{
+  const int orientation = vtkStratusTIFFOrientation(path);
+  if (orientation > 1) {
+    throw cli::failure("cannot read '" + path + "': the TIFF tag Orientation is " + std::to_string(orientation) +
+      "; only 1 is read, the first row at the top and the first column at the left");
+  }
+  if (reader->IsA("vtkGESignaReader")) {
+    throw cli::failure(
+      "cannot read '" + path + "': VTK's reader of GE Signa files leaves their orientation out; convert it to NIfTI or NRRD");
+  }
+}
+
 // The reader's variable of that name, or the one whose component it names; "" where there is none.
 std::string name_in(vtkStratusVariableReader* reader, const std::string& name)
 {
@@ -269,6 +284,7 @@ file_format choose_format(const std::string& path, const std::string& raw)
   vtkSmartPointer<vtkImageReader2> other;
   other.TakeReference(vtkImageReader2Factory::CreateImageReader2(path.c_str()));
   if (other) {
+    check_orientation(other, path);
     other->SetFileName(path.c_str());
   }
   return { other, "" };

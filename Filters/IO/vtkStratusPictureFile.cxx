@@ -6,13 +6,17 @@
 #include "vtkStratusEXRWriter.h"
 #endif
 
+#include "vtkStratusTIFFFile.h"
+
 #include "vtkCallbackCommand.h"
+#include "vtkDataArray.h"
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
 #include "vtkImageReader2.h"
 #include "vtkImageReader2Factory.h"
 #include "vtkNew.h"
 #include "vtkPNGWriter.h"
+#include "vtkPointData.h"
 
 #include <algorithm>
 #include <cctype>
@@ -53,6 +57,20 @@ std::string BareMessage(const std::string& text)
   return bare;
 }
 
+// VTK's reader of TIFF puts the first row at the bottom, its other readers put it at the top.
+vtkSmartPointer<vtkImageData> WithRowsReversed(vtkImageData* image)
+{
+  vtkSmartPointer<vtkImageData> reversed = vtkSmartPointer<vtkImageData>::New();
+  reversed->DeepCopy(image);
+  int size[3];
+  image->GetDimensions(size);
+  vtkDataArray* const from = image->GetPointData()->GetScalars();
+  for (vtkIdType y = 0; from && y < size[1]; ++y) {
+    reversed->GetPointData()->GetScalars()->InsertTuples(y * size[0], size[0], (size[1] - 1 - y) * size[0], from);
+  }
+  return reversed;
+}
+
 template <typename Writer> void Write(vtkImageData* image, const std::string& path)
 {
   vtkNew<Writer> writer;
@@ -79,6 +97,10 @@ vtkSmartPointer<vtkImageData> vtkStratusReadPicture(const std::string& path)
   if (!std::filesystem::is_regular_file(path, error)) {
     throw Stop("there is no file " + path);
   }
+  const int orientation = vtkStratusTIFFOrientation(path);
+  if (orientation > 1) {
+    throw Stop("can't read " + path + ": the TIFF tag Orientation is " + std::to_string(orientation) + ", must be 1");
+  }
   vtkSmartPointer<vtkImageAlgorithm> reader;
   if (vtkStratusEndsWith(path, ".exr")) {
 #ifdef STRATUS_EXR
@@ -100,6 +122,9 @@ vtkSmartPointer<vtkImageData> vtkStratusReadPicture(const std::string& path)
   reader->Update();
   if (reader->GetErrorCode() != vtkErrorCode::NoError || !listener.Text.empty()) {
     throw Stop(listener.Text.empty() ? "can't read " + path : BareMessage(listener.Text));
+  }
+  if (orientation == 1) {
+    return WithRowsReversed(reader->GetOutput());
   }
   return reader->GetOutput();
 }

@@ -707,6 +707,17 @@ def test_picture_formats():
     expect(2, r"'out-%d\.webp': pictures can't be written as \.webp", "render", "image.vti", *LOOK, "--frames", "out-%d.webp")
     for name in "out.jpg", "out.tif", "out.bmp":
         expect(2, rf"'{name}': only .png and .exr pictures can be transparent", *render, "-o", name, "--background", "transparent")
+    # Pictures of other formats are compared as they look: VTK's reader of TIFF puts the first row at the bottom.
+    for name in "out.tif", "out.bmp":
+        expect(0, "", "compare", "out.png", name)
+    with open("out.tif", "rb") as file:
+        data = file.read()
+    at = data.index(struct.pack("<HHIH", 274, 3, 1, 1)) + 8
+    for orientation in range(2, 9):
+        with open("turned.tif", "wb") as file:
+            file.write(data[:at] + bytes([orientation]) + data[at + 1:])
+        expect(1, f"the TIFF tag Orientation is {orientation}", "compare", "out.png", "turned.tif")
+        expect(1, f"cannot read 'turned.tif': the TIFF tag Orientation is {orientation}", "info", "turned.tif")
     expect(0, "picture", "render", "image.vti", "-o", "cost.bmp", "--size", "48x40", "--device", "host", "--show", "samples")
     pixels("cost.bmp", vtkBMPReader)
 
@@ -738,6 +749,12 @@ def test_scans():
         file.write(raw)
     for name in "scan.hdr", "scan.img":
         expect(0, r"bounds +87 \.\. 90, -126 \.\. -123, -72 \.\. -70$", "info", name)
+    with open("signa.MR", "wb") as file:
+        file.write(b"IMGF" + bytes(8000))
+    expect(1, "cannot read 'signa.MR': VTK's reader of GE Signa files leaves their orientation out", "info", "signa.MR")
+    turned = image()
+    turned.SetDirectionMatrix(0, -1, 0, 1, 0, 0, 0, 0, 1)
+    expect(0, r"bounds +-3 \.\. 0, 0 \.\. 4, 0 \.\. 5$", "info", write(vtkXMLImageDataWriter, turned, "turned.vti"))
     with open("turned.mhd") as file:
         text = file.read()
     with open("turned.mhd", "w") as file:
