@@ -84,7 +84,7 @@ static int draw_at_once(void)
 static void threads_that_make_the_first_contexts_at_once_all_draw(void** state)
 {
   (void)state;
-  const int tries = test_option("--few") ? TRIES_FEW : TRIES;
+  const int tries = few_run() ? TRIES_FEW : TRIES;
   for (int number = 0; number < tries; ++number) {
     int status = 0;
     const pid_t child = fork();

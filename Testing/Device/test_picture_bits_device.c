@@ -8,7 +8,7 @@ static void a_device_draws_the_bits_of_record(void** state)
   (void)state;
   stratus_context* context = case_context("0", 2);
   assert_true(stratus_context_on_device(context));
-  const int others = bits_check(context, stratus_context_device(context), test_option("--few"));
+  const int others = bits_check(context, stratus_context_device(context), few_run());
   stratus_context_destroy(context);
   assert_int_equal(others, 0);
 }

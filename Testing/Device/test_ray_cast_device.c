@@ -37,7 +37,7 @@ static void compare(bool one_ray)
   stratus_context* device = case_context("0", 2);
   assert_true(stratus_context_on_device(device));
   device->device->is_cpu = !one_ray;
-  const uint32_t step = test_option("--few") ? FEW_STEP : one_ray ? ONE_RAY_STEP : 1;
+  const uint32_t step = few_run() ? FEW_STEP : one_ray ? ONE_RAY_STEP : 1;
   int64_t most = 0;
   int other_counts = 0, more_samples = 0;
   int pictures = 0, lit = 0;

@@ -57,7 +57,7 @@ static void modes_are_those_of_the_host(void** state)
   for (size_t i = 0; i < sizeof mask; ++i) {
     mask[i] = (uint8_t)(i % 21 > 6);
   }
-  for (uint32_t seed = 0; seed < (test_option("--few") ? 5 : one_ray ? 10 : 24); ++seed) {
+  for (uint32_t seed = 0; seed < (few_run() ? 5 : one_ray ? 10 : 24); ++seed) {
     picture_case c;
     const int mode = STRATUS_MODE_MAXIMUM + (int)(seed % 5);
     case_create(host, &c, types[seed / 5 % 2], 21, 19, 23, seed);

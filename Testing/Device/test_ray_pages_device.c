@@ -183,7 +183,7 @@ static void pages_draw_the_whole_volumes_bits(void** state)
   const bool one_ray = *(const bool*)*state;
   device->device->is_cpu = !one_ray;
   device->device->builds = !tiny; /* other tests show a simulator what builds */
-  for (uint32_t i = one_ray && !tiny; i < COUNT_OF(cases); i += tiny ? 1 : test_option("--few") ? 4 : one_ray ? 3 : 1) {
+  for (uint32_t i = one_ray && !tiny; i < COUNT_OF(cases); i += tiny ? 1 : few_run() ? 4 : one_ray ? 3 : 1) {
     picture_case c;
     if (tiny && cases[i].type > STRATUS_UINT8) {
       continue;
@@ -201,7 +201,7 @@ static void pages_serve_the_local_rule(void** state)
   static const page_case local = { "local", .divisor = 1 };
   (void)state;
   int compared = 0;
-  for (uint32_t seed = 540; compared < (test_option("--few") ? 1 : 3); ++seed) {
+  for (uint32_t seed = 540; compared < (few_run() ? 1 : 3); ++seed) {
     picture_case c;
     case_create_local(host_context, seed, &c);
     if (c.volume.type != STRATUS_FLOAT64 && volume_bytes(&c) > LOCAL_TABLE_BYTES) { /* doubles may be kept as floats */
@@ -334,7 +334,7 @@ static void pages_survive_a_device_that_fails(void** state)
     .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = paged.rgba, .depth = paged.depth, .samples = paged.samples
   };
   device->device->largest_allocation = volume_bytes(&c) / 3;
-  for (int64_t n = 0, met = 1; met; n += test_option("--few") ? 5 : 1) {
+  for (int64_t n = 0, met = 1; met; n += few_run() ? 5 : 1) {
     met = 0;
     for (size_t e = 0; e < COUNT_OF(errors); ++e) {
       stratus_ray_caster* caster = NULL;

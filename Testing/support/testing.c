@@ -48,10 +48,20 @@ bool test_option(const char* word)
   return false;
 }
 
+static bool is_set(const char* name)
+{
+  const char* value = getenv(name);
+  return value && *value && strcmp(value, "0") != 0;
+}
+
 bool long_run(void)
 {
-  const char* value = getenv("STRATUS_LONG");
-  return value && *value && strcmp(value, "0") != 0;
+  return is_set("STRATUS_LONG");
+}
+
+bool few_run(void)
+{
+  return (is_set("STRATUS_FEW") && !long_run()) || test_option("--few");
 }
 
 const char* test_program(void)
@@ -77,7 +87,7 @@ test_seeds test_seeds_of(uint32_t quick, uint32_t all)
     const uint32_t first = (uint32_t)strtoul(given, NULL, 10);
     return (test_seeds){ .seed = first, .end = first + 1 };
   }
-  return (test_seeds){ .end = long_run() ? all : quick };
+  return (test_seeds){ .end = long_run() ? all : few_run() ? (quick + 2) / 3 : quick };
 }
 
 bool test_next(test_seeds* seeds)

@@ -16,8 +16,8 @@ int test_skip(const char* why);
 bool test_option(const char* word);
 
 /* Random cases by seed: `for (test_seeds s = test_seeds_of(TEST_SOME(10000), 10000); test_next(&s);)` runs its body with s.seed 0, 1, 2
- * and so on. There are `quick` of them, or `all` if the environment has STRATUS_LONG=1, or the one that --seed=N on the command line names.
- * Where a body fails, how to repeat its seed alone is printed. */
+ * and so on. There are `quick` of them, a third of these where few_run(), `all` if the environment has STRATUS_LONG=1, or the one that
+ * --seed=N on the command line names. Where a body fails, how to repeat its seed alone is printed. */
 typedef struct test_seeds {
   uint32_t seed, end;
   bool begun;
@@ -46,6 +46,10 @@ bool test_many(const test_seeds* seeds, uint32_t least);
 
 /* Whether all cases are asked for, which take minutes: the environment variable STRATUS_LONG is set, and not 0. */
 bool long_run(void);
+
+/* Whether some cases are enough, of a test that has many like one another: the environment variable STRATUS_FEW is set, and not 0, or the
+ * command line has --few. The presets quick and dev set it. */
+bool few_run(void);
 
 /* Returns the path of the running program, for a test that runs itself. */
 const char* test_program(void);

@@ -99,7 +99,7 @@ static void halves_of_a_sharp_volume_draw_the_whole(void** state)
 /* Beside a volume that shows nothing the picture is the ordinary one but for rounding, of all rules. */
 static void an_empty_volume_changes_nothing(void** state)
 {
-  for (uint32_t seed = 0; seed < 6; ++seed) {
+  for (uint32_t seed = 0; seed < 6; seed += few_run() ? 3 : 1) {
     several_case m = { .count = 2 };
     if (seed < 3) {
       case_create(*state, &m.of[0], STRATUS_UINT8, 25, 28, 30, 5);
@@ -168,7 +168,7 @@ static void no_structure_changes_a_bit_of_rule_local(void** state)
   stratus_context* threads[2] = { case_context("host", 1), case_context("host", 5) };
   int local = 0;
   uint64_t skipped = 0;
-  for (uint32_t seed = 0; seed < 12; ++seed) {
+  for (uint32_t seed = 0; seed < 12; seed += few_run() ? 3 : 1) {
     several_case m = { .count = 2 + (int)(seed % 2) };
     for (int n = 0; n < m.count; ++n) {
       if (n < 2) {
@@ -200,8 +200,8 @@ static void no_structure_changes_a_bit_of_rule_local(void** state)
     }
     several_destroy(&m);
   }
-  assert_true(local >= 4);
-  assert_true(skipped > 1000);
+  assert_true(local >= (few_run() ? 1 : 4));
+  assert_true(skipped > (few_run() ? 0 : 1000));
   stratus_context_destroy(threads[0]);
   stratus_context_destroy(threads[1]);
 }
