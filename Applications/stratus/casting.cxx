@@ -42,7 +42,7 @@ void volume_parts::set(const options& o, context& core, const stratus_volume& vo
     return;
   }
   if (!this->Mask) {
-    this->Mask = std::make_unique<input>(core, o.mask, "", o.mask_raw);
+    this->Mask = std::make_unique<input>(core, o.mask, reading_options{ "", o.mask_raw, "" });
   }
   const stratus_volume& bytes = this->Mask->volume;
   if (bytes.type != STRATUS_UINT8 || !std::equal(bytes.dimensions, bytes.dimensions + 3, volume.dimensions)) {

@@ -6,6 +6,7 @@
 
 #ifdef STRATUS_NETCDF
 #include "vtkStratusCFReader.h"
+#include "vtkStratusNetCDFReader.h"
 #include "vtkStratusUgridReader.h"
 #endif
 #include "vtkStratusImageReader.h"
@@ -302,6 +303,17 @@ std::string description_of(vtkAlgorithm* reader)
   return by_name ? by_name->GetDescription() : "";
 }
 
+std::string choice_of(vtkAlgorithm* reader)
+{
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  if (!by_name || by_name->GetNumberOfVariables() < 2) {
+    return "";
+  }
+  const std::string chosen = by_name->GetVariableName() ? by_name->GetVariableName() : "";
+  return "'" + (chosen.empty() ? by_name->GetNameOfVariable(0) : chosen) + "'" +
+    format(" of %d%s", by_name->GetNumberOfVariables(), chosen.empty() ? ", --variable NAME for another" : "");
+}
+
 std::string length_units_of(vtkAlgorithm* reader)
 {
   vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
@@ -333,6 +345,17 @@ void choose_variable(vtkAlgorithm* reader, const std::string& name)
     const std::string known = name.empty() ? name : name_in(by_name, name);
     by_name->SetVariableName(known.empty() ? nullptr : known.c_str());
   }
+}
+
+void select_indices(vtkAlgorithm* reader, const std::string& select)
+{
+#ifdef STRATUS_NETCDF
+  if (vtkStratusNetCDFReader* const by_name = vtkStratusNetCDFReader::SafeDownCast(reader)) {
+    by_name->SetSelection(select.c_str());
+    return;
+  }
+#endif
+  throw usage("--select " + select + ": only netCDF has dimensions with names to select from");
 }
 
 std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time)

@@ -10,6 +10,11 @@
 
 namespace cli {
 
+// What to read of a file: the values of --array or --variable, --raw and --select. Empty: the first variable, at the first indices.
+struct reading_options {
+  std::string variable, raw, select;
+};
+
 // The extension with its dot, in small letters; ".nii" for .nii.gz (.hdr.gz, .img.gz alike), and "controldict" for OpenFOAM's file of that
 // name.
 std::string extension_of(const std::string& path);
@@ -38,11 +43,14 @@ std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time);
 // What a reader of variables tells of time and grid, "" from others.
 std::string time_units_of(vtkAlgorithm* reader);
 std::string description_of(vtkAlgorithm* reader);
+std::string choice_of(vtkAlgorithm* reader);
 std::string length_units_of(vtkAlgorithm* reader);
 std::string value_units_of(vtkAlgorithm* reader); // of the chosen variable
 // True where the reader does not read by variables. "wind.x" is there where "wind" is.
 bool has_variable(vtkAlgorithm* reader, const std::string& name);
 void choose_variable(vtkAlgorithm* reader, const std::string& name);
+// Sets the indices at which dimensions are read, "NAME=INDEX,NAME=INDEX". Throws usage for a reader of files without named dimensions.
+void select_indices(vtkAlgorithm* reader, const std::string& select);
 
 // The parts of a step of a .pvd: all files of one time.
 struct collection_step {

@@ -65,14 +65,14 @@ void set_values(vtkDataSet* image, vtkDataArray* array, bool on_cells, stratus_v
 
 namespace cli {
 
-vtkSmartPointer<vtkDataObject> read_data(const std::string& path, const std::string& variable, const std::string& raw)
+vtkSmartPointer<vtkDataObject> read_data(const std::string& path, const reading_options& reading)
 {
-  return series(path, variable, raw).read(0);
+  return series(path, reading).read(0);
 }
 
-vtkSmartPointer<vtkImageData> read_image(const std::string& path, const std::string& variable, const std::string& raw)
+vtkSmartPointer<vtkImageData> read_image(const std::string& path, const reading_options& reading)
 {
-  const vtkSmartPointer<vtkDataObject> output = read_data(path, variable, raw);
+  const vtkSmartPointer<vtkDataObject> output = read_data(path, reading);
   vtkImageData* image = vtkImageData::SafeDownCast(output);
   if (!image) {
     throw failure("'" + path + "' holds " + (output ? output->GetClassName() : "nothing") + ", not an image (vtkImageData)");
@@ -186,14 +186,17 @@ bool is_scene(const std::string& source)
   return !exists && has_scene(source);
 }
 
-input::input(context& core, const std::string& source, const std::string& array, const std::string& raw) : Core(core)
+input::input(context& core, const std::string& source, const reading_options& reading) : Core(core)
 {
   if (!is_scene(source)) {
-    this->set(read_image(source, array, raw), source, array);
+    this->set(read_image(source, reading), source, reading.variable);
     return;
   }
-  if (!array.empty()) {
+  if (!reading.variable.empty()) {
     throw usage("--array: the scene '" + source + "' has only one");
+  }
+  if (!reading.select.empty()) {
+    throw usage("--select " + reading.select + ": the scene '" + source + "' has no dimensions with names");
   }
   core.check(stratus_scene_create(core, source.c_str(), &this->scene), "scene '" + source + "'");
   this->volume = this->scene->volume;

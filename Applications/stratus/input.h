@@ -2,6 +2,7 @@
 // Reads an image file or a rectilinear grid, or makes a scene of record, as the core's view of a volume.
 #pragma once
 
+#include "formats.h"
 #include "route.h"
 #include "support.h"
 
@@ -12,9 +13,9 @@ class vtkRectilinearGrid;
 namespace cli {
 
 // Reads the first step of any file that series reads, which says what the others are.
-vtkSmartPointer<vtkDataObject> read_data(const std::string& path, const std::string& variable = "", const std::string& raw = "");
+vtkSmartPointer<vtkDataObject> read_data(const std::string& path, const reading_options& reading = {});
 // Reads an image as read_data() does, and fails for other data.
-vtkSmartPointer<vtkImageData> read_image(const std::string& path, const std::string& variable = "", const std::string& raw = "");
+vtkSmartPointer<vtkImageData> read_image(const std::string& path, const reading_options& reading = {});
 
 // Borrows the array's values. A sheet (an image with one point along an axis) gets the thickness of a cell, because it would be invisible
 // otherwise.
@@ -34,7 +35,7 @@ bool is_scene(const std::string& source);
 class input
 {
 public:
-  input(context& core, const std::string& source, const std::string& array, const std::string& raw);
+  input(context& core, const std::string& source, const reading_options& reading);
   // Takes an image or a rectilinear grid that was read from the file `source`.
   input(context& core, const std::string& source, vtkDataSet* image, const std::string& array);
   ~input();

@@ -98,12 +98,12 @@ void info(const cli::options& o)
 {
   if (cli::is_scene(o.source)) {
     cli::context core("host", o.threads);
-    const cli::input in(core, o.source, o.array, o.raw);
+    const cli::input in(core, o.source, o.reading());
     std::printf("%s\n", o.source.c_str());
     print_volume(o, core, in);
     return;
   }
-  cli::series in(o.source, o.array, o.raw);
+  cli::series in(o.source, o.reading());
   const size_t step = in.find(o.time);
   const std::vector<cli::variable_entry> variables = in.variables(step); // before the step, because the reader's output is one object
   const cli::routed data = cli::route(in.read(step), o.source, o.array);
@@ -125,6 +125,9 @@ void info(const cli::options& o)
     row("variable",
       "'" + one.name + "'" + (one.units.empty() ? "" : " in " + one.units) + (one.long_name.empty() ? "" : ", " + one.long_name) + ", " +
         (one.low <= one.high ? cli::format("%.9g .. %.9g", one.low, one.high) : "nothing finite"));
+  }
+  if (!in.choice().empty()) {
+    row("", "drawn: " + in.choice());
   }
   if (image) {
     std::vector<std::unique_ptr<cli::input>> blocks;

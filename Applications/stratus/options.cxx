@@ -25,8 +25,8 @@ std::string help()
 
   stratus render INPUT -o OUT.png [options]   draw a picture; also .jpg, .tif, .bmp; OUT.exr has floats: R, G, B, A, depth Z, Samples
   stratus render INPUT --frames OUT-%04d.png  draw every step in time
-  stratus render INPUT INPUT ... -o OUT.png   draw up to eight as one medium; --array, --opacity, --color and --unit-distance
-                                              are for the INPUT before them
+  stratus render INPUT INPUT ... -o OUT.png   draw up to eight as one medium; --array, --select, --opacity, --color and
+                                              --unit-distance are for the INPUT before them
   stratus info INPUT [--array NAME]           tell what is in a file or scene: sizes, arrays, kinds of cells
   stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes
   stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells from 16 views, and count what comes out wrong
@@ -47,6 +47,8 @@ What is drawn
   --raw NXxNYxNZ:TYPE     what a file of bare values (.raw) does not tell: its size, x fastest, and int8, uint8, int16, uint16, int32,
                           uint32, float32 or float64; then, with a colon before each, big (default little), a spacing DX,DY,DZ, +N
                           for N bytes before the values
+  --select NAME=INDEX     of netCDF: read a dimension at one index only, from 0, as of an ensemble; several with commas between, or
+                          with --select again (default: 0 of what is neither space nor time, which info tells)
   --time T                the step: first, last, step:N from 0, a time in the file's units, or a length of time with its unit (3h, 90min,
                           "2 d") from where the file counts from, with + before it from its first step. The nearest step is taken, and told
   --frames OUT-%04d.png   a film: a picture of every step (--time all), all with one look and one camera
@@ -338,6 +340,7 @@ constexpr struct {
   { "--array", keep<&options::array> },
   { "--variable", keep<&options::array> },
   { "--raw", keep<&options::raw> },
+  { "--select", [](options& o, text, text value) { o.select += (o.select.empty() ? "" : ",") + value; } },
   { "--time", keep<&options::time> },
   { "--frames", set_frames },
   { "--opacity", keep<&options::opacity> },
@@ -408,13 +411,14 @@ template <class Entry> bool set_companion(companion& last, const Entry* entry, c
 {
   options alone;
   const std::string word = entry->word;
-  if (word != "--array" && word != "--variable" && word != "--raw" && word != "--opacity" && word != "--color" &&
+  if (word != "--array" && word != "--variable" && word != "--raw" && word != "--select" && word != "--opacity" && word != "--color" &&
     word != "--unit-distance") {
     return false;
   }
   entry->set(alone, word, value);
   last.array = alone.array.empty() ? last.array : alone.array;
   last.raw = alone.raw.empty() ? last.raw : alone.raw;
+  last.select += (last.select.empty() || alone.select.empty() ? "" : ",") + alone.select;
   last.opacity = alone.opacity.empty() ? last.opacity : alone.opacity;
   last.color = alone.color.empty() ? last.color : alone.color;
   last.unit_distance = alone.unit_distance > 0.0 ? alone.unit_distance : last.unit_distance;
@@ -522,7 +526,7 @@ options parse(int argc, char* argv[])
     } else if (o.command == "compare" && o.baseline.empty()) {
       o.baseline = word;
     } else if (o.command == "render" && o.companions.size() + 1 < STRATUS_SEVERAL_MAX) {
-      o.companions.push_back({ word, "", "", "", "", 0.0 });
+      o.companions.push_back({ word, "", "", "", "", "", 0.0 });
     } else {
       throw usage((o.command == "compare" ? "compare takes two pictures"
                                           : "one INPUT at a time, or of render up to " + std::to_string(STRATUS_SEVERAL_MAX)) +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "formats.h"
 #include "reading.h"
 #include "stratus.h"
 
@@ -12,7 +13,7 @@ namespace cli {
 
 // A volume that is drawn with the first one, and how it looks.
 struct companion {
-  std::string source, array, raw, opacity, color;
+  std::string source, array, raw, select, opacity, color;
   double unit_distance = 0.0;
 };
 
@@ -24,7 +25,8 @@ struct options {
   std::string frames; // render: the names of the pictures of all steps, with one %d
   std::string time;   // the step: see series::find(); "all" is left out, since --frames says it
   std::string array;
-  std::string raw; // what a .raw file does not tell: see choose_format()
+  std::string raw;    // what a .raw file does not tell: see choose_format()
+  std::string select; // "NAME=INDEX,...": indices of netCDF's dimensions
   std::string opacity;
   std::string color;
   std::string background;
@@ -76,6 +78,8 @@ struct options {
   double largest_mean = -1.0, largest_difference = -1.0, least_ssim = -2.0;
   stratus_structure structure = STRATUS_STRUCTURE_AUTO;
   stratus_sampling sampling = STRATUS_SAMPLING_AUTO;
+
+  reading_options reading() const { return { this->array, this->raw, this->select }; }
 };
 
 // Throws usage for an invalid command line.

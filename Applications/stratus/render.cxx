@@ -46,6 +46,17 @@ std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& co
   return data.grid ? cli::make_grid_drawing(o, core) : cli::make_volume_drawing(o, core);
 }
 
+// Tells which variable is drawn, on which grid. `in` is null for a scene.
+void print_reading(const cli::series* in)
+{
+  if (in && !in->choice().empty()) {
+    row("variable", in->choice());
+  }
+  if (in && !in->grid().empty()) {
+    row("coordinates", in->grid());
+  }
+}
+
 // `in` is null for a scene.
 void render_one(const cli::options& o, const cli::routed& data, const cli::series* in, size_t step)
 {
@@ -60,6 +71,7 @@ void render_one(const cli::options& o, const cli::routed& data, const cli::serie
   drawing->draw(image);
   annotate(frame, o, *drawing, in, step);
   std::printf("%s\n", o.source.c_str());
+  print_reading(in);
   if (!time.empty()) {
     row("time", time);
   }
@@ -148,6 +160,7 @@ void render_film(const cli::options& o, cli::series& in)
   } // a path that cannot be written is reported at once
   std::printf("%s\n", o.source.c_str());
   cli::routed data = read_apart(in, 0, o);
+  print_reading(&in);
   const std::unique_ptr<cli::drawing> drawing = drawing_of(o, core, data);
   look_at_widest(*drawing, in, o);
   const stratus_image image = frame.view();
@@ -188,7 +201,7 @@ void cli::render(const options& o)
     render_one(o, routed(), nullptr, 0);
     return;
   }
-  series in(o.source, o.array, o.raw);
+  series in(o.source, o.reading());
   if (!o.frames.empty()) {
     render_film(o, in);
     return;

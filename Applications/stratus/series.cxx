@@ -156,6 +156,9 @@ void series::open()
   guard watch(path);
   check_file(path);
   if (is_collection(path)) {
+    if (!this->Select.empty()) {
+      throw usage("--select " + this->Select + ": '" + path + "' is a list of files, which has no dimensions with names");
+    }
     this->Parts = read_collection(path);
     for (const collection_step& step : this->Parts) {
       this->Times.push_back(step.time);
@@ -169,6 +172,9 @@ void series::open()
   }
   this->Units = found.time_units;
   this->Reader = found.reader;
+  if (!this->Select.empty()) {
+    select_indices(this->Reader, this->Select);
+  }
   watch.run(this->Reader, [this] {
     this->Reader->UpdateInformation();
     if (!this->Variable.empty() && has_variable(this->Reader, this->Variable)) {
@@ -184,7 +190,8 @@ void series::open()
   });
 }
 
-series::series(const std::string& path, const std::string& variable, const std::string& raw) : Path(path), Variable(variable), Raw(raw)
+series::series(const std::string& path, const reading_options& reading)
+    : Path(path), Variable(reading.variable), Raw(reading.raw), Select(reading.select)
 {
   this->open();
   if (this->Reader && !this->Variable.empty() && !has_variable(this->Reader, this->Variable)) {
@@ -213,6 +220,11 @@ std::vector<variable_entry> series::variables(size_t step)
     choose_variable(this->Reader, this->Variable);
   }
   return list;
+}
+
+std::string series::choice() const
+{
+  return this->Reader ? choice_of(this->Reader) : "";
 }
 
 std::string series::grid() const

@@ -15,9 +15,9 @@ class series
 {
 public:
   // Opens a file and looks up its steps. Throws failure where it cannot be read, and where its time does not increase.
-  // `variable` is the one to read of a file that is read by variables (netCDF), "" the first; readers of whole files ignore it.
-  // `raw` is described at choose_format().
-  explicit series(const std::string& path, const std::string& variable = "", const std::string& raw = "");
+  // `reading`: its variable is of a file that is read by variables (netCDF), and readers of whole files ignore it. Its raw is described at
+  // choose_format().
+  explicit series(const std::string& path, const reading_options& reading = {});
 
   size_t steps() const { return this->Times.empty() ? 1 : this->Times.size(); }
   const std::vector<double>& times() const { return this->Times; } // ascending; empty: the file has no time
@@ -34,6 +34,8 @@ public:
   std::string describe(size_t step) const;
   // The file's variables at a step, none of a file that is not read by variables.
   std::vector<variable_entry> variables(size_t step);
+  // Which of several variables is read, and how to choose another, "" for a file of one or that is not read by variables.
+  std::string choice() const;
   // How coordinates became a grid, "" where that is VTK's own affair.
   std::string grid() const;
   // Finds the step that --time asks for: "first", "last", "step:N", a time in the file's units, a length of time with its unit ("3h",
@@ -45,7 +47,7 @@ private:
 
   void open();
 
-  std::string Path, Variable, Raw;
+  std::string Path, Variable, Raw, Select;
   vtkSmartPointer<vtkAlgorithm> Reader; // null for a collection
   std::vector<collection_step> Parts;   // of a collection
   std::vector<double> Times;

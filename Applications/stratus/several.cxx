@@ -81,10 +81,11 @@ void several_drawing::take(const cli::routed& data)
     o.source = companion.source;
     o.array = companion.array;
     o.raw = companion.raw;
+    o.select = companion.select;
     o.opacity = companion.opacity;
     o.color = companion.color;
     o.unit_distance = companion.unit_distance;
-    this->take_member(o, cli::is_scene(o.source) ? cli::routed() : cli::route(cli::read_data(o.source, o.array, o.raw), o.source, o.array));
+    this->take_member(o, cli::is_scene(o.source) ? cli::routed() : cli::route(cli::read_data(o.source, o.reading()), o.source, o.array));
   }
 }
 
@@ -108,7 +109,7 @@ void several_drawing::take_member(const cli::options& o, const cli::routed& data
     return;
   }
   one.input.reset(
-    data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array, o.raw));
+    data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.reading()));
   if (first && o.up.empty()) {
     this->Up = one.input->up_axis;
   }

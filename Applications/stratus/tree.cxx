@@ -99,7 +99,7 @@ namespace cli {
 void print_tree(const options& o)
 {
   context core(o.device, o.threads);
-  input in(core, o.source, o.array, o.raw);
+  input in(core, o.source, o.reading());
   std::unique_ptr<output_file> out(
     o.output.empty() ? nullptr : new output_file(o.output)); // before the work, so that a path that cannot be written is reported at once
   std::string what;

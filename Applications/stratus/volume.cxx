@@ -63,7 +63,7 @@ void volume_drawing::take(const cli::routed& data)
 {
   const cli::options& o = this->Options;
   this->Input.reset(
-    data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.array, o.raw));
+    data.image ? new cli::input(this->Core, o.source, data.image, o.array) : new cli::input(this->Core, o.source, o.reading()));
   this->Input->volume.revision = ++this->Steps;
   this->Up = o.up.empty() ? this->Input->up_axis : o.up[0] - 'x';
   this->Input->volume.matrix[5 * this->Up] *= o.exaggeration;

@@ -121,6 +121,11 @@ def grid_of_cf():
     grid = reader.GetClientSideObject().GetOutputDataObject(0)  # Fetch() of ParaView 5.11 loses any rectilinear grid's coordinates
     check((vtk_to_numpy(grid.GetPointData().GetArray("qc")) == numpy.arange(24, 48)).all(), "values of the second time")
     check(list(vtk_to_numpy(grid.GetZCoordinates())) == [0, 1, 4], "uneven levels")
+    reader = simple.StratusCFReader(FileName=path, Selection="time=1")
+    reader.UpdatePipeline()
+    grid = reader.GetClientSideObject().GetOutputDataObject(0)
+    check((vtk_to_numpy(grid.GetPointData().GetArray("qc")) == numpy.arange(24, 48)).all() and "index 1 of 0..1" in reader.Description,
+          "a selected index")
 
 
 def images_of_scans():
