@@ -67,7 +67,7 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
   const std::set<const Variable*> referred = FindReferred(file);
   for (const Variable& one : file.GetVariables()) {
     if (vtkStratusCFGrid::IsVolume(file, one) && referred.count(&one) == 0) {
-      this->Variables.push_back({ one.Name, file.Text(one, "units"), file.Text(one, "long_name") });
+      this->AddVariable(file, one);
     }
   }
   const Variable* wanted = this->VariableName && *this->VariableName ? file.Find(this->VariableName) : nullptr;

@@ -284,6 +284,11 @@ std::string vtkStratusNetCDFFile::Text(const Variable& variable, const char* att
   return text.substr(0, text.find('\0'));
 }
 
+bool vtkStratusNetCDFFile::Has(const Variable& variable, const char* attribute) const
+{
+  return nc_inq_att(variable.Group, variable.Id, attribute, nullptr, nullptr) == NC_NOERR;
+}
+
 bool vtkStratusNetCDFFile::Number(const Variable& variable, const char* attribute, double& value) const
 {
   nc_type type = NC_NAT;

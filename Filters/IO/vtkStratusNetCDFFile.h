@@ -15,17 +15,19 @@
 
 class vtkStratusNetCDFValues;
 
+struct vtkStratusNetCDFVariable {
+  int Group, Id;               // numbers of libnetcdf
+  int Type;                    // nc_type
+  std::string Name;            // with the path of its group: "run1/rho", "rho" in the root group
+  std::vector<int> Dimensions; // numbers of dimensions, slowest first
+
+  std::string BaseName() const { return this->Name.substr(this->Name.rfind('/') + 1); }
+};
+
 class vtkStratusNetCDFFile
 {
 public:
-  struct Variable {
-    int Group, Id;               // numbers of libnetcdf
-    int Type;                    // nc_type
-    std::string Name;            // with the path of its group: "run1/rho", "rho" in the root group
-    std::vector<int> Dimensions; // numbers of dimensions, slowest first
-
-    std::string BaseName() const { return this->Name.substr(this->Name.rfind('/') + 1); }
-  };
+  using Variable = vtkStratusNetCDFVariable;
   struct TimeSteps {
     std::vector<double> Values; // ascending
     std::string Units;          // "hours since 2001-01-01", "" if the file does not say
@@ -61,6 +63,7 @@ public:
   size_t CountOf(const Variable& variable) const;   // values
 
   std::string Text(const Variable& variable, const char* attribute) const; // "" if there is none
+  bool Has(const Variable& variable, const char* attribute) const;
   bool Number(const Variable& variable, const char* attribute, double& value) const;
 
   // Reads a block of values; empty start and count: all. Values that are missing are NaN, the others are unpacked, by the rules at

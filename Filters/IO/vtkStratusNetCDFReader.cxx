@@ -5,6 +5,95 @@
 
 #include "vtkDataSet.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace {
+using Variable = vtkStratusNetCDFVariable;
+
+enum RankType { Field, Staggered, Flag, Ingredient, RankCount };
+
+std::string Lower(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+template <size_t N> bool IsOneOf(const std::string& word, const std::array<const char*, N>& words)
+{
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool EndsWith(const std::string& text, const std::string& end)
+{
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+// Returns whether an attribute of another variable names this one: "area: cells volume: boxes".
+bool IsNamedBy(const vtkStratusNetCDFFile& file, const Variable& variable, const char* attribute)
+{
+  return std::any_of(file.GetVariables().begin(), file.GetVariables().end(), [&](const Variable& one) {
+    const std::vector<std::string> words = vtkStratusWords(file.Text(one, attribute));
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return file.Find(word, &one) == &variable; });
+  });
+}
+
+// What coordinates are made of, by standard_name, by the names that models use, and by what the variable is said to be.
+bool IsIngredient(const vtkStratusNetCDFFile& file, const Variable& variable)
+{
+  static constexpr std::array<const char*, 18> standard = { "altitude", "height", "depth", "air_pressure", "sea_water_pressure",
+    "geopotential", "geopotential_height", "height_above_geopotential_datum", "height_above_mean_sea_level",
+    "height_above_reference_ellipsoid", "cell_thickness", "cell_area", "cell_volume", "ocean_volume", "longitude", "latitude",
+    "projection_x_coordinate", "projection_y_coordinate" };
+  static constexpr std::array<const char*, 35> names = { "x", "y", "z", "lon", "lat", "longitude", "latitude", "xlong", "xlat", "height",
+    "altitude", "depth", "pressure", "pres", "p", "pb", "p_hyd", "ph", "phb", "geopotential", "z_mc", "z_ifc", "zg", "zcor", "zcoordinates",
+    "dz", "e3t", "e3u", "e3v", "e3w", "thkcello", "volcello", "areacello", "hgt", "zhalf" };
+  static constexpr std::array<const char*, 7> words = { "geopotential", "base state", "base-state", "cell thickness", "layer thickness",
+    "cell area", "cell volume" };
+  const std::string said = Lower(file.Text(variable, "long_name") + " " + file.Text(variable, "description"));
+  const bool axis = !file.Text(variable, "axis").empty() || !file.Text(variable, "positive").empty();
+  return axis || IsOneOf(file.Text(variable, "standard_name"), standard) || IsOneOf(Lower(variable.BaseName()), names) ||
+    std::any_of(words.begin(), words.end(), [&said](const char* word) { return said.find(word) != std::string::npos; }) ||
+    IsNamedBy(file, variable, "cell_measures");
+}
+
+// On the faces, edges or corners of cells: WRF and ROMS name their dimensions by it.
+bool IsStaggered(const vtkStratusNetCDFFile& file, const Variable& variable)
+{
+  const auto beside = [&file](int dimension) {
+    const std::string& name = file.NameOf(dimension);
+    return EndsWith(name, "_stag") || EndsWith(name, "_u") || EndsWith(name, "_v") || EndsWith(name, "_w") || EndsWith(name, "_psi");
+  };
+  return std::any_of(variable.Dimensions.begin(), variable.Dimensions.end(), beside);
+}
+
+int RankOf(const vtkStratusNetCDFFile& file, const Variable& variable)
+{
+  if (IsIngredient(file, variable)) {
+    return Ingredient;
+  }
+  for (const char* attribute : { "flag_values", "flag_masks", "flag_meanings" }) {
+    if (file.Has(variable, attribute)) {
+      return Flag;
+    }
+  }
+  const bool mask = Lower(variable.BaseName()).find("mask") != std::string::npos || IsNamedBy(file, variable, "ancillary_variables");
+  return mask ? Flag : IsStaggered(file, variable) ? Staggered : Field;
+}
+} // namespace
+
+void vtkStratusNetCDFReader::AddVariable(const vtkStratusNetCDFFile& file, const Variable& variable, int place)
+{
+  this->Ranks.resize(this->Variables.size());
+  const int rank = place * RankCount + RankOf(file, variable);
+  const auto at = std::upper_bound(this->Ranks.begin(), this->Ranks.end(), rank) - this->Ranks.begin();
+  const std::string name = file.Text(variable, "long_name");
+  this->Ranks.insert(this->Ranks.begin() + at, rank);
+  this->Variables.insert(this->Variables.begin() + at,
+    { variable.Name, file.Text(variable, "units"), name.empty() ? file.Text(variable, "description") : name });
+}
+
 vtkStratusNetCDFReader::~vtkStratusNetCDFReader()
 {
   this->SetSelection(nullptr);

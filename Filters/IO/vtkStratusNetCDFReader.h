@@ -12,6 +12,9 @@
  * Attributes are compared in the variable's type. GetDescription() tells which are ignored: text, and limits that packed integers cannot
  * hold. Values are floats if these tell all of the variable's values apart, else doubles.
  *
+ * Variables are listed, and the first is read by default, in this order: fields of the cells; staggered ones; flags and masks; what
+ * coordinates are made of, such as pressure, geopotential, height, thickness and area. Equals stay in the file's order.
+ *
  * @sa vtkStratusCFReader vtkStratusUgridReader
  */
 #ifndef vtkStratusNetCDFReader_h
@@ -20,6 +23,7 @@
 #include "vtkStratusVariableReader.h"
 
 class vtkStratusNetCDFFile;
+struct vtkStratusNetCDFVariable;
 
 class STRATUSFILTERSIO_EXPORT vtkStratusNetCDFReader : public vtkStratusVariableReader
 {
@@ -46,12 +50,18 @@ protected:
   virtual std::string InspectFile(const vtkStratusNetCDFFile& file) = 0;
   virtual void BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) = 0;
 
+  /// Lists a variable: before those of a later `place`, and at the same place fields of the cells first, then staggered ones, then flags
+  /// and masks, then what coordinates are made of (pressure, geopotential, thickness, area).
+  void AddVariable(const vtkStratusNetCDFFile& file, const vtkStratusNetCDFVariable& variable, int place = 0);
+
   std::string Inspect() override;
   void Build(size_t step, vtkDataObject* output) override;
 
   char* Selection = nullptr;
 
 private:
+  std::vector<int> Ranks; // of Variables
+
   vtkStratusNetCDFReader(const vtkStratusNetCDFReader&) = delete;
   void operator=(const vtkStratusNetCDFReader&) = delete;
 };

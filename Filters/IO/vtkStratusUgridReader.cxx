@@ -143,7 +143,7 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
   for (bool layered : { true, false }) {
     for (const Variable& one : file.GetVariables()) {
       if (IsValues(mesh, layers, one) && layered == (mesh.FindLayers(one) >= 0)) {
-        this->Variables.push_back({ one.Name, file.Text(one, "units"), file.Text(one, "long_name") });
+        this->AddVariable(file, one, layered ? 0 : 1);
       }
     }
   }
