@@ -238,6 +238,10 @@ int run_program(std::vector<std::string> words, int threads)
     setenv("OMP_NUM_THREADS", std::to_string(threads).c_str(), 1);
     setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
     setenv("OMP_WAIT_POLICY", "passive", 0);
+    if (geteuid() == 0) { // Open MPI refuses to start ranks as root, with a page of messages, unless both are set
+      setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);
+      setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
+    }
     dup2(STDERR_FILENO, STDOUT_FILENO); // rows may go to the standard output
     execvp(pointers[0], pointers.data());
     std::fprintf(stderr, "%s cannot be started: %s\n", pointers[0], std::strerror(errno));
