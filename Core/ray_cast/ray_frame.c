@@ -227,8 +227,8 @@ double stratus_ray_termination(double tolerance)
   return fmax(fmin(TERMINATION_SHARE * tolerance, TERMINATION_MOST), TERMINATION_LEAST);
 }
 
-static stratus_status check_samples(
-  stratus_context* context, const double m[16], const double inverse[16], const stratus_volume* volume, double sample_distance)
+/* The sum of a volume's edges in the world: no ray through it is longer. */
+static double longest_way(const double m[16], const stratus_volume* volume)
 {
   double diagonal = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -239,6 +239,20 @@ static stratus_status check_samples(
     const bool flat = volume->dimensions[axis] == 1 && !volume->cell_centered;
     diagonal += flat ? 0.0 : sqrt(edge) * (double)volume->dimensions[axis];
   }
+  return diagonal;
+}
+
+double stratus_ray_shortest_step(const stratus_volume* volume)
+{
+  double index_to_world[16];
+  stratus_volume_index_to_world(volume, index_to_world);
+  return longest_way(index_to_world, volume) / SAMPLES_MOST;
+}
+
+static stratus_status check_samples(
+  stratus_context* context, const double m[16], const double inverse[16], const stratus_volume* volume, double sample_distance)
+{
+  const double diagonal = longest_way(m, volume);
   if (diagonal / sample_distance > SAMPLES_MOST) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
       "sample distance %g is too short: a ray through a volume %g wide would take more than %g samples; at least %g", sample_distance,

@@ -15,6 +15,8 @@ double stratus_ray_voxels_a_sample(const stratus_ray_caster* caster);
 stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, const stratus_camera* camera,
   const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* arguments,
   bool* empty);
+/* Returns the shortest step, in the world, by which rays through a volume may go. */
+double stratus_ray_shortest_step(const stratus_volume* volume);
 /* Returns the transparency at which a ray may end where only the tolerance says so. */
 double stratus_ray_termination(double tolerance);
 /* Sets the arguments of the table. */

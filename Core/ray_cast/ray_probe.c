@@ -21,11 +21,15 @@
 #define LATTICE_RUNGS 25
 #define CELL_RUNGS 31
 #define ONE_VOXEL 8
-/* The finer setting that candidates are compared with. On a lattice it has steps of this rung at first; FINER_BY rungs lie between it and
- * the setting that is taken, or it is made finer by as many. Of cells, its error is the tolerance times CELL_SHARE. */
+/* The finer setting that candidates are compared with. On a lattice it has steps of this rung at first; at least FINER_BY rungs lie between
+ * it and the setting that is taken, or it is made finer by as many: beyond the finest setting of pictures, too. Of cells, its error is the
+ * tolerance times CELL_SHARE. Rays end by that tolerance, too, those of candidates among them, so that sampling alone is compared. */
 #define LATTICE_FINE 14
 #define FINER_BY 6
 #define CELL_SHARE 0.125
+/* An error falls by some power of the step, between 1 where light or the function's ends meet it and 2. The finer setting's own error,
+ * which the comparison hides, is reckoned by the mean of the two. */
+#define ORDER 1.5
 /* What the probe's rays tell of all rays' error: the mean, and so many standard errors on top, may be this share of the tolerance. */
 #define CONFIDENCE 1.5
 #define SHARE 0.65
@@ -70,7 +74,8 @@ typedef struct probe {
   stratus_ray_caster* caster;
   const stratus_volume* volume;
   const stratus_ray_cast_options* options;
-  stratus_ray_cast_options whole; /* the same without what hides parts: a setting serves whatever part is shown */
+  /* The same without what hides parts: a setting serves whatever part is shown. Rays end by its tolerance. */
+  stratus_ray_cast_options whole;
   stratus_probe_patch patches[STRATUS_PROBE_PATCHES];
   int count;
   stratus_probe_classes classes;
@@ -214,6 +219,12 @@ static void note(probe* p, const char* format, ...)
   va_start(list, format);
   vsnprintf(tried + length, sizeof p->caster->tried - length, format, list);
   va_end(list);
+}
+
+/* Whether two rules err alike at the same rung: both take samples on a lattice, or both go from cell to cell. */
+static bool alike(stratus_sampling a, stratus_sampling b)
+{
+  return (a == STRATUS_SAMPLING_CELLS) == (b == STRATUS_SAMPLING_CELLS);
 }
 
 static setting setting_of(const family* f, int rung)
@@ -390,8 +401,8 @@ static stratus_status compare(probe* p, candidates* k, double most, int* best, f
       continue; /* where one sample a voxel is enough, the function hardly bends, and two reads a sample gain nothing */
     }
     const int rungs = f->rungs;
-    if (f->sampling == k->fine.sampling && rungs > k->fine.rung) {
-      f->rungs = k->fine.rung; /* against itself, the finer setting would err by nothing */
+    if (alike(f->sampling, k->fine.sampling) && rungs > k->fine.rung) {
+      f->rungs = k->fine.rung; /* against itself, the finer setting would err by nothing, and against its equal by little */
     }
     TRY(search(p, f, start > 0 ? start : 0, most, fmin(least, cells_cost), &rung));
     f->rungs = rungs;
@@ -425,7 +436,52 @@ static bool too_near(const probe* p, const family* f, int rung, const setting* f
 {
   const bool local = f->sampling == STRATUS_SAMPLING_LOCAL; /* and then the finer one is of cells */
   const bool open = local ? !(p->options->cell_error > 0.0) : f->rungs > 1;
-  return (local || f->sampling == fine->sampling) && open && (local ? f->cells : rung) > fine->rung - FINER_BY;
+  return (local || alike(f->sampling, fine->sampling)) && open && (local ? f->cells : rung) > fine->rung - FINER_BY;
+}
+
+/* The error of a setting, from its difference to the finer one: what that errs by itself is added. */
+static double expected_of(const family* f, int rung, double error, const setting* fine)
+{
+  if (f->sampling == STRATUS_SAMPLING_LOCAL || !alike(f->sampling, fine->sampling) || f->rungs == 1) {
+    return error;
+  }
+  const double falls = f->sampling == STRATUS_SAMPLING_CELLS ? 0.5 : 0.25 * ORDER; /* by this power of 2 from rung to rung */
+  return error / (1.0 - exp2(-falls * (fine->rung - rung)));
+}
+
+/* The error of the setting that is taken, whose rays end by the whole tolerance, as pictures' do. */
+static stratus_status measure_taken(probe* p, const family* f, int rung, const setting* fine, double* error)
+{
+  const setting s = setting_of(f, rung);
+  if (f->beyond > 0) {
+    TRY(lend_rough(p, f->beyond));
+  }
+  p->whole.tolerance = p->options->tolerance;
+  TRY(draw_patches(p, &s, p->options->tolerance, p->coarse));
+  *error = expected_of(f, rung, error_of(p), fine);
+  return STRATUS_OK;
+}
+
+/* The finest setting's error, where it was measured; NaN if not. */
+static double error_of_finest(const candidates* k, int last)
+{
+  for (int i = 0; i < k->count; ++i) {
+    const family* f = &k->of[i];
+    const int rung = f->rungs - 1 < last ? f->rungs - 1 : last;
+    if (f->sampling == k->fine.sampling && f->error[rung] >= 0.0) {
+      return expected_of(f, rung, f->error[rung], &k->fine);
+    }
+  }
+  return NAN;
+}
+
+/* The finest setting that candidates are compared with, unless its step is too short for rays through this volume. */
+static int finest_to_compare(const probe* p, stratus_sampling sampling, int last)
+{
+  const setting finest = { .sampling = sampling, .rung = last + FINER_BY };
+  stratus_ray_choice choice;
+  take(p, &finest, &choice);
+  return choice.sample_distance >= stratus_ray_shortest_step(&p->caster->traversed) ? finest.rung : last;
 }
 
 /* Takes the cheapest of the settings that keep the tolerance, else the finest. *beyond: blocks of classes below it are rough, 0 if the
@@ -449,21 +505,26 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
     take(p, &finest, choice);
     return STRATUS_OK;
   }
+  p->whole.tolerance = CELL_SHARE * options->tolerance;
+  const int finest = finest_to_compare(p, k.fine.sampling, last);
   const double wanted = cells ? -2.0 * (log2(CELL_SHARE * options->tolerance) + 2.0) : LATTICE_FINE;
-  k.fine.rung = wanted < FINER_BY ? FINER_BY : wanted < last ? (int)ceil(wanted) : last;
+  k.fine.rung = wanted < FINER_BY ? FINER_BY : wanted < finest ? (int)ceil(wanted) : finest;
   for (;;) {
     family* found = NULL;
     int best = 0;
     TRY(compare(p, &k, most, &best, &found));
-    if (k.fine.rung == last || (found && !too_near(p, found, best, &k.fine))) {
-      const setting s = found ? setting_of(found, best) : k.fine;
+    if (k.fine.rung == finest || (found && !too_near(p, found, best, &k.fine))) {
+      const setting s = found ? setting_of(found, best) : (setting){ .sampling = k.fine.sampling, .rung = last };
       take(p, &s, choice);
       *beyond = found ? found->beyond : 0;
       choice->met = found != NULL;
-      choice->expected_error = found ? found->error[best] : NAN;
+      choice->expected_error = error_of_finest(&k, last);
+      if (found) {
+        TRY(measure_taken(p, found, best, &k.fine, &choice->expected_error));
+      }
       return STRATUS_OK;
     }
-    k.fine.rung = k.fine.rung + FINER_BY < last ? k.fine.rung + FINER_BY : last;
+    k.fine.rung = k.fine.rung + FINER_BY < finest ? k.fine.rung + FINER_BY : finest;
   }
 }
 

@@ -226,7 +226,7 @@ typedef struct stratus_ray_cast_report {
   stratus_sampling sampling;   /* the one used */
   double sample_distance;      /* the one used, world length */
   double cell_error;           /* the one used, of rules cells and local; else 0 */
-  double expected_error;       /* measured on the probe's rays, in the tolerance's terms; NaN if no ray was probed */
+  double expected_error;       /* by the probe's rays, in the tolerance's terms, also where it is missed; NaN: not measured */
   int tolerance_met;           /* 0: the finest setting is expected to miss the tolerance; else 1 */
   uint64_t probe_builds;       /* number of probes since the caster was created */
   uint64_t probe_samples;      /* values interpolated by this call's probe */
