@@ -183,7 +183,7 @@ static void pages_draw_the_whole_volumes_bits(void** state)
   const bool one_ray = *(const bool*)*state;
   device->device->is_cpu = !one_ray;
   device->device->builds = !tiny; /* other tests show a simulator what builds */
-  for (uint32_t i = one_ray && !tiny; i < COUNT_OF(cases); i += tiny ? 1 : few_run() ? 4 : one_ray ? 3 : 1) {
+  for (uint32_t i = one_ray && !tiny; i < COUNT_OF(cases); i += tiny ? 1 : few_run() ? 6 : one_ray ? 3 : 1) {
     picture_case c;
     if (tiny && cases[i].type > STRATUS_UINT8) {
       continue;
