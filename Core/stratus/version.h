@@ -21,11 +21,12 @@ extern "C" {
 #define STRATUS_API __attribute__((visibility("default")))
 #endif
 
-/* How long a function stays as it is. STRATUS_API marks a stable one: it changes with a minor version at the earliest, and CHANGELOG.md
- * says how. STRATUS_EXPERIMENTAL marks one that serves to study a method: it may change or go with any minor version. */
+/* STRATUS_API marks a stable function: it changes with a minor version at the earliest, and CHANGELOG.md says how. STRATUS_EXPERIMENTAL
+ * marks a function for studying a method: any minor version may change or remove it. */
 #define STRATUS_EXPERIMENTAL STRATUS_API
 
-/* The version of the library that runs, as "major.minor.patch"; the macros are those of the headers that the caller was compiled with. */
+/* Return the version of the library that runs, as "major.minor.patch". The macros give the version of the headers that the caller was
+ * compiled with. */
 STRATUS_API const char* stratus_version(void);
 
 #ifdef __cplusplus
