@@ -150,7 +150,8 @@ void Header::ReadFields(vtkStratusHeaderLines& lines)
     if (!this->Fields.emplace(name, vtkStratusTrimmed(line.substr(colon + 1))).second) {
       lines.Fail("the field " + vtkStratusShown(name) + " is there twice");
     }
-    if (name == "data file" && this->Fields[name].compare(0, 4, "LIST") == 0) {
+    const std::vector<std::string> words = vtkStratusSplit(this->Fields[name]);
+    if (name == "data file" && !words.empty() && words[0] == "LIST") {
       break; // names follow, up to the file's end
     }
   }

@@ -60,7 +60,7 @@ public:
   const char* GetTimeUnits();
 
   /**
-   * Get the unit of all three of the output's coordinates: "m", or "" where the file does not tell or they differ. After
+   * Get the unit of all three of the output's coordinates, such as "m" or "mm", or "" where the file does not tell or they differ. After
    * UpdateInformation().
    */
   const char* GetLengthUnits();

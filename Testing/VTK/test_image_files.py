@@ -177,6 +177,9 @@ def test_nrrd_skips_and_files():
     expect(write("a.nhdr", head.replace("raw", "gz"), "line skip: 2\nbyte skip: 20\ndata file: raw\n"), values, FRAMES["plain"], ORIGIN)
     write("raw", gzip.compress(data[:50]), gzip.compress(data[50:]))  # two members are one stream
     expect(write("a.nhdr", head.replace("raw", "gzip"), "data file: raw\n"), values, FRAMES["plain"], ORIGIN)
+    write("LISTED.raw", data)
+    head = nrrd("i2", endian="big").replace("endian: big\n", "")
+    expect(write("a.nhdr", head, "data file: LISTED.raw\nendian: big\n"), values, FRAMES["plain"], ORIGIN)
     os.makedirs("sub", exist_ok=True)
     for encoding, pack in (("raw", bytes), ("gzip", gzip.compress)):
         for k in range(3):
