@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every figure in the tables of docs/measurements.md and README.md is the one that a committed CSV holds.
+"""Every figure in the tables of docs/measurements.md, docs/install.md and README.md is the one that a committed CSV holds.
 
 Usage: test_measurements.py [ROOT-OF-THE-REPOSITORY]
 
@@ -22,7 +22,7 @@ A comment before each table tells where its cells come from:
 - row LABEL = NAME: what `scene` is in the row whose first cell is LABEL; else it is the first cell itself.
 - `figures: none, REASON` for a table whose digits come from no CSV; all of its cells are text.
 
-A table without a comment fails; in README.md only if digits stand in it (those in code and in links do not count). In measurements.md each
+A table without a comment fails; in README.md and install.md only if it contains digits (not counting code and links). In measurements.md each
 section also has to name processor, commit and date of every run whose rows its tables show, and its links must lead to files.
 """
 import fnmatch
@@ -306,7 +306,7 @@ def change_digit(text):
 def main():
     root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
     errors = [error for error in (check_judge(),) if error]
-    for name, strict in (("docs/measurements.md", True), ("README.md", False)):
+    for name, strict in (("docs/measurements.md", True), ("README.md", False), ("docs/install.md", False)):
         document = Document(root, name, strict)
         document.check()
         errors += document.errors
