@@ -22,19 +22,21 @@ typedef enum stratus_type {
   STRATUS_FLOAT64
 } stratus_type;
 
-STRATUS_API size_t stratus_type_size(stratus_type type); /* bytes of a value; 0 for a number that is no type */
+STRATUS_API size_t stratus_type_size(stratus_type type); /* size in bytes of a value; 0 for a number that is not a type */
 
 #define STRATUS_COMPONENTS_MAX 4
 
-/* Bits of a ghost flag, those of vtkDataSetAttributes that the core reads. It ignores the others. */
+/* Bits of a ghost flag: the bits of vtkDataSetAttributes that the core reads. It ignores the others. */
 #define STRATUS_GHOST_DUPLICATE 1u    /* point or cell: another piece owns it */
 #define STRATUS_GHOST_HIDDEN_POINT 2u /* point: the cells that touch it are transparent */
 #define STRATUS_GHOST_HIDDEN_CELL 32u /* cell: it is transparent */
 
 /* A view of values on a regular grid. Values may be NaN or infinite: a cell with such a corner is transparent (nearest interpolation: a
- * voxel with such a value). Types of more than 24 bits are read as differences from one of their values, computed in double, so that a
- * large offset costs no digits. This value is the one of least magnitude among some thousand that are looked at. A double that differs from
- * it by more than floats hold counts as infinite; where no two values can be told apart as floats, STRATUS_INVALID_ARGUMENT. */
+ * voxel with such a value).
+ *
+ * Types of more than 24 bits are read as differences from one of their values, computed in double, so that a large offset costs no digits.
+ * This value is the one of least magnitude among some thousand that are examined. A double that differs from it by more than floats hold
+ * counts as infinite. If floats cannot distinguish any two values, STRATUS_INVALID_ARGUMENT is returned. */
 typedef struct stratus_volume {
   const void* values; /* dimensions[0]*[1]*[2] values, x fastest, value_stride apart */
   stratus_type type;
@@ -52,32 +54,35 @@ typedef struct stratus_volume {
    * images. If cell_centered, there are `dimensions` cells. */
   const uint8_t* cell_ghosts;
   uint64_t revision; /* the caller raises it when values or ghost flags change under the same pointer. Default 0. */
-  /* Grids whose spacing changes (rectilinear): for each axis NULL, the default, or positions that stand in place of spacing * index. They
-   * are those of the values, `dimensions` numbers; if cell_centered, those of the cells' borders, dimensions + 1 numbers. There are at
-   * least 2 of them, all finite, and they rise or fall strictly. Neighbours are at least 2^-19 of the whole extent apart, which is what
-   * floats tell apart along a ray. Linear interpolation is between the values' positions; those of cells are the cells' middles. */
+  /* Grids whose spacing changes (rectilinear). For each axis NULL (default), or positions that replace spacing * index: `dimensions`
+   * positions of the values; if cell_centered, dimensions + 1 positions of the cells' borders. There are at least 2, all finite, and they
+   * rise or fall strictly. Neighbours are at least 2^-19 of the whole extent apart, because floats distinguish no closer positions along a
+   * ray. Linear interpolation is between the values' positions; a cell's value is at the cell's middle. */
   const double* coordinates[3];
-  /* 1..4, default 1 (0 counts as 1). Component c of value v is values[v*value_stride + c]. Ray casts in composite mode use all components;
-   * in other modes they give STRATUS_UNSUPPORTED for more than 1. Everything else reads the first component. */
+  /* 1..4, default 1 (0 counts as 1), at most value_stride. Component c of value v is values[v*value_stride + c]. Ray casts use all
+   * components, except in modes first hit, isosurface and slice: these give STRATUS_UNSUPPORTED for more than 1. Everything else reads the
+   * first component. */
 
   int components;
 } stratus_volume;
 
-/* Returns a view with the defaults. The caller sets at least values, type and dimensions. */
+/* Return a view with the defaults. The caller sets at least values, type and dimensions. */
 STRATUS_API stratus_volume stratus_volume_default(void);
-/* Checks a view: pointers, dimensions, overflow of sizes, finite positive spacing, invertible matrices. */
+/* Check a view: pointers, dimensions, overflow of sizes, finite positive spacing, invertible matrices. */
 STRATUS_API stratus_status stratus_volume_check(stratus_context* context, const stratus_volume* volume);
 
 /* A transfer function, piecewise linear between points of non-decreasing value. Two points of equal value make a step. */
 typedef struct stratus_transfer {
-  /* opacity_count pairs: value, and opacity in 0..1 per unit_distance. Where the opacity is 1 over an interval of values, the medium is
-   * opaque, however short the ray's way through it. A single value of opacity 1 does not stop a ray whose values only pass through it. */
+  /* opacity_count pairs: value, and opacity in 0..1 per unit_distance. If the opacity is 1 over an interval of values, then the medium is
+   * opaque there, however short the ray's path through it. A single value of opacity 1 does not stop a ray whose values only pass through
+   * it. */
   const double* opacity;
   size_t opacity_count; /* >= 1 */
   const double* color;  /* color_count quadruples: value, then red, green, blue in 0..1 */
   size_t color_count;   /* >= 1 */
   double unit_distance; /* world length to which `opacity` refers, > 0. Default 1. */
-  /* 1: beyond the end points their opacity holds. 0: values there are transparent. Default 1. Colours always hold beyond the end points. */
+  /* 1 (default): the opacity of an end point holds beyond it. 0: values beyond the end points are transparent. Colours always hold beyond
+   * the end points. */
   int clamp;
   /* Used by ray casts in composite mode: gradient_count pairs of the gradient's magnitude and a factor in 0..1 of the optical depth. The
    * factors of the end points hold beyond them. Opacity 1 stays opaque under any factor above 0. The magnitude is in values per mean
@@ -87,20 +92,22 @@ typedef struct stratus_transfer {
   double weight; /* factor of the optical depth of an independent component, 0..1. Default 1. */
 } stratus_transfer;
 
+/* Return a function with the defaults. The caller sets at least its points. */
 STRATUS_API stratus_transfer stratus_transfer_default(void);
-/* Checks a transfer function: points that are finite and in order, opacities and colours in 0..1, a positive finite unit distance. */
+/* Check a transfer function: points that are finite and in order, opacities and colours in 0..1, a positive finite unit distance. */
 STRATUS_API stratus_status stratus_transfer_check(stratus_context* context, const stratus_transfer* transfer);
 
-/* The values that show, for structures that need nothing else of a transfer function. */
+/* The values that show, for structures that read nothing else from a transfer function. */
 typedef struct stratus_criterion {
   const stratus_transfer* transfer; /* if not NULL, values of opacity > 0 show. Default NULL. */
   /* If transfer is NULL, values in lower..upper show, ends included; lower <= upper, infinities allowed. Default: all values. */
   double lower, upper;
 } stratus_criterion;
 
+/* Return the criterion with its defaults: all values show. */
 STRATUS_API stratus_criterion stratus_criterion_default(void);
 
-/* Computes the world bounds of a volume: xmin xmax ymin ymax zmin zmax. */
+/* Compute the world bounds of a volume: xmin xmax ymin ymax zmin zmax. */
 STRATUS_API stratus_status stratus_volume_bounds(stratus_context* context, const stratus_volume* volume, double bounds[6]);
 
 #ifdef __cplusplus
