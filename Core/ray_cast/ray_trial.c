@@ -27,23 +27,23 @@
 /* Tiles of a trial along either axis. */
 #define ACROSS 4
 #define TILES (ACROSS * ACROSS)
-/* Where a look-up skips more samples than this, the map surely pays, and nothing is measured. A look-up reads one byte of the map, a sample
- * eight values and a table: for the map to lose, a look-up would have to take as long as 64 reads of values. This is policy, far from where
- * the two are equal, so that little hangs on it. */
+/* If a look-up skips more samples than this, the map surely pays, and nothing is measured. A look-up reads one byte of the map, a sample
+ * eight values and a table: for the map to lose, a look-up would have to take as long as 64 reads of values. This is policy. It is far from
+ * the point where both take equally long, so that little depends on it. */
 #define SURE 8
 /* A structure that has taken 1 + LOST / n^2 times the other's time in n tiles draws no more squares. It has then taken the time of n + LOST
- * / n of the other's squares. With as many as there are tiles that is TILES + 1 at most, but for what the last square took beyond: to find
- * a loser costs no more than to compare two that are as fast. */
+ * / n of the other's squares. With as many squares as there are tiles that is at most TILES + 1, plus the time by which the last square
+ * exceeded it: to find a loser costs no more than to compare two that are equally fast. */
 #define LOST ((double)TILES)
-/* Builds of other maps, and trials, may take these shares of the time that frames have taken since the transfer function changed. What
- * never pays has then cost these shares in all, and a trial or what a map's price was wrong by. The other side is that a map which makes
- * frames take 1/k of the time comes late: a camera that stops just then has paid k times what it had to. Any share trades one for the
- * other. These are policy: what frames differ by from run to run, so that nobody sees that structures are tried. */
+/* Builds of other maps, and trials, may take these shares of the time that frames have taken since the transfer function changed. A map
+ * that never pays has then cost these shares in all, plus one trial and the error of the map's price. On the other side, a map which makes
+ * frames take 1/k of the time comes late: a camera that stops just then has paid k times the necessary time. Any share trades one cost for
+ * the other. These are policy: frames differ by as much from run to run, so that nobody sees that structures are tried. */
 #define BUILD_SHARE 0.05
 #define TRIAL_SHARE 0.02
-/* Octant maps skip at least as far as a distance map, so that they lose by the cache alone. They are taken unless they are slower by this.
- * It is policy: what one trial's times are uncertain by goes to the map of fewer look-ups, and costs no more than this where it is wrong.
- */
+/* Octant maps skip at least as far as a distance map, so that only the cache can make them slower. They are used unless they are slower by
+ * this factor. It is policy: within the uncertainty of one trial's times, the map of fewer look-ups wins, and a wrong choice costs at most
+ * this factor. */
 #define OCTANTS_LOST 1.1
 /* Eight octant maps are eight sweeps over the blocks, where one distance map is one. */
 #define OCTANT_MAPS 8
@@ -62,9 +62,9 @@ typedef struct trial_job {
   int columns; /* of the picture's tiles */
   int tiles[TILES];
   double (*times)[2];     /* of each tile's square, by the better and by the other; the latter 0: it was not drawn */
-  double *whole, *wasted; /* of each tile, by the better; what the other took */
+  double *whole, *wasted; /* milliseconds of each tile by the better structure, and by the other */
   stratus_ray_counts* counts;
-  atomic_llong* spent; /* nanoseconds, likewise; then the number of tiles that both have drawn */
+  atomic_llong* spent; /* nanoseconds by both structures; then the number of tiles that both have drawn */
 } trial_job;
 
 static double time_pixels(
@@ -146,8 +146,8 @@ static int from_middle(int i, int n)
   return n / 2 + (i % 2 ? -(i + 1) / 2 : i / 2);
 }
 
-/* Spreads tiles over the window, the middle's first: the border's may be empty, and tell little. `shift`: of the columns, so that a frame's
- * second trial takes others. Returns their number. */
+/* Spread tiles over the window, the middle's first: tiles at the border may be empty, and show little. `shift`: shift of the columns, so
+ * that a frame's second trial uses other tiles. Returns the number of tiles. */
 static int place_tiles(const int window[4], int columns, int shift, const stratus_ray_drawn* drawn, int tiles[TILES])
 {
   int first[2], size[2], across[2], count = 0;
@@ -168,7 +168,7 @@ static int place_tiles(const int window[4], int columns, int shift, const stratu
   return count;
 }
 
-/* What a trial found. */
+/* The result of a trial. */
 typedef struct trial_result {
   double better, other; /* milliseconds of the squares that both have drawn */
   double frame;         /* milliseconds of a frame by the better, estimated */
@@ -252,8 +252,8 @@ void stratus_ray_tried(stratus_ray_caster* caster, double cast_ms)
   t->spent += caster->forced ? caster->forced->frame[t->with <= t->without ? t->map : STRATUS_STRUCTURE_NONE] : cast_ms;
 }
 
-/* What another map costs to build, by what the first cost and the blocks in each. A tree's origin is checked by a hash, which reads the
- * values once more, as their ranges have done. */
+/* Return the estimated time of building another map, from the first map's time and the blocks in each. A tree's origin is checked by a
+ * hash, which reads the values once more, as their ranges have done. */
 static double price_of(const stratus_ray_caster* caster, stratus_structure structure)
 {
   const stratus_ray_trial* t = &caster->trial;
@@ -266,7 +266,7 @@ static double price_of(const stratus_ray_caster* caster, stratus_structure struc
                                                : OCTANT_MAPS * t->build_ms;
 }
 
-/* Returns the map to be built in this frame; AUTO: none. frame_ms: what the frame will take. */
+/* Return the map to build in this frame; AUTO: none. frame_ms: the expected time of the frame. */
 static stratus_structure next_map(const stratus_ray_caster* caster, double frame_ms)
 {
   const stratus_ray_trial* t = &caster->trial;
@@ -326,7 +326,7 @@ static stratus_status try_map(
   *frame->arguments = other;
   t->lost = t->map;
   t->map = structure;
-  /* what was measured of the old map, or of none, stands for the new */
+  /* scale the old map's measured time, or the time without a map, to the new map */
   t->with = (skips ? t->with : t->without) * fmin(result.other / result.better, 1.0);
   return STRATUS_OK;
 }

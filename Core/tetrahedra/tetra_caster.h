@@ -30,7 +30,7 @@ struct stratus_tetra_mesh {
   float* cell_values; /* a fetched value per cell, in the order of `cells`, of a lattice at first corners; NULL: values belong to points */
   uint8_t* shown;     /* stratus_tetra_show per mesh cell; NULL: a lattice */
   uint32_t* at;       /* the mesh cell at each place of `cells`; NULL: values belong to points */
-  int8_t* nominal;    /* per mesh cell, during the build only: its orientation, of flat cells that of their neighbours; 0: none */
+  int8_t* nominal;    /* per mesh cell, during the build only: its orientation, of flat cells their neighbours' orientation; 0: none */
   stratus_tetra_face* faces;
   size_t face_count;
   double lo[3], hi[3]; /* bounds of the points that shown cells use, in local coordinates */
@@ -42,13 +42,13 @@ struct stratus_tetra_mesh {
   size_t bytes;
 };
 
-/* Gradients at points, made when light or gradient opacity first asks for them, and dropped with the values. */
+/* Gradients at points. They are made when light or gradient opacity first needs them, and dropped with the values. */
 typedef struct stratus_tetra_gradients {
   /* in local coordinates, four floats a point in the order of `names`, the fourth 0, set after set; NULL: none */
   float* vectors;
   unsigned mask;                         /* bit c: component c has a set */
   int sets, set[STRATUS_COMPONENTS_MAX]; /* of a component, -1: none */
-  double unit[STRATUS_COMPONENTS_MAX];   /* by what a component's are multiplied */
+  double unit[STRATUS_COMPONENTS_MAX];   /* factor of a component's gradients */
   double spacing;                        /* the edge of a cube that six cells of the mean volume fill */
   size_t bytes;
 } stratus_tetra_gradients;
@@ -62,7 +62,7 @@ typedef struct stratus_tetra_components {
   int sums_at[4];
   float last[4], depth_scale[4];
   bool has_opaque[4], shown;
-  bool dependent;              /* what this was made from, as the next */
+  bool dependent;              /* inputs from which the tables were made, as are the next fields */
   stratus_transfer* transfers; /* copies */
   int transfer_count;
   uint64_t values; /* the caster's value_builds */
@@ -71,7 +71,7 @@ typedef struct stratus_tetra_components {
 /* How values are drawn: the tables of a transfer function. */
 typedef struct stratus_tetra_look {
   stratus_transfer* transfer; /* a copy */
-  stratus_tetra_mode mode;    /* what the tables are made for, as the next */
+  stratus_tetra_mode mode;    /* mode of the tables, as is the next field */
   double average_range[2];
   stratus_table* table; /* NULL: none yet */
   int32_t* sums;        /* stratus_tetra_sums(), or stratus_tetra_value_sums() */
@@ -79,8 +79,8 @@ typedef struct stratus_tetra_look {
 
 #define STRATUS_TETRA_PARTS 3 /* components beyond the first */
 
-/* Another component than the first, where each is drawn by itself: what takes the place of the same of a stratus_tetra_mesh and a caster.
- */
+/* Data of a component other than the first, if each is drawn by itself. Its fields replace the fields of the same name of a
+ * stratus_tetra_mesh and a caster. */
 typedef struct stratus_tetra_part {
   float* values; /* NULL: none yet */
   float low, high;
@@ -105,15 +105,15 @@ struct stratus_tetra_caster {
   stratus_tetra_buffers buffers;
   stratus_tetra_gradients gradients;
   float* factors;                     /* the gradient opacities of components, STRATUS_SHADING_FACTORS + 2 each; NULL: none */
-  stratus_transfer* factor_transfers; /* copies of what they were made from */
-  int factor_count;                   /* of these */
+  stratus_transfer* factor_transfers; /* copies of the functions from which they were made */
+  int factor_count;                   /* number of these copies */
   float factor_scale[STRATUS_COMPONENTS_MAX];
   stratus_tetra_components components;
   uint64_t mesh_builds, value_builds, table_builds, gradient_builds, component_builds;
-  const stratus_tetra_costs* costs; /* taken instead of what was measured, for tests; NULL: none */
+  const stratus_tetra_costs* costs; /* costs used instead of measured ones, for tests; NULL: none */
 };
 
-/* What is drawn, and how. */
+/* The input of a render. */
 typedef struct stratus_tetra_subject {
   const stratus_mesh* mesh;
   const stratus_transfer* transfer;
@@ -125,7 +125,8 @@ typedef struct stratus_tetra_subject {
 stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera,
   const stratus_image* image, stratus_tetra_frame* frame, bool* shows, stratus_tetra_report* report);
 
-/* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. The hash is that of what neighbours, planes and orders follow from. */
+/* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. The hash covers the data from which neighbours, planes and orders
+ * follow. */
 uint64_t stratus_tetra_hash(const stratus_context* context, const stratus_mesh* mesh);
 stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);
 void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
@@ -163,8 +164,8 @@ void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_o
 stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus_tetra_options* options, const stratus_mesh* mesh);
 /* Whether nothing but marching draws with these options. */
 bool stratus_tetra_modes_march(const stratus_tetra_options* options);
-/* Sums for average and additive in the layout of stratus_tetra_sums(): of opacity times value, of opacity, nothing, and of what counts. A
- * value is a fraction of the range of `values`. */
+/* Sums for average and additive in the layout of stratus_tetra_sums(): of opacity times value, of opacity, nothing, and of the entries that
+ * count. A value is a fraction of the range of `values`. */
 stratus_status stratus_tetra_value_sums(
   stratus_context* context, const stratus_table* table, const stratus_table_values* values, const double range[2], int32_t** sums);
 /* Sets mode, contours and planes of a frame whose table is set. */
@@ -195,8 +196,7 @@ stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, con
   const stratus_tetra_options* options, double* ms);
 void stratus_tetra_components_drop(stratus_tetra_caster* caster);
 void stratus_tetra_frame_components(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_tetra_options* options);
-/* tetra_parts.c: makes the tables of the caster's mesh where its look is not that of this function, mode and range; else made->table is
- * NULL. */
+/* tetra_parts.c: make the tables of the caster's mesh if its look has another function, mode or range; otherwise made->table is NULL. */
 stratus_status stratus_tetra_look_update(
   stratus_tetra_caster* caster, const stratus_transfer* transfer, const stratus_tetra_options* options, stratus_tetra_look* made);
 void stratus_tetra_look_drop(stratus_context* context, stratus_tetra_look* look);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The visibility order's structures, and what its files offer one another.
+ * The visibility order's structures, and the functions that its files share.
  *
  * A view decides for each inner face which of its two cells comes before the other: a relation. Peeling a leaf of the K-D tree lists its
  * cells so that all relations hold. A cycle of relations, here a ring, has no such list, and loses a relation.
  *
- * A gap is empty space between cells of a leaf, which a ray can cross. A gate is a border face at a gap. Rays leave the cells at a gate
- * that is a way out, and come back into them at one that is a way in: the way out's cell has to come before the way in's. */
+ * A gap is empty space between cells of a leaf, which a ray can cross. A gate is a border face at a gap. Rays leave the cells at an exit
+ * gate (way_out), and come back into them at an entry gate (way_in): the exit's cell has to come before the entry's cell. */
 #ifndef STRATUS_VISIBILITY_ORDER_H
 #define STRATUS_VISIBILITY_ORDER_H
 
@@ -48,9 +48,9 @@ typedef struct stratus_view {
 
 /* A border face at a gap, in one view. */
 typedef struct stratus_gate {
-  float low, high; /* its points' depths lie between them */
+  float low, high; /* its points' depths are between them */
   float box[4];    /* its extent in the view, if only one side sees it: umin umax vmin vmax */
-  int8_t facing;   /* 1: a way out, -1: a way in, 0: seen edge-on, or cut from a ring */
+  int8_t facing;   /* 1: exit, -1: entry, 0: seen edge-on, or cut from a ring */
   uint8_t passed;  /* its cell is listed */
   uint8_t sides;   /* a bit for each of the view's sides that sees it */
 } stratus_gate;
@@ -86,7 +86,7 @@ struct stratus_visibility_order {
   uint32_t* listed;     /* the mesh's cell at each place; NULL: the same. Arrays below name cells by place, except `cells` */
   int32_t* neighbours;  /* 4 a cell: its leaf's cell behind each face; the cell itself at the leaf's border */
   uint8_t* sides;       /* bit f: face f has a neighbour. Bits 4 and 5: stratus_order_side() + 1 */
-  uint8_t* state;       /* of a view, for border faces too. Bit f: what is behind face f comes after the cell; bit 4 + f: before it */
+  uint8_t* state;       /* of a view, for border faces, too. Bit f: the cell behind face f comes after the cell; bit 4 + f: before it */
   uint8_t* waiting;     /* how far peeling is with each cell: each method has a code of its own */
   int64_t* leaf_begin;  /* leaf_count + 1 */
   int32_t* leaf_order;  /* leaves, front to back */
@@ -117,7 +117,7 @@ struct stratus_visibility_order {
   stratus_visibility_result result;
 };
 
-/* Goes on with other arrays of the content that the order was made from: those of `mesh`. */
+/* Continue with `mesh`'s arrays, which have the same content as the arrays from which the order was made. */
 void stratus_visibility_order_rebase(stratus_visibility_order* order, const stratus_mesh* mesh);
 
 #define STRATUS_LEAVES_MAX 65536
@@ -253,8 +253,8 @@ static inline void stratus_gate_points(const stratus_gates* gates, int64_t gate,
 }
 
 stratus_status stratus_gates_allocate(stratus_visibility_order* order, int64_t gaps);
-#define STRATUS_GATE_IN 0x80u  /* in `waiting`: some gate of the cell is a way in */
-#define STRATUS_GATE_OUT 0x40u /* some gate of the cell is a way out */
+#define STRATUS_GATE_IN 0x80u  /* in `waiting`: some gate of the cell is an entry */
+#define STRATUS_GATE_OUT 0x40u /* some gate of the cell is an exit */
 
 /* Begins a leaf in a view whose signs are known, and marks cells in `waiting` by their gates. */
 void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, int32_t leaf);
@@ -276,13 +276,13 @@ bool stratus_gate_lies_before(const stratus_gates* gates, int64_t a, int64_t b);
 void stratus_gate_see(const stratus_gates* gates, stratus_gate* gate, const stratus_view_point points[3]);
 /* Builds the nodes over all gates, after stratus_gate_see() of each that is not edge-on. */
 void stratus_gates_build_tree(stratus_gates* gates);
-/* A way out that hides the way in and belongs to another cell, one not listed yet; -1: none. */
+/* Return an exit that hides the entry and belongs to another cell that is not listed yet; -1: none. */
 int64_t stratus_gates_search(stratus_gates* gates, int64_t way_in);
 void stratus_gates_take_from_tree(stratus_gates* gates, int64_t way_out);
 
 /* ---- visibility_signs.c: finds all cells' state, and relations_changed. Returns how many signs needed exact arithmetic. */
 int64_t stratus_order_find_signs(stratus_visibility_order* order, const stratus_view* view);
-/* Makes `seen` alone. */
+/* Make only `seen`. */
 void stratus_order_see_points(stratus_visibility_order* order, const stratus_view* view);
 /* The exact sign of face_determinants() for a face. */
 int stratus_order_exact_sign(const stratus_visibility_order* order, const stratus_view* view, uint32_t cell, int face);
@@ -332,7 +332,7 @@ static inline int64_t stratus_order_seed_count(int64_t cells)
   return (cells + STRATUS_SEED_CELLS - 1) / STRATUS_SEED_CELLS;
 }
 
-/* Fills seeds with those of a leaf, nearest first. */
+/* Fill `seeds` with a leaf's seeds, nearest first. */
 void stratus_order_sort_seeds(const stratus_visibility_order* order, int32_t leaf, stratus_order_seed* seeds);
 
 #endif

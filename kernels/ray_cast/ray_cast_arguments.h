@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What one frame tells every ray, in structs by use: scalars of four bytes only, the same bytes on host and device. Positions are index
- * coordinates. Lengths along a ray are in samples (sample distances) unless a comment says otherwise. */
+ * The arguments of one frame that every ray reads, in structs by use: scalars of four bytes only, the same bytes on host and device.
+ * Positions are index coordinates. Lengths along a ray are in samples (sample distances) unless a comment says otherwise. */
 #ifndef STRATUS_RAY_CAST_ARGUMENTS_H
 #define STRATUS_RAY_CAST_ARGUMENTS_H
 
@@ -11,8 +11,8 @@
 
 #define STRATUS_CLIP_MAX 6
 
-/* What few frames have. A device builds its kernel with what the frame has of these (RAY_HAS), which takes half of the time of all of them.
- * rarities() in ray_cast_device.c tells what a frame has. */
+/* Features that few frames have. A device builds its kernel with the features that the frame has (RAY_HAS), which takes half of the time of
+ * building all of them. rarities() in ray_cast_device.c returns a frame's features. */
 #define RAY_REGIONS 0x001    /* crop regions */
 #define RAY_CLIP 0x002       /* clip planes */
 #define RAY_PIECE 0x004      /* a piece of a volume */
@@ -45,15 +45,15 @@
 /* A field of the arguments, which is 0 where the frame has none of `what`. */
 #define RAY_RARE(what, field) (RAY_HAS & (what) ? (field) : 0)
 
-/* has_hidden: what the hidden bytes hold. The mask comes first, a byte for each value, 0 where it hides the value; then a byte for each
- * cell, 1 where the cell is hidden. */
+/* has_hidden: the contents of the hidden bytes. The mask comes first, a byte for each value, 0 where it hides the value; then a byte for
+ * each cell, 1 where the cell is hidden. */
 #define HIDDEN_CELLS 1
 #define HIDDEN_BY_MASK 2
 #define HIDDEN_LABELS 4 /* the mask's bytes are labels and hide nothing */
 
 #define STRATUS_CONTOURS_MAX 16
 
-/* What a ray makes of its samples (STRATUS_RAY_MODE). */
+/* How a ray combines its samples (STRATUS_RAY_MODE). */
 #define STRATUS_RAY_COMPOSITE 0  /* light behind light */
 #define STRATUS_RAY_EXTREMES 1   /* the largest or smallest value */
 #define STRATUS_RAY_SUMS 2       /* the mean or the sum of values */
@@ -83,11 +83,12 @@ typedef struct stratus_ray_lattice {
   stratus_pair reach;    /* as many samples as reach beyond the volume's farthest corner */
   stratus_pair per_step; /* 1 / sample distance, in the world */
   float step;            /* the sample distance as a float, for depth */
-  float pieces_per_bend; /* cells: the square of the number of pieces of a way, over the field's largest second derivative on it */
-  int jitter, seed;      /* jitter 1: each ray's lattice lies farther from the eye by a part of a sample, which pixel and seed decide */
+  /* cells: the square of the number of pieces of a path through a cell, over the field's largest second derivative on it */
+  float pieces_per_bend;
+  int jitter, seed; /* jitter 1: each ray's lattice lies farther from the eye by a part of a sample, which pixel and seed decide */
 } stratus_ray_lattice;
 
-/* What bounds leave of a ray. */
+/* The bounds that cut rays. */
 typedef struct stratus_ray_crop {
   stratus_pair box[2][3];   /* bounds, crop included, drawn in by a hair so that rounding keeps every sample inside */
   stratus_pair piece[2][3]; /* the part that this piece owns: a segment belongs to it if its middle does */
@@ -99,7 +100,7 @@ typedef struct stratus_ray_crop {
   int regions; /* the regions between the planes that are shown: bit x + 3 y + 9 z, each 0..2; 0: there are none, and the box is all */
 } stratus_ray_crop;
 
-/* The volume's values and how they lie in memory. */
+/* The volume's values and their layout in memory. */
 typedef struct stratus_ray_values {
   float last[3]; /* the largest position along each axis, which `clamp` clamps to, and grids */
   int clamp;     /* 1 for cell_centered volumes: positions are clamped to 0..last */
@@ -114,7 +115,7 @@ typedef struct stratus_ray_values {
   int pages_across, pages_rows, page_components; /* of the page table: pages in a row, rows in a slice; and components in a page */
 } stratus_ray_values;
 
-/* The structure that tells which segments need no samples. */
+/* The structure that marks the segments that need no samples. */
 typedef struct stratus_ray_map {
   int structure;        /* 0: march without */
   float occupied[2][3]; /* the box of the occupied blocks; unbounded where it ends with the volume */
@@ -147,13 +148,13 @@ typedef struct stratus_ray_mode {
   float sign, top;                   /* extremes: 1 for maxima, -1 for minima, and sign times the value that none passes */
   float counted_first, counted_last; /* sums: the values that count, ends included */
   float grey_scale, grey_offset;     /* sums: the grey of a value is value * scale + offset */
-  float sum_scale;                   /* sums: what multiplies a sum over samples; 0: the mean is shown */
+  float sum_scale;                   /* sums: factor of a sum over samples; 0: the mean is shown */
   int sum;                           /* 1: rays show something wherever they meet the bounds */
   int contour_count;
   float contour[STRATUS_CONTOURS_MAX][5]; /* isosurfaces, sorted by value: value, colour times opacity, opacity */
 } stratus_ray_mode;
 
-/* Shading by several tables: each component and each label has a table of its own, and each component a gradient opacity. All stand in one
+/* Shading by several tables: each component and each label has its own table, and each component its own gradient opacity. All are in one
  * array of floats. */
 typedef struct stratus_ray_media {
   int components;                     /* 0 and 1: one value */

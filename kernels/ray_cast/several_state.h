@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a packet of rays through several volumes holds: of each volume what all rays read, and where its rays are.
- */
+ * The state of a packet of rays through several volumes: the data of each volume that all rays read, and the rays' places in it. */
 #ifndef STRATUS_SEVERAL_STATE_H
 #define STRATUS_SEVERAL_STATE_H
 
@@ -9,7 +8,7 @@
 #ifndef STRATUS_DEVICE
 #include "tetra_tile.h"
 #endif
-/* 1: some volume has rays that go from cell to cell. A device compiles what these need only then. */
+/* 1: some volume has rays that go from cell to cell. A device compiles the code for them only then. */
 #ifndef SEVERAL_CELLS
 #define SEVERAL_CELLS 1
 #endif
@@ -33,7 +32,7 @@
 #define SEVERAL_MOST 8
 #endif
 #define SEVERAL_NEVER 0x7fffffff
-/* Where the way is of a ray that has no stretch left. */
+/* Place of a ray that has no stretch left. */
 #define SEVERAL_BEYOND 1e30f
 /* Segments between a ray's places are ints. */
 #define SEVERAL_SEGMENTS_MOST 1e9
@@ -56,7 +55,7 @@ typedef void several_gradient(
 typedef void several_corners(CONSTANT stratus_ray_cast_arguments* a, value_source values, const vint at[3], vmask mask, vfloat v[8]);
 typedef void several_nearest(CONSTANT stratus_ray_cast_arguments* a, value_source values, const vint at[3], vmask mask, vfloat* value);
 
-/* What a sample of several media shows: RAY_NAME(several_media). */
+/* The colour and opacity of a sample of several media: RAY_NAME(several_media). */
 typedef void several_media(CONSTANT stratus_ray_cast_arguments* a, int media, float segment, GLOBAL const void* table,
   const stratus_packet* k, const stratus_sample* sample, vfloat rate[4]);
 
@@ -71,7 +70,7 @@ typedef struct several_reading {
 #endif
 
 #ifndef STRATUS_DEVICE
-/* What all rays read of a mesh of tetrahedra: its frame, and how their z goes over to segments of the lattice. */
+/* The data of a mesh of tetrahedra that all rays read: its frame, and the numbers that turn its z into segments of the lattice. */
 typedef struct several_mesh {
   stratus_tetra_view view;
   const stratus_tetra_arguments* a;
@@ -87,14 +86,14 @@ typedef struct several_mesh_rays {
 } several_mesh_rays;
 #endif
 
-/* What all rays read of a volume. */
+/* The data of a volume that all rays read. */
 typedef struct several_source {
   CONSTANT stratus_ray_cast_arguments* a;
   value_source values;
   GLOBAL const uchar *hidden, *map, *rough;
   GLOBAL const int* grid;
-  /* Pre-integrated: running sums. Midpoint: for each entry its colour times optical depth, and optical depth, of a segment's length; and
-   * with light or gradient opacity, what these read besides. */
+  /* table: pre-integrated, the running sums; midpoint, for each entry its colour times optical depth, and its optical depth, over one
+   * segment. besides: with light or gradient opacity, the tables that these read. */
   GLOBAL const void *table, *besides;
 #ifndef STRATUS_DEVICE
   const several_reading* read;
@@ -102,28 +101,29 @@ typedef struct several_source {
 #endif
   int stride;        /* segments of the lattice to a sample of this volume, at least 1 */
   int lit;           /* 1: it has light or gradient opacity */
-  int cells;         /* how its rays go */
-  int media;         /* what its samples are more than one value's colour and opacity by; 0: nothing */
-  float segment;     /* media: a segment's length in samples, of which its table is */
-  int preintegrated; /* 1: between the values at both ends of a sample's way; 0: by the value in its middle */
+  int cells;         /* SEVERAL_BY_SAMPLES, SEVERAL_BY_CELLS or SEVERAL_LOCAL */
+  int media;         /* SEVERAL_COMPONENTS, SEVERAL_LABELS or SEVERAL_FUNCTION_2D; 0: each sample is one value's colour and opacity */
+  float segment;     /* media: a segment's length in samples, for which its table is made */
+  int preintegrated; /* 1: a sample is integrated between the values at both ends of its path; 0: it has the value in the middle */
 } several_source;
 
-/* What a volume shows from `lo` to `hi` on each ray. Places are in segments from the one in which the ray enters the volume. */
+/* A path: the part of each ray from `lo` to `hi`, and what a volume shows on it. Places are in segments from the segment in which the ray
+ * enters the volume. */
 typedef struct several_way {
-  vfloat lo, hi, front, rise; /* the field goes from `front` at lo to `front` + `rise` at hi */
-  vfloat rate[4];             /* colour times optical depth, and optical depth, of a segment's length */
-  vfloat entries;             /* of the table, for each segment's length of the way */
+  vfloat lo, hi, front, rise; /* the field changes from `front` at lo to `front` + `rise` at hi */
+  vfloat rate[4];             /* colour times optical depth, and optical depth, for one segment's length */
+  vfloat entries;             /* entries of the table for each segment's length of the path */
   vmask stops;                /* rays that end at hi, in the colour `wall` */
   vfloat wall[3];
-  stratus_lit_sample lighting; /* set where the volume has light or gradient opacity */
+  stratus_lit_sample lighting; /* set if the volume has light or gradient opacity */
 } several_way;
 
 #if SEVERAL_CELLS
-/* Where rays are that go from cell to cell, at least in rough blocks. In all others walk.s is where the next sample begins. */
+/* State of rays that go from cell to cell, at least in rough blocks. In smooth blocks walk.s is where the next sample begins. */
 typedef struct several_cells_rays {
-  cell_walk walk; /* its end is that of the run that rays are on */
+  cell_walk walk; /* its end is the end of the run that rays are on */
   cell_way way;   /* through the cell where the walk is */
-  vmask waiting;  /* rays that have pieces left of their way */
+  vmask waiting;  /* rays that have pieces of `way` left */
   vmask rough;    /* rays that go from cell to cell */
   vfloat end;     /* where rays end */
   vint phase;     /* segments from the beginning of a sample to the one in which a ray enters */
@@ -131,16 +131,16 @@ typedef struct several_cells_rays {
 #endif
 
 typedef struct several_volume {
-  stratus_packet k; /* the rays as this volume has them */
-  vint offset;      /* the packet's number of the segment in which a ray enters */
-  int phase;        /* segments from the beginning of a sample's way to the packet's first */
-  int next, run;    /* the segment at which a sample or a look-up is due; before `run` the structure need not be asked */
+  stratus_packet k; /* the rays in this volume's coordinates */
+  vint offset;      /* the packet's number for the segment in which a ray enters */
+  int phase;        /* segments from the beginning of a sample's path to the packet's first segment */
+  int next, run;    /* the segment at which a sample or a look-up is due; before `run` the structure need not be read */
   int last;         /* the first segment behind all rays' ends */
-  vfloat ahead;     /* pre-integrated: the value at the end of the way, which is the next one's front */
-  vmask knows;      /* the rays that have it */
+  vfloat ahead;     /* pre-integrated: the value at the path's end, which is the front value of the next path */
+  vmask knows;      /* the rays for which `ahead` is known */
   several_way ways[2];
-  int now;          /* which of them is the way that rays are on; the other is the coming one */
-  int shows, comes; /* whether anything shows on these */
+  int now;          /* index in `ways` of the path that rays are on; the other is the coming path */
+  int shows, comes; /* whether anything shows on the present path, and on the coming one */
 #if SEVERAL_CELLS
   several_cells_rays cells;
 #endif
@@ -149,7 +149,7 @@ typedef struct several_volume {
 #endif
 } several_volume;
 
-/* Whether its ways are stretches that begin and end within segments: those of a mesh, or of a volume by cells. */
+/* Whether its paths are stretches that begin and end within segments: paths through a mesh, or through a volume cell by cell. */
 INLINE int several_has_stretches(const several_source* from)
 {
 #ifdef STRATUS_DEVICE
@@ -203,7 +203,7 @@ INLINE vfloat several_nearest_at(const several_source* from, const vint at[3], v
 #endif
 
 #if SEVERAL_MEDIA
-/* What samples show over a segment's length, on the live rays of k. */
+/* Fill `rate` with what samples show over a segment's length, on the live rays of k. */
 INLINE void several_media_at(const several_source* from, const stratus_packet* k, const stratus_sample* sample, vfloat rate[4])
 {
 #ifdef STRATUS_DEVICE
@@ -229,7 +229,7 @@ INLINE int several_least(vint a, vmask mask)
 #endif
 }
 
-/* Where the way of the sample begins in which segment i is. */
+/* Return the segment in which the path of segment i's sample begins. */
 INLINE int several_aligned(const several_source* from, const several_volume* v, int i)
 {
   return i == SEVERAL_NEVER || from->stride == 1 ? i : i - (i + v->phase) % from->stride;

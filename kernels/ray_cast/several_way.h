@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What one of several volumes shows on the way of a sample.
- */
+ * The colour and optical depth of one of several volumes on a sample's path. */
 #ifndef STRATUS_SEVERAL_WAY_H
 #define STRATUS_SEVERAL_WAY_H
 
@@ -23,7 +22,7 @@ INLINE void several_cut(CONSTANT stratus_table_arguments* t, vmask mask, several
   }
 }
 
-/* Ends the way before an entry of opacity 1. Returns the lanes whose way has no other entries before it. */
+/* End the path before an entry of opacity 1. Returns the lanes whose path has no other entries before it. */
 INLINE vmask several_stop(
   CONSTANT stratus_table_arguments* t, GLOBAL const int* sums, vmask mask, vint front, vint* entry, several_way* way)
 {
@@ -50,7 +49,7 @@ INLINE vmask several_stop(
   return at_once;
 }
 
-/* How light and gradient change the way, by the gradient in its middle. */
+/* Compute how light and gradient opacity change the path, by the gradient in its middle. */
 INLINE void several_light(const several_source* from, const stratus_packet* k, vmask mask, several_way* way)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
@@ -71,7 +70,7 @@ INLINE void several_light(const several_source* from, const stratus_packet* k, v
   }
 }
 
-/* Lights what a segment's length of a way shows. */
+/* Apply light and gradient opacity to a path's colour and optical depth of one segment. */
 INLINE void several_light_rate(const several_way* way, vmask mask, vfloat rate[4])
 {
   light_layer(&way->lighting, rate);
@@ -86,7 +85,8 @@ typedef struct several_end {
   vint entry;
 } several_end;
 
-/* What a segment's length of a way between two values shows. across: the width of what its colour may go through. */
+/* Compute the colour and optical depth of one segment's length of a path between two values. across: the width of the entries that its
+ * colour may pass through. */
 INLINE vmask several_rate(const several_source* from, const several_way* way, const several_end* begin, const several_end* end, vmask mask,
   vfloat rate[4], vfloat* across)
 {
@@ -123,7 +123,7 @@ INLINE vmask several_rate(const several_source* from, const several_way* way, co
 }
 
 #if SEVERAL_MEDIA
-/* Makes the coming way one of what several media show in its middle. */
+/* Make the coming path from several media, sampled in its middle. */
 INLINE void several_shade_media(const several_source* from, several_volume* v, vmask mask)
 {
   several_way* way = &v->ways[1 - v->now];
@@ -142,7 +142,7 @@ INLINE void several_shade_media(const several_source* from, several_volume* v, v
 }
 #endif
 
-/* Makes the coming way one of the value in its middle. */
+/* Make the coming path from the value in its middle. */
 INLINE void several_shade_middle(const several_source* from, several_volume* v, vmask mask)
 {
   several_way* way = &v->ways[1 - v->now];
@@ -157,7 +157,7 @@ INLINE void several_shade_middle(const several_source* from, several_volume* v, 
   }
 }
 
-/* Puts the rays of the mask on the way that comes. */
+/* Move the rays of the mask to the coming path. */
 INLINE void several_take(several_volume* v, vmask mask)
 {
   several_way* way = &v->ways[v->now];
@@ -176,7 +176,7 @@ INLINE void several_take(several_volume* v, vmask mask)
   way->stops = m_andnot(way->stops, mask) | (next->stops & mask);
 }
 
-/* Makes the coming way of what the field does on it, in the lanes of the mask. */
+/* Make the coming path from the field's values at its ends, in the lanes of the mask. */
 INLINE void several_shade(const several_source* from, several_volume* v, vmask mask)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
