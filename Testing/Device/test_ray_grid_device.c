@@ -59,7 +59,7 @@ static void compare(bool one_ray)
   stratus_context* device = case_context("0", 2);
   assert_true(stratus_context_on_device(device));
   device->device->is_cpu = !one_ray;
-  for (int look = MIDPOINT; look < LOOKS; look += few_run() ? 4 : one_ray ? 3 : 1) {
+  for (int look = MIDPOINT; look < LOOKS; look += few_run() ? 5 : one_ray ? 3 : 1) {
     picture_case c;
     grid_case grid;
     make_look(host, (grid_look)look, &c, &grid);

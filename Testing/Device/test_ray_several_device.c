@@ -131,7 +131,7 @@ static void compare(compared what, bool one_ray)
   stratus_context* device = case_context("0", 2);
   assert_true(stratus_context_on_device(device));
   device->device->is_cpu = !one_ray;
-  for (uint32_t seed = 0; seed < seeds[what]; seed += one_ray && what == PLAIN ? 5 : one_ray || few_run() ? 3 : 1) {
+  for (uint32_t seed = 0; seed < seeds[what]; seed += few_run() ? 9 : one_ray && what == PLAIN ? 5 : one_ray ? 3 : 1) {
     several_case m;
     grid_case grid;
     if (what == PLAIN) {

@@ -367,6 +367,6 @@ int test_tetra_device(void)
     wider = 2.5;
     return cmocka_run_group_tests(few, NULL, NULL);
   }
-  seeds = few_run() ? 4 : seeds;
+  seeds = few_run() ? 3 : seeds;
   return cmocka_run_group_tests(all, NULL, NULL);
 }

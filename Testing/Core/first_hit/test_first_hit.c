@@ -2,6 +2,7 @@
  * First hits through every tree, compared with a walk from voxel to voxel in double precision. */
 #include "first_hits.h"
 #include "tree.h"
+#include "testing.h"
 
 #define RAYS 600
 
@@ -35,7 +36,7 @@ static void every_tree_hits_what_the_walk_hits(void** state)
   uint32_t random = 1;
   for (int isa = 0; isa <= 2; ++isa) {
     stratus_context* context = host_with_isa(isa, 1 + isa % 2);
-    for (int round = 0; round < 30; ++round) {
+    for (int round = 0; round < (few_run() ? 8 : 30); ++round) {
       int64_t dimensions[3];
       for (int a = 0; a < 3; ++a) {
         dimensions[a] = 1 + (int64_t)(unit_random(&random) * (round % 3 == 0 ? 9 : 70));
@@ -114,7 +115,7 @@ static void beams_hit_what_the_walk_hits(void** state)
     uint32_t random = 11;
     uint64_t steps = 0, alone = 0;
     stratus_context* context = host_with_isa(isa, 1);
-    for (int round = 0; round < 80; ++round) {
+    for (int round = 0; round < (few_run() ? 24 : 80); ++round) {
       int64_t dimensions[3];
       for (int a = 0; a < 3; ++a) {
         dimensions[a] = 1 + (int64_t)(unit_random(&random) * (round % 7 == 0 ? 9 : 150));

@@ -4,6 +4,7 @@
 #include "components_case.h"
 #include "several_case.h"
 #include "transfer_2d_case.h"
+#include "testing.h"
 
 /* dB against the reference at steps of a fifth of a unit, where voxels are .5 to 2.5 units. */
 #define MEDIA_DB 60.0
@@ -59,7 +60,7 @@ static void components_mix_as_the_reference_does(void** state)
 {
   static const stratus_type types[] = { STRATUS_FLOAT32, STRATUS_UINT8, STRATUS_INT16, STRATUS_FLOAT64, STRATUS_UINT8, STRATUS_UINT8 };
   static const int counts[] = { 2, 3, 4, 3, 2, 4 }, dependent[] = { 0, 0, 0, 0, 1, 1 };
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 6; i += few_run() ? 2 : 1) {
     several_case m;
     many of;
     char what[64];
@@ -85,7 +86,7 @@ static void labels_mix_as_the_reference_does(void** state)
   for (size_t v = 0; v < sizeof labels; ++v) {
     labels[v] = (uint8_t)((v % 24 / 7 + v / 24 % 22 / 5 + v / 24 / 22 / 6) % 4);
   }
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; i += few_run() ? 2 : 1) {
     several_case m;
     many of;
     several_create(*state, &m, 2, 820 + (uint32_t)i);
@@ -114,7 +115,7 @@ static void labels_mix_as_the_reference_does(void** state)
 
 static void functions_of_two_variables_mix_as_the_reference_does(void** state)
 {
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 4; i += few_run() ? 3 : 1) {
     several_case m;
     const int n = i % 2;
     several_create(*state, &m, 2, 840 + (uint32_t)i);
@@ -173,7 +174,7 @@ static void an_empty_volume_changes_nothing(void** state)
 /* Automatic steps keep the tolerance of the whole picture. */
 static void automatic_sampling_keeps_the_tolerance(void** state)
 {
-  for (uint32_t seed = 0; seed < 3; ++seed) {
+  for (uint32_t seed = 0; seed < 3; seed += few_run() ? 2 : 1) {
     several_case m;
     many of;
     several_create(*state, &m, 2, 880 + seed);

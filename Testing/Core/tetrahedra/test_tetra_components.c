@@ -4,6 +4,7 @@
 #include "tetra_light_case.h"
 
 #include "tetra_caster.h"
+#include "testing.h"
 
 #define COMPONENTS 4
 #define STEPS 200
@@ -260,7 +261,7 @@ static void compare_with_reference(stratus_context* context, several* s, uint32_
 /* Light and opacity by gradients are cut into pieces by bounds, within the same tolerance. */
 static void lit_components_are_right(void** state)
 {
-  for (uint32_t seed = 0; seed < 16; ++seed) {
+  for (uint32_t seed = 0; seed < 16; seed += few_run() ? 5 : 1) {
     several s;
     const int kind = (int)(seed % 4); /* independent, their mean, 2 and 4 dependent */
     create(&s, 3, kind == 3 ? 4 : kind == 2 ? 2 : 2 + (int)(seed / 4) % 3, kind == 3, seed);
@@ -281,7 +282,7 @@ static void lit_components_are_right(void** state)
 
 static void components_are_right(void** state)
 {
-  for (uint32_t seed = 0; seed < 12; ++seed) {
+  for (uint32_t seed = 0; seed < 12; seed += few_run() ? 5 : 1) {
     several s;
     const int kind = (int)(seed % 4); /* independent, their mean, 2 and 4 dependent */
     create(&s, 3, kind == 3 ? 4 : kind == 2 ? 2 : 2 + (int)(seed / 4), kind == 3, seed);
@@ -359,7 +360,7 @@ static void add_references(several* s, double* known)
 static void modes_of_components_are_right(void** state)
 {
   static double known[4 * TETRA_PIXELS];
-  for (uint32_t seed = 0; seed < 16; ++seed) {
+  for (uint32_t seed = 0; seed < 16; seed += few_run() ? 5 : 1) {
     several s;
     const stratus_tetra_mode mode = (stratus_tetra_mode)(STRATUS_TETRA_MAXIMUM + seed % 4);
     create(&s, 3, 2 + (int)(seed / 4) % 3, seed / 4 == 2, seed);
@@ -429,7 +430,7 @@ static void modes_follow_one_another(void** state)
 static void lattices_threads_and_sets_agree(void** state)
 {
   stratus_context* context = *state;
-  for (uint32_t seed = 1; seed < 8; ++seed) {
+  for (uint32_t seed = 1; seed < 8; seed += few_run() ? 3 : 1) {
     several s;
     create(&s, 4, seed == 4 ? 4 : 2, seed == 4, seed == 3 || seed == 6 ? 5 : seed);
     s.whole.options.dependent = seed == 3 || seed == 4;

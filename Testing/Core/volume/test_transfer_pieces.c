@@ -4,6 +4,7 @@
 #include "structures.h"
 
 #include "transfer_pieces.h"
+#include "testing.h"
 
 static const double white[4] = { 0, 1, 1, 1 };
 
@@ -91,7 +92,7 @@ static void extremes_are_those_of_all_points(void** state)
   uint32_t random = 7;
   (void)state;
   stratus_context* context = make_context("host", 1);
-  for (int pass = 0; pass < 10000; ++pass) {
+  for (int pass = 0; pass < (few_run() ? 2000 : 10000); ++pass) {
     random_function f;
     stratus_pieces* pieces = NULL;
     make_function(&f, 100.0, &random);
@@ -135,7 +136,7 @@ static void tables_take_the_function_at_every_value(void** state)
   int64_t hidden = 0, shown = 0;
   (void)state;
   stratus_context* context = make_context("host", 1);
-  for (int pass = 0; pass < 600; ++pass) {
+  for (int pass = 0; pass < (few_run() ? 100 : 600); ++pass) {
     random_function f;
     make_function(&f, 100.0, &random);
     for (int sampling = STRATUS_SAMPLING_MIDPOINT; sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
@@ -180,7 +181,7 @@ static void points_between_floats_give_no_colour_beyond_theirs(void** state)
   uint32_t random = 11;
   (void)state;
   stratus_context* context = make_context("host", 1);
-  for (int pass = 0; pass < 1000; ++pass) {
+  for (int pass = 0; pass < (few_run() ? 150 : 1000); ++pass) {
     const stratus_table_values v = { .lo = 6e6f, .hi = 6e6f + 0.5f * FLOATS };
     random_function f;
     make_function(&f, pass % 2 ? 1.0 : 0.5 * FLOATS, &random);
@@ -305,7 +306,7 @@ static void windows_of_labels_show_their_label_alone(void** state)
   (void)state;
   stratus_context* context = make_context("host", 1);
   for (int type = 0; type < 4; ++type) {
-    for (int n = 0; n < (type ? 120 : 256); ++n) {
+    for (int n = 0; n < (type == 0 ? 256 : few_run() ? 20 : 120); ++n) {
       const double most = type == 0 ? 255 : type == 1 ? 65535 : type == 2 ? 2e9 : 1e6;
       const double k = type == 0 ? n : floor(most * random_unit(&random));
       const double points[] = { k - 0.5, 0, k - 0.5, 0.7, k + 0.5, 0.7, k + 0.5, 0 };
