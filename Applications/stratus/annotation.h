@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is drawn around a volume on wish: a box with axes, a colour bar, a caption. It needs no display, as the pictures themselves. The
-// box's far edges are behind the whole volume and its near ones before it, so that two layers are right in depth.
+// Optional annotations around a volume: a box with axes, a colour bar, a caption. Drawing them needs no display. The box's far edges are
+// behind the whole volume and its near edges in front of it, so that two layers give the right depth order.
 #pragma once
 
 #include "options.h"
@@ -24,7 +24,7 @@ class annotation
 public:
   explicit annotation(const options& o);
   bool any() const { return this->Axes || this->Bar || !this->Caption.empty(); }
-  // Puts what was asked for around the picture, premultiplied floats of width x height, bottom row first. `time` replaces {time} in the
+  // Draws the requested annotations onto an image of premultiplied floats, width x height, bottom row first. `time` replaces {time} in the
   // caption.
   void draw(std::vector<float>& rgba, int width, int height, const scene_frame& frame, const transfer& look, const std::string& time) const;
 

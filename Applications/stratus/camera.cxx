@@ -102,7 +102,7 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
   double wide;
   double high;
   fit(around, half[up], elevation, away, o.parallel, wide, high);
-  const double room = o.axes ? 1.3 : 1.02; // numbers stand beside the box
+  const double room = o.axes ? 1.3 : 1.02; // leaves space for the numbers next to the box
   const double scale = room * std::max(high, wide / aspect) / o.zoom;
   stratus_camera camera;
   if (o.parallel) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the command line asks of the caster of rays, and what the caster reports of a picture.
+// Conversion of options to the ray caster's settings, and the output of its report.
 #pragma once
 
 #include "input.h"

@@ -6,7 +6,7 @@
 
 namespace cli {
 
-// Tells how the pictures differ, writes the reports that were asked for, and returns whether the pictures are alike. Throws failure where
-// they cannot be compared, once the reports are written.
+// Prints how the images differ, writes the requested reports, and returns whether the images are within the limits. If they cannot be
+// compared, throws failure after writing the reports.
 bool compare(const options& o);
 } // namespace cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A picture of a kind of data: it takes a step, is told how to look at it once, and draws every step from there with one caster.
+// Interface for drawing one kind of data: takes a time step, sets camera and transfer functions once, and draws every step with one caster.
 #pragma once
 
 #include "annotation.h"

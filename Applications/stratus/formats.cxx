@@ -60,7 +60,7 @@ template <class Reader> made reader_for(const std::string& path)
   return reader;
 }
 
-// Polyhedra stay whole, because the mappers divide them conformingly. Later readers than that of VTK 9.2 leave them so.
+// Polyhedra are not decomposed, because the mappers divide them conformingly. Readers later than VTK 9.2's do not decompose them either.
 made openfoam(const std::string& path)
 {
   auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
@@ -160,7 +160,7 @@ made raw_reader(const std::string& path, const std::string& raw)
   reader->SetDataScalarType(type->vtk);
   reader->SetNumberOfScalarComponents(1);
   reader->SetHeaderSize(static_cast<unsigned long>(skip));
-  reader->FileLowerLeftOn(); // the first row is that of the least y
+  reader->FileLowerLeftOn(); // the first row has the smallest y
   return reader;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of VTK's readers, or ours, reads a file: by its extension, and by its content where the extension does not tell.
+// Chooses the reader of a file, one of VTK's or ours: by the extension, and by the content if the extension is ambiguous.
 #pragma once
 
 #include <vtkAlgorithm.h>
@@ -10,7 +10,7 @@
 
 namespace cli {
 
-// What to read of a file: the values of --array or --variable, --raw and --select. Empty: the first variable, at the first indices.
+// How to read a file: the values of --array or --variable, --raw and --select. Empty: the first variable, at the first indices.
 struct reading_options {
   std::string variable, raw, select;
 };
@@ -18,9 +18,9 @@ struct reading_options {
 // The extension with its dot, in small letters; ".nii" for .nii.gz (.hdr.gz, .img.gz alike), and "controldict" for OpenFOAM's file of that
 // name.
 std::string extension_of(const std::string& path);
-// Returns whether the name is that of a TetGen file: .node, .ele, .face, .edge, .neigh.
+// Returns whether the name has an extension of TetGen: .node, .ele, .face, .edge, .neigh.
 bool is_tetgen(const std::string& path);
-// Returns whether the name is that of a list of files over time: .pvd.
+// Returns whether the name has the extension of a list of files over time: .pvd.
 bool is_collection(const std::string& path);
 
 // A reader with its file's name set.
@@ -28,19 +28,19 @@ struct file_format {
   vtkSmartPointer<vtkAlgorithm> reader; // null: nothing here reads the file
   std::string time_units;               // what the format itself prescribes, else ""
 };
-// `raw` is the value of --raw, for files that tell nothing of themselves (.raw): "NXxNYxNZ:TYPE", then in any order little or big (default
-// little), the spacing "DX,DY,DZ" and the bytes before the values "+N". Throws usage where it is not that, and failure where the file has
-// another length.
+// `raw` is the value of --raw, the layout of a headerless file (.raw): "NXxNYxNZ:TYPE", then in any order little or big (default little),
+// the spacing "DX,DY,DZ" and the bytes before the values "+N". Throws usage if `raw` is malformed, and failure if the file's length does
+// not match.
 file_format choose_format(const std::string& path, const std::string& raw);
 
-// What a file that is read by variables has: the range is of one step.
+// A variable of a file that is read by variables. The range is of one step.
 struct variable_entry {
   std::string name, units, long_name;
   double low, high; // low > high: nothing finite
 };
 // Lists the variables at a step; empty for a reader of whole files. The reader's variable is the first afterwards.
 std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time);
-// What a reader of variables tells of time and grid, "" from others.
+// Description of time and grid by a reader of variables, "" by other readers.
 std::string time_units_of(vtkAlgorithm* reader);
 std::string description_of(vtkAlgorithm* reader);
 std::string choice_of(vtkAlgorithm* reader);

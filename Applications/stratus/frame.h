@@ -14,9 +14,9 @@ namespace cli {
 class frame
 {
 public:
-  // Throws usage for an OUT.exr if the program was built without OpenEXR, or if a heat map is asked for.
+  // Throws usage if the output is a heat map as .exr, or an .exr in a program that was built without OpenEXR.
   explicit frame(const options& o);
-  // Borrows the arrays that the options ask for.
+  // Borrows the arrays that the options need.
   stratus_image view();
   // Describes the samples per pixel in a line, or returns "" where they were not counted.
   std::string describe_samples() const;

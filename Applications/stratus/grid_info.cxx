@@ -173,7 +173,7 @@ void cli::print_grid(const options& o, vtkDataSet* grid)
     row("opacity", look.origin);
     row("method", report.why + format(", at %d x %d pixels", o.width, o.height));
   } catch (const failure& reason) {
-    if (!o.array.empty()) { // the user asked for this array
+    if (!o.array.empty()) { // the user chose this array
       throw;
     }
     row("drawn", std::string("nothing: ") + reason.what());

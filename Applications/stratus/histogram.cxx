@@ -17,7 +17,7 @@ int64_t number_of(const stratus_volume& v)
 
 using position = std::array<double, 3>;
 
-// Where a value lies in the world, less the matrix, which all blocks share.
+// World position of a value, without the matrix, which all blocks share.
 position position_of(const stratus_volume& v, const std::array<int64_t, 3>& at)
 {
   position local, result;
@@ -139,7 +139,7 @@ template <class T> void count_values(const cli::volumes& all, const shared_value
     h.not_finite = number - static_cast<double>(shared.size());
     return;
   }
-  // A range of few integers gets a bin for each, so that no bin mixes the background with what is drawn.
+  // If the range holds few integers, each gets a bin of its own, so that no bin mixes the background with visible values.
   const bool integers = std::numeric_limits<T>::is_integer && high - low < 1024.0;
   const size_t bins = low == high ? 1 : integers ? static_cast<size_t>(high - low) + 1 : 1024;
   h.first = integers ? low - 0.5 : low;

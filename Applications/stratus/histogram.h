@@ -13,7 +13,7 @@ using volumes = std::vector<const stratus_volume*>;
 // The frequencies of a volume's values.
 struct histogram {
   double low = 0.0, high = 0.0;   // of the finite values; low > high: there are none
-  double first = 0.0, last = 0.0; // edges of the first and last bin; if each of few integers has its own bin, it lies in the middle
+  double first = 0.0, last = 0.0; // edges of the first and last bin; each of few integers is in the middle of its own bin
   std::vector<double> count;      // values in each bin; bins are equally wide
   double finite = 0.0;
   double not_finite = 0.0;

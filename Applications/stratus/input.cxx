@@ -45,7 +45,7 @@ void set_type(vtkDataArray* array, stratus_volume& volume)
   }
 }
 
-// Sets values and ghosts, those of points unless the values are of cells.
+// Sets values and ghosts. The ghosts are of points unless the values are of cells.
 void set_values(vtkDataSet* image, vtkDataArray* array, bool on_cells, stratus_volume& volume)
 {
   const auto ghosts = [](vtkDataSetAttributes* data, vtkIdType count, const char* things) -> const uint8_t* {

@@ -29,7 +29,7 @@ const char* name_of(stratus_type type);
 // Describes size, type and spacing in one line.
 std::string describe(const stratus_volume& volume);
 
-// Returns whether the name is that of a scene and no file has it. Throws failure for a bare word that is neither.
+// Returns whether `source` names a scene and no file. Throws failure for a bare word that is neither.
 bool is_scene(const std::string& source);
 
 class input

@@ -19,7 +19,7 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const std::string& path);
 class VTK_STRATUS_PRIVATE mesh
 {
 public:
-  // Takes a grid in place of the last one. What did not change is kept. choose_array() chooses the array.
+  // Replaces the grid. Unchanged parts are kept. choose_array() chooses the array.
   void set(vtkDataSet* grid, const options& o);
   const stratus_mesh& view() const { return this->View.GetMesh(); }
   vtkIdType ignored() const { return this->View.GetLeftOut(); }

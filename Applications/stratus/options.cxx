@@ -23,111 +23,116 @@ std::string help()
 {
   return R"(stratus - draws volumes
 
-  stratus render INPUT -o OUT.png [options]   draw a picture; also .jpg, .tif, .bmp; OUT.exr has floats: R, G, B, A, depth Z, Samples
-  stratus render INPUT --frames OUT-%04d.png  draw every step in time
-  stratus render INPUT INPUT ... -o OUT.png   draw up to eight as one medium; --array, --select, --opacity, --color and
+  stratus render INPUT -o OUT.png [options]   render an image; also .jpg, .tif, .bmp; OUT.exr has floats: R, G, B, A, depth Z, Samples
+  stratus render INPUT --frames OUT-%04d.png  render every time step
+  stratus render INPUT INPUT ... -o OUT.png   render up to eight as one medium; --array, --select, --opacity, --color and
                                               --unit-distance are for the INPUT before them
-  stratus info INPUT [--array NAME]           tell what is in a file or scene: sizes, arrays, kinds of cells
-  stratus tree INPUT [options] [-o OUT.vtp]   build the tree that rays skip by, tell its numbers, write its nodes' boxes
-  stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells from 16 views, and count what comes out wrong
-  stratus compare A B [options]               tell by how much two pictures differ (.exr, .png ...), and whether that is too much
+  stratus info INPUT [--array NAME]           print the contents of a file or scene: sizes, arrays, cell types
+  stratus tree INPUT [options] [-o OUT.vtp]   build the tree by which rays skip empty space, print its statistics, write its nodes' boxes
+  stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells for 16 views, and count cells in wrong order
+  stratus compare A B [options]               compare two images (.exr, .png ...) and exit 1 if they differ by more than a limit
   stratus devices                             list the OpenCL devices
-  stratus --version                           tell the versions of what this consists of, and the OpenCL devices
+  stratus --version                           print the versions of Stratus and its libraries, and the OpenCL devices
   stratus --help
 
-INPUT is an image file (.vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .hdr .tif .png .hdf .vtkhdf .vdb .nvdb and what else VTK reads as an
-image) or a scene's name: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels, cumulus-rectilinear; to be
-drawn or told of also a rectilinear grid (.vtr .pvtr), or a grid of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu
-.vtk .hdf, TetGen's .node .ele), curvilinear (.vts .pvts), netCDF's (.nc), in parts (.vtm .vtmb), in steps (.pvd), of OpenFOAM (.foam,
-system/controlDict) or EnSight (.case); or boxes of several levels (AMR: .vthb .vth), each place by its finest cells.
+INPUT is a volume file or a scene's name.
+  Volume images: .vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .hdr .tif .png .hdf .vtkhdf .vdb .nvdb, and others that VTK reads as an image.
+  Scenes: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels, cumulus-rectilinear.
+  For render and info also:
+  - rectilinear grids (.vtr .pvtr);
+  - grids of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu .vtk .hdf, TetGen's .node .ele), curvilinear (.vts .pvts),
+    netCDF (.nc), multi-block (.vtm .vtmb), time series (.pvd), OpenFOAM (.foam, system/controlDict), EnSight (.case);
+  - AMR (.vthb .vth): the finest cell at each place is drawn.
 
-What is drawn
-  --array NAME            point or cell array (default: the active scalars, else the first of one component); of vectors the lengths, or
-                          with .x, .y or .z behind its name a component. --variable is the same
-  --raw NXxNYxNZ:TYPE     what a file of bare values (.raw) does not tell: its size, x fastest, and int8, uint8, int16, uint16, int32,
-                          uint32, float32 or float64; then, with a colon before each, big (default little), a spacing DX,DY,DZ, +N
-                          for N bytes before the values
-  --select NAME=INDEX     of netCDF: read a dimension at one index only, from 0, as of an ensemble; several with commas between, or
-                          with --select again (default: 0 of what is neither space nor time, which info tells)
-  --time T                the step: first, last, step:N from 0, a time in the file's units, or a length of time with its unit (3h, 90min,
-                          "2 d") from where the file counts from, with + before it from its first step. The nearest step is taken, and told
-  --frames OUT-%04d.png   a film: a picture of every step (--time all), all with one look and one camera
-  --opacity LIST          "value:alpha,..." with alpha in 0..1 per unit distance (default: the scene's own, else guessed from
-                          the histogram: transparent over the background's value, a ramp beyond it)
+Data and appearance
+  --array NAME            point or cell array (default: the active scalars, otherwise the first of one component). A vector array is drawn
+                          by its magnitude, or by one component if .x, .y or .z follows the name. --variable is a synonym
+  --raw NXxNYxNZ:TYPE     layout of a headerless file (.raw), x fastest. TYPE: int8, uint8, int16, uint16, int32, uint32, float32 or
+                          float64. Optional, each after a colon: big (default little), a spacing DX,DY,DZ, +N for N bytes to skip at
+                          the start
+  --select NAME=INDEX     netCDF: read a dimension at one index only, counted from 0, such as an ensemble's member. Separate several by
+                          commas, or repeat --select (default: 0 for dimensions that are neither space nor time, which info lists)
+  --time T                the time step: first, last, step:N (from 0), a time in the file's units, or a duration with its unit (3h, 90min,
+                          "2 d") since the file's reference time, or with + before it since its first step. The nearest step is used
+                          and printed
+  --frames OUT-%04d.png   one image for each time step (--time all), all with one transfer function and one camera
+  --opacity LIST          "value:alpha,..." with alpha in 0..1 per unit distance (default: the scene's own, otherwise guessed from
+                          the histogram: transparent at the background's value, a ramp beyond it)
   --color NAME|LIST       a colour map, )" +
-    color_names() + R"(, stretched over what is shown,
+    color_names() + R"(, stretched over the values shown,
                           or "value:r:g:b,..." with r, g, b in 0..1
-  --crop X,X,Y,Y,Z,Z      only what lies between these planes across the grid's axes, in the file's coordinates
-  --crop-regions N        of the 27 regions that the planes of --crop make, bit x + 3 y + 9 z for each that is shown, 0..134217727
-                          (default 8192: between all of them)
-  --mask FILE             an image of one byte a value, 0 where nothing is to be seen
-  --mask-raw ...          what --raw is, for a mask of bare values
-  --unit-distance D       world length that alpha is per (default: a voxel's edge)
-  --exaggerate F          heights F times as large (along the upward axis)
-  --log                   colours, and a guessed opacity, over the logarithm of the value, four decades at most
-  --axes                  a box around the data, with its coordinates
-  --color-bar             the colours of values, with the variable's name and unit
-  --caption TEXT          a line at the top; {time} is the step's time
+  --crop X,X,Y,Y,Z,Z      draw only the box between these planes across the grid's axes, in the file's coordinates
+  --crop-regions N        regions to draw of the 27 that the planes of --crop make: the sum of bits x + 3 y + 9 z, 0..134217727
+                          (default 8192: the box between all planes)
+  --mask FILE             an image of one byte a value; a value is hidden if its byte is 0
+  --mask-raw ...          layout of a headerless mask file, as for --raw
+  --unit-distance D       world length to which alpha applies (default: a voxel's edge)
+  --exaggerate F          multiply heights (along the upward axis) by F
+  --log                   map colours, and a guessed opacity, to the logarithm of the value, over at most four decades
+  --axes                  draw a box around the data, with its coordinates
+  --color-bar             draw the colours of values, with the variable's name and unit
+  --caption TEXT          draw a line of text at the top; {time} is the step's time
   --nearest               nearest instead of linear interpolation
-  --shade                 light from the eye on the field's gradient (composite, isosurface)
+  --shade                 light from the eye, with the field's gradient as normal (composite, isosurface)
   --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)
 
-From where
+Camera
   --size WxH              pixels (default 512x512)
   --azimuth DEG           about the upward axis (default 30)
   --elevation DEG         above the ground, -90..90 (default 30)
-  --zoom F                2 shows everything twice as large (default 1: all of it fits)
+  --zoom F                2 shows everything twice as large (default 1: everything fits)
   --parallel              parallel instead of perspective projection
   --up x|y|z              which axis points upward (default z; a scene has its own)
 
-How
-  --tolerance E           root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause: 0.001 is 60 dB, a
-                          quarter of an 8-bit step (default); 0: the finest
+Rendering
+  --tolerance E           root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause (default 0.001:
+                          60 dB, a quarter of an 8-bit step); 0: the finest settings
   --sample-distance D     world length between samples (default: by the tolerance)
-  --sampling S            auto, midpoint, preintegrated, cells (default auto: the cheapest that keeps the tolerance). cells goes from cell
-                          to cell; composite without --shade and --mask
-  --cell-error E          of cells: how far the field may depart from a line, as a fraction of the values that the functions span
-                          (default: by the tolerance)
-  --jitter SEED           move each ray's samples by a part of their distance, so that grain turns into noise; another seed, another noise
-  --structure S           auto, none, block, distance, octant, hybrid: how empty space is skipped; never changes the picture
-  --mode M                composite; first-hit: what shows at all as solid voxels, lit from the eye; maximum, minimum: of the values along a
-                          ray, in their colour; average, additive: of opacity times value, in grey; isosurface; slice (default composite)
-  --contours V,V,...      of isosurfaces: 1 to 16 values, each in the colour and opacity that the functions give it
-  --slice X,Y,Z,NX,NY,NZ  of slices: the plane through a point, and its normal, in the file's coordinates
-  --average-range A,B     of averages: the values that count (default: all)
-  --method M              of unstructured grids: rays march through faces, or cells are sorted and projected; the same picture. auto, march,
-                          project (default auto: what should cost less)
-  --normals N             of first hits: faces, gradient (default faces)
-  --device D              auto, host, an OpenCL device's index, or a part of its name (default auto): draws, and builds what it has kernels
-                          for; the picture is the same
-  --report                tell each stage of building: where it was done, kernels that the device ran, milliseconds, bytes
+  --sampling S            auto, midpoint, preintegrated, cells (default auto: the cheapest that keeps the tolerance). cells integrates
+                          cell by cell; only for composite without --shade and --mask
+  --cell-error E          for --sampling cells: how far the field may depart from a line, as a fraction of the values that the functions
+                          span (default: by the tolerance)
+  --jitter SEED           shift each ray's samples by a random part of their distance, which turns banding into noise; the seed selects
+                          the noise
+  --structure S           how empty space is skipped: auto, none, block, distance, octant, hybrid (default auto); never changes the image
+  --mode M                composite; first-hit: voxels of opacity > 0 as solids, lit from the eye; maximum, minimum: the colour of the
+                          largest or smallest value on a ray; average, additive: of opacity times value, in grey; isosurface; slice
+                          (default composite)
+  --contours V,V,...      isosurfaces' values, 1 to 16, each in its colour and opacity by the transfer functions
+  --slice X,Y,Z,NX,NY,NZ  the slice's plane: a point and the normal, in the file's coordinates
+  --average-range A,B     range of the values that --mode average uses (default: all)
+  --method M              for grids of cells: march rays through faces, or project sorted cells; the image is the same. auto, march,
+                          project (default auto: the one that should cost less)
+  --normals N             for first-hit: faces, gradient (default faces)
+  --device D              auto, host, an OpenCL device's index, or a part of its name (default auto). The device draws, and builds
+                          structures that it has kernels for; the image is the same
+  --report                print each build stage: its device, kernels that the device ran, milliseconds, bytes
   --threads N             threads of the host (default: all)
-  --read-timeout S        give INPUT, or a mask, up after S seconds in which its reader neither got a byte nor told of progress; 0: never
-                          (default 60)
-  --show samples          a heat map of the samples that each pixel took, with a scale, in place of the picture; --color has its colours
+  --read-timeout S        stop reading INPUT, or a mask, after S seconds without a byte read or progress reported; 0: never (default 60)
+  --show samples          show a heat map of the samples that each pixel used, with a scale, instead of the image; --color sets its colours
   --audit                 draw again without skipping and count the pixels that differ; any is a failure
 
 Trees
-  --lower V, --upper V    the values that count (default: what the opacity shows)
+  --lower V, --upper V    range of the occupied values (default: values that the opacity shows)
   --method M              )" +
     method_names() + R"( (default auto)
   --mode M                composite: blocks of cells for ray casting; first-hit: voxels (default composite)
 
-Orders
+Sorting
   --depth N               planes between the mesh and a leaf, 0..16 (default 3)
 
-Comparisons: each limit that is given must hold; without any the pictures must be the same to the bit
-  --exact                 all channels have the same bits
+Comparisons: all given limits must hold; without one, the images must be equal to the bit
+  --exact                 all channels have equal bits
   --tolerance E           the root mean square difference of the colours in 0..1, over the pixels that are not 0 in both, is at most E
-  --maximum D             no component of a colour differs by more than D, in 0..1
-  --ssim S                the structural similarity is at least S, -1..1; 1 is the same
-  --difference OUT        a picture of the differences: .png stretched so that the largest is white, .exr as they are
-  --json OUT              what was found, as JSON
-  --junit OUT             the verdict, as a test of JUnit's form
+  --maximum D             each component of each colour differs by at most D, in 0..1
+  --ssim S                the structural similarity is at least S, -1..1; 1 means equal
+  --difference OUT        write an image of the differences: .png scaled so that the largest is white, .exr unscaled
+  --json OUT              write the results as JSON
+  --junit OUT             write the verdict as a JUnit test
 
-The stack must be allowed at least 256 KiB (ulimit -s).
-The exit status is 0 only if the picture was written whole, or pictures are alike; 1 if something failed or pictures differ, 2 if the
-command was not understood.
+The stack limit must be at least 256 KiB (ulimit -s).
+The exit status is 0 if the image was written completely, or the images compared are within the limits; 1 if something failed or the
+images differ; 2 if the command line was not understood.
 
   stratus render cloud -o cloud.png
   stratus render head.mha -o head.png --opacity "0:0,300:0,1500:.3" --color gray --azimuth 120 --size 1024x768

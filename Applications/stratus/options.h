@@ -25,7 +25,7 @@ struct options {
   std::string frames; // render: the names of the pictures of all steps, with one %d
   std::string time;   // the step: see series::find(); "all" is left out, since --frames says it
   std::string array;
-  std::string raw;    // what a .raw file does not tell: see choose_format()
+  std::string raw;    // layout of a headerless file: see choose_format()
   std::string select; // "NAME=INDEX,...": indices of netCDF's dimensions
   std::string opacity;
   std::string color;
@@ -53,7 +53,7 @@ struct options {
   bool nearest = false;
   bool shade = false;
   bool audit = false;
-  bool report = false;        // render, tree, sort: tells the stages of building
+  bool report = false;        // render, tree, sort: prints the stages of building
   bool shows_samples = false; // render: draws the samples that each pixel took
   bool has_range = false;     // tree: lower..upper is given
   double lower = -std::numeric_limits<double>::infinity();
@@ -69,10 +69,10 @@ struct options {
   std::vector<double> crop;     // empty, or six planes across the grid's axes
   int crop_regions = STRATUS_CROP_INSIDE;
   std::string mask;     // file of an image of bytes, 0 where the volume is hidden
-  std::string mask_raw; // what a mask in a .raw file does not tell
+  std::string mask_raw; // layout of a headerless mask file
   int jitter = -1;      // seed, or -1: none
   stratus_normals normals = STRATUS_NORMALS_FACES;
-  // compare: what vtkStratusImageTest calls by similar names
+  // compare: limits and outputs, named like the members of vtkStratusImageTest
   std::string baseline, difference, json, junit;
   bool exact = false;
   double largest_mean = -1.0, largest_difference = -1.0, least_ssim = -2.0;

@@ -21,10 +21,10 @@ background parse_background(const std::string& text);
 std::vector<uint8_t> to_bytes(const std::vector<float>& rgba, int width, int height, const background& behind);
 
 enum class picture_format { png, jpeg, tiff, bmp, exr };
-// Returns the format that the name's extension says, PNG for a name without one. Throws usage, with the list of what can be written, for
-// another extension, and for OpenEXR where this was built without it.
+// Returns the format that the name's extension says, PNG for a name without one. Throws usage, with a list of the supported formats, for
+// another extension, and for OpenEXR if this was built without it.
 picture_format format_of_picture(const std::string& path);
 
-// Encodes pixels of 3 or 4 bytes, bottom row first. 4 go with PNG alone; OpenEXR takes none, since it has floats.
+// Encodes pixels of 3 or 4 bytes, bottom row first. Only PNG supports 4. OpenEXR is not supported here, since it stores floats.
 std::vector<uint8_t> encode(picture_format format, const std::vector<uint8_t>& bytes, int width, int height);
 } // namespace cli

@@ -187,8 +187,8 @@ reading::reading(const std::string& path, const std::string& by) : Path(path)
   this->catch_crashes();
 }
 
-// Handlers run on a stack of their own, because a stack overflow may be the crash. They replace those of an OpenCL compiler in this
-// process, but not a sanitizer's.
+// Handlers run on a separate stack, because the crash may be a stack overflow. They replace an OpenCL compiler's handlers in this process,
+// but not a sanitizer's.
 void reading::catch_crashes()
 {
 #ifdef CATCH_CRASHES

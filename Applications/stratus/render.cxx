@@ -27,7 +27,7 @@ cli::routed read_apart(cli::series& in, size_t step, const cli::options& o)
   return cli::route(own, o.source, o.array, o.nearest || o.mode == STRATUS_MODE_FIRST_HIT);
 }
 
-// Puts what was asked for around the picture that was drawn.
+// Draws the requested annotations around the volume.
 void annotate(cli::frame& frame, const cli::options& o, const cli::drawing& drawing, const cli::series* in, size_t step)
 {
   cli::scene_frame place = drawing.place();

@@ -79,7 +79,7 @@ vtkDataArray* part_of_vectors(vtkDataSetAttributes* data, const std::string& nam
   return nullptr;
 }
 
-// Lists the arrays, with the ranges of those of one component.
+// Lists the arrays, with the ranges of arrays of one component.
 std::string names_of(vtkDataSet* data_set)
 {
   std::string names;
@@ -177,7 +177,7 @@ void refine(vtkUniformGridAMR* amr, const std::string& path, const std::string& 
   if (grids.GetGrids().empty()) {
     throw cli::failure("'" + path + "' holds no box with values");
   }
-  for (const auto& grid : grids.GetGrids()) { // the name that was asked for, also of a part of vectors
+  for (const auto& grid : grids.GetGrids()) { // the name from --array, also for a component of vectors
     vtkDataSetAttributes* data = grids.HasCells() ? static_cast<vtkDataSetAttributes*>(grid->GetCellData()) : grid->GetPointData();
     data->GetScalars()->SetName(array.empty() ? data->GetScalars()->GetName() : array.c_str());
   }
@@ -189,7 +189,7 @@ void refine(vtkUniformGridAMR* amr, const std::string& path, const std::string& 
   result.refined = true;
 }
 
-// Joins the parts that have the array. `result` gets the grid and tells of the parts.
+// Joins the parts that have the array. `result` gets the grid and a description of the parts.
 void join(vtkCompositeDataSet* whole, const std::string& path, const std::string& array, cli::routed& result)
 {
   vtkStratusBlocks blocks;

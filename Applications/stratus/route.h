@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a file holds, as what the core takes: a regular grid of values, or a mesh.
+// Converts a file's data to the core's input: a regular grid of values, or a mesh.
 #pragma once
 
 #include <vtkDataSet.h>
@@ -15,18 +15,18 @@ namespace cli {
 
 struct routed {
   vtkSmartPointer<vtkDataSet> image; // an image or a rectilinear grid, for the ray caster,
-  // More of them, which lie beside `image` without overlap: the blocks of one volume. Each has the drawn array, of one type.
+  // Further grids next to `image`, without overlap: the blocks of one volume. Each has the drawn array, of one type.
   std::vector<vtkSmartPointer<vtkDataSet>> blocks;
   vtkSmartPointer<vtkDataSet> grid; // or an unstructured or structured one, for the caster of tetrahedra
   std::string kind;                 // of the file's data, for people
   bool refined = false;             // whether image and blocks hold AMR, whose gradients change from block to block
-  std::string arrays;               // of composite data: what their first part has, since `grid` has the drawn one alone
+  std::string arrays;               // of composite data: the first part's arrays, since `grid` has only the drawn one
 };
 
 // The one place that decides how a kind of data is drawn. Throws failure for data that are not drawn at all, with their kind.
-// Composite data of images and rectilinear grids alone stay blocks; other composite data become one grid, in which parts that meet share
-// their points. AMR becomes blocks that hold its field. `array` is the name of the array that will be drawn, "" for the first. nearest:
-// of AMR, cells' values are drawn as they are.
+// Composite data that consist only of images and rectilinear grids stay blocks. Other composite data become one grid, in which parts that
+// meet share their points. AMR becomes blocks that hold its field. `array` is the name of the array that will be drawn, "" for the first.
+// nearest: cell values of AMR are drawn as they are.
 routed route(vtkDataObject* data, const std::string& path, const std::string& array, bool nearest = false);
 
 // Returns the array `name`. If the name is empty it returns the active scalars, or else the first array of one component, or else the

@@ -39,7 +39,7 @@ protected:
 };
 vtkStandardNewMacro(listener);
 
-// Collects messages while it lives, also from std::cerr, where VTK's MetaIO alone reports that a file was cut short.
+// Collects messages during its lifetime, also from std::cerr, which is the only place where VTK's MetaIO reports a truncated file.
 class listening
 {
 public:

@@ -27,7 +27,7 @@ public:
   vtkSmartPointer<vtkDataObject> read(size_t step);
   // "1.5 hours since ...", "" for a file without time.
   std::string time_of(size_t step) const;
-  // The unit of coordinates, and of the variable: "" where the file or the format does not tell.
+  // The unit of coordinates, and of the variable: "" if the file or the format has none.
   std::string length_units() const;
   std::string value_units() const;
   // Returns "step 3 of 24, at 1.5 hours since ...", or "" for a file without time.
@@ -38,8 +38,8 @@ public:
   std::string choice() const;
   // How coordinates became a grid, "" where that is VTK's own affair.
   std::string grid() const;
-  // Finds the step that --time asks for: "first", "last", "step:N", a time in the file's units, a length of time with its unit ("3h",
-  // "90min", "2 d") from where the file counts from, or with a plus before it from the first step. The nearest step is taken.
+  // Finds the step for --time: "first", "last", "step:N", a time in the file's units, a duration with its unit ("3h", "90min", "2 d") since
+  // the file's reference time, or with a plus before it since the first step. Returns the nearest step.
   size_t find(const std::string& time) const;
 
 private:

@@ -72,7 +72,7 @@ private:
   int Up = 2;
 };
 
-// Reads the other INPUTs, too, each with the options of the first but for what was said of it.
+// Reads the other INPUTs, too. Each has the first INPUT's options except those given after its name.
 void several_drawing::take(const cli::routed& data)
 {
   this->take_member(this->Options, data);
@@ -170,7 +170,7 @@ cli::scene_frame several_drawing::place() const
   return frame;
 }
 
-// Crop and mask are the first INPUT's alone.
+// Only the first INPUT is cropped and masked.
 void several_drawing::draw(const stratus_image& image)
 {
   const size_t count = this->Members.size();
@@ -206,7 +206,7 @@ void several_drawing::draw(const stratus_image& image)
   }
 }
 
-// The rows of all work are those of the first volume, since meshes have no structure and no sampling.
+// Rows about the whole run are printed from the first volume's report, since meshes have no structure and no sampling.
 void several_drawing::tell() const
 {
   const auto is_volume = [](const member& one) { return !one.mesh; };

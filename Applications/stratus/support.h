@@ -32,7 +32,7 @@ public:
   operator stratus_context*() const { return this->Context; }
   // Throws failure with `what` and the core's message unless the status is STRATUS_OK.
   void check(stratus_status status, const std::string& what) const;
-  // Prints a row for each stage of what was built since the context was made, and where.
+  // Prints a row for each build stage since the context was made, with its device.
   void print_build_report() const;
   // Draws no bar from now on, because a film has its own.
   void quiet() { this->Terminal = false; }

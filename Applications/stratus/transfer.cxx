@@ -50,8 +50,8 @@ double ramp(double t)
   return t < knee_at ? t / knee_at * knee_height : knee_height + (t - knee_at) / (1.0 - knee_at) * (1.0 - knee_height);
 }
 
-// Returns the opacity at the ramp's top with which a ray through the shown values collects an optical depth of about 2. `place` tells where
-// a value stands on the ramp, 0..1.
+// Returns the opacity at the ramp's top with which a ray through the shown values collects an optical depth of about 2. `place` maps a
+// value to its position on the ramp, 0..1.
 template <class Place> double top_opacity(const cli::histogram& h, const Place& place)
 {
   double weight = 0.0;
@@ -131,7 +131,7 @@ void guess_opacity(const histogram& h, transfer& result)
     std::reverse(count.begin(), count.end());
   }
   const size_t peak = static_cast<size_t>(std::max_element(count.begin(), count.end()) - count.begin());
-  // If a single value is the background, the ramp starts right behind it; integers lie in the middle of their bins.
+  // If a single value is the background, the ramp starts right behind it. Integers are in the middle of their bins.
   const double lone = *std::max_element(h.count.begin(), h.count.end());
   double bins = lone > 0.5 * h.finite ? static_cast<double>(peak) + 0.5 : static_cast<double>(end_of_background(count, peak));
   bins = std::min(bins, static_cast<double>(count.size()) - 1.0);

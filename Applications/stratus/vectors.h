@@ -9,7 +9,7 @@ class vtkDataSetAttributes;
 
 namespace cli {
 
-// A name that ends in .x, .y, .z or .magnitude: that of the array, and 0 to 3. Part -1: another name.
+// A name that ends in .x, .y, .z or .magnitude: the array's name, and 0 to 3. Part -1: another name.
 struct vector_part {
   std::string array;
   int part = -1;

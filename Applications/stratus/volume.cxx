@@ -56,7 +56,7 @@ private:
   stratus_ray_caster* Caster = nullptr;
   stratus_ray_cast_report Report = {};
   int Up = 2;
-  uint64_t Steps = 0; // the volume's revision, because a step's values may lie where the last one's were
+  uint64_t Steps = 0; // the volume's revision, because a step's values may have the address of the last step's
 };
 
 void volume_drawing::take(const cli::routed& data)
@@ -165,7 +165,7 @@ void volume_drawing::draw_blocks(const stratus_ray_cast_options& cast, const str
   }
   this->Core.check(
     stratus_ray_caster_render_blocks(inputs.data(), static_cast<int>(inputs.size()), &this->Camera, &image, reports.data()), "render");
-  // The block with the most samples tells the reasons, all of them add up to the counts.
+  // The reasons are from the block with the most samples, the counts are summed over all blocks.
   const auto busiest = std::max_element(reports.begin(), reports.end(),
     [](const stratus_ray_cast_report& a, const stratus_ray_cast_report& b) { return a.samples < b.samples; });
   this->Report = *busiest;

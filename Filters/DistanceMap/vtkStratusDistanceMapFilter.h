@@ -5,14 +5,14 @@
  *
  * Input: a vtkImageData or vtkRectilinearGrid with scalars of one component on points (or on cells, by SetInputArrayToProcess). Output: a
  * data set of the input's class, see GetOutputDataObject(), with one cell per block and the cell data "Distance" (unsigned char). The
- * distance is 0 in occupied blocks and the Chebyshev distance in blocks elsewhere, at most 127, in the kind PAPER 255. The output lies over
- * the input, but its last blocks may extend beyond it; those of a rectilinear grid end with it. For cell data the output begins at the
- * centre of the first cell, because interpolation does.
+ * distance is 0 in occupied blocks and the Chebyshev distance in blocks elsewhere, at most 127, in the kind PAPER 255. The output covers
+ * the input. Its last blocks may extend beyond the input, except in a rectilinear grid, which ends with the input. For cell data the output
+ * begins at the centre of the first cell, because interpolation does.
  *
  * A block is occupied if VolumeProperty's scalar opacity is above 0 somewhere between the block's smallest and largest value. Without a
- * VolumeProperty, a block is occupied if a value between the two lies in LowerThreshold..UpperThreshold, ends included. Values of 24 bits
- * or fewer are compared exactly. Values of wider types are compared as floats, and a float counts if any value that rounds to it does, so
- * that no bound is rounded inward.
+ * VolumeProperty, a block is occupied if the range from its smallest to its largest value meets LowerThreshold..UpperThreshold, ends
+ * included. Values of 24 bits or fewer are compared exactly. Values of wider types are compared as floats, and a float counts if any value
+ * that rounds to it does, so that no bound is rounded inward.
  *
  * If the filter fails, its output stays unchanged.
  *
@@ -52,7 +52,7 @@ public:
 
   //@{
   /**
-   * Set/Get the property whose scalar opacity tells which blocks are occupied. Default none.
+   * Set/Get the property whose scalar opacity decides which blocks are occupied. Default none.
    */
   virtual void SetVolumeProperty(vtkVolumeProperty* property);
   vtkVolumeProperty* GetVolumeProperty();
@@ -114,9 +114,9 @@ public:
   //@}
 
   /**
-   * Get how the last output was built: a row for each stage, in the columns "Stage" (string), "Where" (string: the name of the device that
-   * ran kernels for it, else "host"), "Milliseconds" (double: on the clock, without stages within it), "Bytes" (vtkIdType: of what the
-   * stage made) and "Kernels" (vtkIdType: how many the device ran). There are no rows before the first output.
+   * Get the build stages of the last output. Each row is a stage. Columns: "Stage" (string), "Where" (string: the name of the device that
+   * ran its kernels, or "host"), "Milliseconds" (double: wall-clock time without nested stages), "Bytes" (vtkIdType: size of the stage's
+   * results) and "Kernels" (vtkIdType: number of kernels that the device ran). The table has no rows before the first output.
    */
   vtkTable* GetBuildReport();
 

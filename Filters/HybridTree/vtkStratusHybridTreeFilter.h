@@ -57,7 +57,7 @@ public:
 
   //@{
   /**
-   * Set/Get the property whose scalar opacity tells which values the tree holds. Default none.
+   * Set/Get the property whose scalar opacity decides which values the tree holds. Default none.
    */
   virtual void SetVolumeProperty(vtkVolumeProperty* property);
   vtkVolumeProperty* GetVolumeProperty();
@@ -82,7 +82,7 @@ public:
   //@{
   /**
    * Set/Get how the tree is built. Default AUTO.
-   * - AUTO: OCTANT where its bytes are 1 MB or fewer, or no more than those of WIDE; else WIDE. GetReason() tells which, and why.
+   * - AUTO: OCTANT if it needs at most 1 MB or at most as many bytes as WIDE, otherwise WIDE. GetReason() says which was chosen, and why.
    * - HYBRID: leaves of distance fields where voxels are spread evenly, a hierarchy of bricks elsewhere.
    * - HYBRID_PAPER: the method of Guo et al. 2025 as published.
    * - DISTANCE, OCTANT: one distance field over everything; OCTANT stores a distance for each octant of ray directions.
@@ -214,9 +214,9 @@ public:
   //@}
 
   /**
-   * Get how the last output was built: a row for each stage, in the columns "Stage" (string), "Where" (string: the name of the device that
-   * ran kernels for it, else "host"), "Milliseconds" (double: on the clock, without stages within it), "Bytes" (vtkIdType: of what the
-   * stage made) and "Kernels" (vtkIdType: how many the device ran). There are no rows before the first output.
+   * Get the build stages of the last output. Each row is a stage. Columns: "Stage" (string), "Where" (string: the name of the device that
+   * ran its kernels, or "host"), "Milliseconds" (double: wall-clock time without nested stages), "Bytes" (vtkIdType: size of the stage's
+   * results) and "Kernels" (vtkIdType: number of kernels that the device ran). The table has no rows before the first output.
    */
   vtkTable* GetBuildReport();
 

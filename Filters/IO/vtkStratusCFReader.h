@@ -16,12 +16,12 @@
  * - A time is a dimension whose variable has units "... since ...", standard_name time, axis T or a time's name, numbers or texts
  *   ("2020-06-01_12:00:00" becomes seconds since the first), or that itself has a time's name ("Time", "month").
  * - An ensemble (standard_name realization, axis E, or its name) is read at index 0.
- * - If more than three dimensions of several values are left, those that tell their axes are the axes, else the last three. The outermost
- *   one of the others is the time if there is none and this dimension has no coordinates. The rest is read at index 0.
+ * - If more than three dimensions of several values are left, the dimensions whose metadata name an axis are the axes, otherwise the last
+ *   three. The outermost of the others is the time if there is none and this dimension has no coordinates. The rest is read at index 0.
  * - A dimension that SetSelection() names is read at its index, whatever it is.
  *
- * Axes are told by axis, standard_name, units and names, else by their order (time, z, y, x). Coordinates that decrease are turned round
- * with their values. Units are any that UDUNITS knows where the module is built with it, else common ones.
+ * Axes are identified by axis, standard_name, units and names, otherwise by their order (time, z, y, x). Coordinates that decrease are
+ * reversed with their values. Units are any that UDUNITS knows if the module is built with it, otherwise common ones.
  *
  * Horizontal coordinates: where both are degrees (or radians), they become metres on a sphere of 6,371 km at the middle latitude.
  * Longitudes that jump by 360 degrees are made continuous; the first one stays. Of a lattice that runs around a pole they cannot be

@@ -3,9 +3,9 @@
  * @class   vtkStratusEXRReader
  * @brief   reads the channels of an OpenEXR file as arrays of a picture
  *
- * Output: a vtkImageData of one layer of points from 0, 0 on, with spacing 1. Its point data has arrays of floats, the names of which are
- * those that vtkStratusEXRWriter makes channels of:
- * - R, G, B and A are the array "RGBA", R, G and B alone "RGB"; as in EXR, colours are premultiplied by alpha;
+ * Output: a vtkImageData of one layer of points from 0, 0 on, with spacing 1. Its point data has arrays of floats, named as
+ * vtkStratusEXRWriter writes them:
+ * - R, G, B and A are the array "RGBA", R, G and B without A "RGB"; as in EXR, colours are premultiplied by alpha;
  * - Z is "Depth";
  * - channels "name.0", "name.1" ... are components of the array "name";
  * - any other channel is an array of its own name.

@@ -3,12 +3,13 @@
  * @class   vtkStratusImageReader
  * @brief   reads an image of NRRD, MetaImage or NIfTI, with its orientation and its scaling
  *
- * The file's first bytes tell the format: NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), NIfTI-1 and NIfTI-2 (.nii, .nii.gz, .hdr with .img).
+ * The file's first bytes decide its format: NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), NIfTI-1 and NIfTI-2 (.nii, .nii.gz, .hdr with
+ * .img).
  * The output is a vtkImageData with one array, named as VTK's readers name theirs: "ImageFile", "MetaImage", "NIFTI".
  *
- * Place: a sample's place is the one that the file tells, in the file's own coordinates (GetDescription() says which). The spacing is the
- * length of the way from a sample to the next one, and the direction matrix has the directions of these ways as its columns. It may mirror
- * and shear: VTK's images and the Stratus mappers use the whole matrix. Axes that lie in one plane are an error.
+ * Place: samples have the positions that the file gives them, in the file's own coordinates (GetDescription() says which). The spacing is
+ * the distance between neighbouring samples, and the direction matrix has the directions from each sample to the next one as its columns.
+ * It may mirror and shear: VTK's images and the Stratus mappers use the whole matrix. Axes in one plane are an error.
  *
  * Values: bytes are put into the machine's order. NIfTI's scl_slope and scl_inter and MetaImage's ElementToIntensityFunction are applied;
  * scaled values are float, or double where they are stored in 32 bits of integers or more than 32 bits.
@@ -16,11 +17,11 @@
  * Components: of NRRD an axis of a kind such as vector, RGB-color or list, wherever it stands; of MetaImage the channels; of NIfTI the
  * fifth dimension, and colours. A vector's array is the active vectors, others are the active scalars.
  *
- * Time: of NRRD an axis of time, of MetaImage and NIfTI the fourth dimension. Steps of which the file does not tell the length are
+ * Time: in NRRD an axis of time, in MetaImage and NIfTI the fourth dimension. If the file does not say how long a step is, steps are
  * numbered.
  *
- * A file is an error if it has less than it tells of, or needs something that can't be read: the message names it.
- * docs/command-line.md has a table of what is read.
+ * A file is an error if it has less data than its header says, or needs an unsupported feature: the message names it. docs/command-line.md
+ * has a table of supported features.
  *
  * @sa vtkStratusVDBReader vtkStratusCFReader
  */

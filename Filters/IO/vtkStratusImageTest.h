@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusImageTest
- * @brief   holds a picture to another one: to the bit, within an error, or by structural similarity
+ * @brief   compares an image with a baseline: to the bit, within an error, or by structural similarity
  *
- * A picture is a vtkImageData of one layer, as GetLastImage() of a mapper returns it, or a file: .exr, .png and what else VTK reads as an
+ * An image is a vtkImageData of one layer, as a mapper's GetLastImage() returns it, or a file: .exr, .png and others that VTK reads as an
  * image. No window and no display are needed.
  *
  * @code
@@ -14,8 +14,8 @@
  * return test->Compare() ? EXIT_SUCCESS : EXIT_FAILURE;
  * @endcode
  *
- * Colours are the point data's array "RGBA" or "RGB", else its scalars: 1 to 4 components, grey, grey and alpha, RGB or RGBA. Bytes count
- * as 0..1, integers of 16 bits, too; floats count as they are. What is judged is what is asked for, each limit that was set:
+ * Colours are the point data's array "RGBA" or "RGB", otherwise its scalars: 1 to 4 components, grey, grey and alpha, RGB or RGBA. Bytes
+ * and integers of 16 bits are scaled to 0..1; floats are not scaled. Each limit that is set is checked:
  *
  * | limit | the pictures are alike if |
  * |---|---|
@@ -24,8 +24,8 @@
  * | MaximumDifference | no component of any colour differs by more |
  * | LeastSSIM | the structural similarity is at least this |
  *
- * Tolerance is what the mappers call Tolerance: .001 is 60 dB. Where one picture has an alpha and the other has none, alpha is not
- * compared, unless it is asked for bits. A NaN or an infinity differs from all but the same bits, by an infinite amount.
+ * Tolerance has the unit of the mappers' ImageErrorTolerance: .001 is 60 dB. If only one image has an alpha, alpha is compared only with
+ * Exact. A NaN or an infinity differs from everything but the same bits, by an infinite amount.
  *
  * Structural similarity is the mean over all components and all windows of 11 x 11 pixels that lie within the picture, with Gaussian
  * weights of standard deviation 1.5, K1 = .01 and K2 = .03 (Wang et al., Image quality assessment: from error visibility to structural
@@ -105,17 +105,17 @@ public:
   //@}
 
   /**
-   * Compare the pictures. Return whether they are alike. GetReason() tells why not; where a picture cannot be read or compared, that is an
+   * Compare the images. Return whether they are within the limits. GetReason() says why not. An image that cannot be read or compared is an
    * error, too.
    */
   bool Compare();
 
   //@{
   /**
-   * Get what the last Compare() found: whether there was an error rather than a verdict; a sentence, empty where the pictures are alike;
-   * the pictures' size; pixels of which any bit differs; pixels that are not 0 in both; the largest difference of a component, and the
-   * pixel where it is, from the bottom left; the root mean square difference over pixels that are not 0; and the structural similarity, -2
-   * where it was not asked for.
+   * Get the results of the last Compare(): whether it failed instead of comparing; a sentence, empty if the images are within the limits;
+   * the images' size; pixels of which any bit differs; pixels that are not 0 in both; the largest difference of a component, and its pixel,
+   * from the bottom left; the root mean square difference over pixels that are not 0; and the structural similarity, -2 if it was not
+   * requested.
    */
   vtkGetMacro(Failed, bool);
   std::string GetReason();

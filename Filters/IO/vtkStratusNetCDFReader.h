@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusNetCDFReader
- * @brief   what the readers of netCDF files share
+ * @brief   base class of the readers of netCDF files: attributes, variables, dimensions
  *
  * Values are read as the netCDF users' guide says. All these attributes are about stored values, before scale_factor and add_offset:
  * - _Unsigned "true" or "false" gives integers the other sign; bytes with a valid limit above 127 have no sign.
@@ -9,11 +9,12 @@
  * - Values outside of valid_range, or without it below valid_min or above valid_max, are NaN.
  * - Then scale_factor and add_offset are applied. Each must be one finite number; anything else is an error.
  *
- * Attributes are compared in the variable's type. GetDescription() tells which are ignored: text, and limits that packed integers cannot
- * hold. Values are floats if these tell all of the variable's values apart, else doubles.
+ * Attributes are compared in the variable's type. GetDescription() lists attributes that are ignored: text, and limits that packed integers
+ * cannot hold. Values are floats if floats can represent all of the variable's values exactly, otherwise doubles.
  *
- * Variables are listed, and the first is read by default, in this order: fields of the cells; staggered ones; flags and masks; what
- * coordinates are made of, such as pressure, geopotential, height, thickness and area. Equals stay in the file's order.
+ * Variables are listed in this order, and the first is read by default: fields of the cells; staggered fields; flags and masks; variables
+ * that coordinates are computed from, such as pressure, geopotential, height, thickness and area. Within each group they are in the file's
+ * order.
  *
  * @sa vtkStratusCFReader vtkStratusUgridReader
  */
@@ -33,10 +34,10 @@ public:
 
   //@{
   /**
-   * Set/Get the dimensions that are read at one index only: "NAME=INDEX,NAME=INDEX...", indices from 0. A dimension that is selected is
-   * neither an axis nor the time, so that a variable of more than three dimensions can be cut as one likes. A name with the path of its
-   * group ("run1/number") is this group's dimension; without a path it is each dimension of this name. A name that the file does not have,
-   * and an index out of range, are errors. Default none: what is neither axis nor time is read at index 0.
+   * Set/Get the dimensions that are read at one index only: "NAME=INDEX,NAME=INDEX...", indices from 0. A selected dimension is neither an
+   * axis nor the time, so that any three-dimensional part of a variable of more dimensions can be read. A name with the path of its group
+   * ("run1/number") is this group's dimension; without a path it is each dimension of this name. A name that the file does not have, and an
+   * index out of range, are errors. Default none: a dimension that is neither axis nor time is read at index 0.
    */
   vtkSetStringMacro(Selection);
   vtkGetStringMacro(Selection);
@@ -46,12 +47,12 @@ protected:
   vtkStratusNetCDFReader() = default;
   ~vtkStratusNetCDFReader() override;
 
-  /// As those of the superclass, with the file open.
+  /// Inspect() and Build() of the superclass, with the file open.
   virtual std::string InspectFile(const vtkStratusNetCDFFile& file) = 0;
   virtual void BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) = 0;
 
-  /// Lists a variable: before those of a later `place`, and at the same place fields of the cells first, then staggered ones, then flags
-  /// and masks, then what coordinates are made of (pressure, geopotential, thickness, area).
+  /// Lists a variable, ordered by `place`. Within one place the order is: fields of the cells, staggered fields, flags and masks, variables
+  /// that coordinates are computed from (pressure, geopotential, thickness, area).
   void AddVariable(const vtkStratusNetCDFFile& file, const vtkStratusNetCDFVariable& variable, int place = 0);
 
   std::string Inspect() override;

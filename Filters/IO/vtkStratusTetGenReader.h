@@ -3,7 +3,7 @@
  * @class   vtkStratusTetGenReader
  * @brief   reads TetGen's files: .node, .ele, .neigh, .face, .edge, .poly and .smesh
  *
- * FileName names one file of a mesh, or the common part of the names (mesh.1). The mesh's other files lie beside it (mesh.1.node,
+ * FileName names one file of a mesh, or the common part of the names (mesh.1). The mesh's other files are in the same folder (mesh.1.node,
  * mesh.1.ele ...).
  *
  * From .node, .ele, .neigh, .face and .edge: the first output is a vtkUnstructuredGrid of linear or quadratic tetrahedra. The .node file
@@ -23,11 +23,11 @@
  * | Regions (double, 5) | field data of the second | .poly and .smesh: a point in each region, attribute, largest volume |
  * | FacetHoles (double, 4) | field data of the second | .poly: a facet's number and a point in a hole of it |
  *
- * The first attribute is the active scalars. If TetGen was asked for regions, the last attribute of a tetrahedron is its region's.
+ * The first attribute is the active scalars. If TetGen was run with regions, the last attribute of a tetrahedron is its region's.
  *
- * The first point's number tells whether a mesh's files count from 0 or from 1; outputs count from 0. An error names the file, the line,
- * the value and what it must be, and empties both outputs. The reader reads files in pieces of a megabyte and allocates no more than a file
- * can fill.
+ * If the first point's number is 0, the mesh's files count from 0, otherwise from 1. Outputs count from 0. An error names the file, the
+ * line, the value and what it must be, and empties both outputs. The reader reads files in pieces of a megabyte and allocates no more than
+ * a file can fill.
  *
  * @sa vtkStratusTetGenWriter vtkStratusTetGenFilter
  */

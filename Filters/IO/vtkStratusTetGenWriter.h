@@ -5,7 +5,7 @@
  *
  * Input 0 is one of
  * - a vtkUnstructuredGrid of tetrahedra, all linear or all quadratic. The writer writes .node and .ele, and .neigh if there are
- *   cell data "Neighbors" of four components. A grid without cells gives .node alone. The optional input 1, a vtkPolyData over
+ *   cell data "Neighbors" of four components. A grid without cells gives only .node. The optional input 1, a vtkPolyData over
  *   the same points, adds .face (its triangles) and .edge (its lines); a quadratic mesh accepts none.
  * - a vtkPolyData. The writer writes .poly if FileName says so, else .smesh, with the points in the same file. Polygons are
  *   facets; polygons with the same cell data "Facet" are one facet, which only .poly can hold. Lines of two points are edges

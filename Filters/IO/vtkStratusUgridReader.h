@@ -3,9 +3,9 @@
  * @class   vtkStratusUgridReader
  * @brief   reads water models' meshes in layers from netCDF: UGRID, with the conventions of Delft3D FM, SCHISM and FVCOM
  *
- * The output is a vtkUnstructuredGrid of wedges and hexahedra (prisms of five and six sides, and polyhedra of more) that stand on the faces
- * of a two-dimensional mesh, layer on layer from the bottom up. Points are nodes: number layer * nodes + node, the layers' borders from 0
- * to the number of layers. Cells are number layer * faces + face.
+ * The output is a vtkUnstructuredGrid of wedges and hexahedra (prisms of five and six sides, and polyhedra of more) above the faces of a
+ * two-dimensional mesh, layer on layer from the bottom up. Points are nodes: number layer * nodes + node, the layers' borders from 0 to the
+ * number of layers. Cells are number layer * faces + face.
  *
  * The mesh is a variable of cf_role mesh_topology and dimension 2 with node_coordinates and face_node_connectivity (start_index, _FillValue
  * at the end of smaller faces), or FVCOM's nv, x and y (or lon and lat).
@@ -20,10 +20,10 @@
  *   values are on one side of it. Layers are cut off at the bottom and the free surface, if the file has them; the uppermost one rises to
  *   the free surface, and Delft3D FM's lowest one reaches the bottom;
  * - one layer between the bottom and the free surface.
- * Free surface and bottom are otherwise found by standard_name and the names that the three models use; what is on faces is averaged at
+ * Free surface and bottom are otherwise found by standard_name and the names that the three models use; values on faces are averaged at
  * nodes. Degrees become metres, as in vtkStratusCFReader. Longitudes that jump by 360 degrees are made continuous. On a mesh around the
- * Earth they stay, and faces across the meridian where they jump get copies of nodes, a turn further east, behind the file's nodes; a face
- * around a pole is blanked.
+ * Earth they keep their values, and faces across the meridian where they jump get copies of nodes, a turn further east, behind the file's
+ * nodes; a face around a pole is blanked.
  *
  * A variable on faces becomes cell data, one on nodes point data, both of its own name. Values at centres of layers on nodes are
  * interpolated to the layers' borders; values at borders on faces are averaged over the layer; one without layers is repeated in each.

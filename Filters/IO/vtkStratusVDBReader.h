@@ -3,20 +3,20 @@
  * @class   vtkStratusVDBReader
  * @brief   reads a sparse grid from a file of OpenVDB (.vdb) or NanoVDB (.nvdb) as an image, or as blocks
  *
- * Which library reads is told by the file's first bytes. The file's grids are its variables: numbers of 8 to 64 bits, booleans as 0 and 1,
+ * The file's first bytes decide which library reads it. The file's grids are its variables: numbers of 8 to 64 bits, booleans as 0 and 1,
  * and vectors of three components. NanoVDB's packed floats (Fp4, Fp8, Fp16, FpN) become float, as do OpenVDB's halves. Grids of points,
- * masks and strings are left out, and GetDescription() tells which.
+ * masks and strings are left out, and GetDescription() names them.
  *
- * The image is the box of the grid's active voxels with a border of one voxel. It has all values in there, those of tiles and inactive
- * voxels, too; what lies beyond is taken as not there. VTK's indices are those of the grid, and its values are points, at the places where
- * the grid's map (voxel size, turn, shift) puts them. A map with shear, or one of a frustum, is an error.
+ * The image is the bounding box of the grid's active voxels plus a border of one voxel. It contains the values of all voxels in this box,
+ * including tiles and inactive voxels; voxels outside the box are dropped. VTK's indices are the grid's indices. Values are points, placed
+ * by the grid's map (voxel size, rotation, translation). A map with shear, or a frustum map, is an error.
  *
- * The image is dense: its memory is that of the box. Pages of it that no value other than 0 comes to are never touched, and take no memory
- * on systems that give pages as they are written. Where it would take more than MemoryLimit, the output is a vtkPartitionedDataSet of
- * images instead, unless Layout chooses: blocks of the same grid that meet in faces and cover all cells with an active voxel at a corner.
- * They are divided until at least half of their voxels lie in leaves and active tiles, or there are 256 of them.
- * vtkStratusMultiBlockVolumeMapper draws them as one volume, without seams; between them lies nothing, whatever the background's value.
- * Blocks that would take more than MemoryLimit are an error that tells the bytes.
+ * The image is dense: it needs memory for the whole box. Pages of it that only hold 0 are never written, and use no memory on systems that
+ * allocate pages on the first write. If the image needs more than MemoryLimit, the output is a vtkPartitionedDataSet of images instead,
+ * unless Layout chooses. The images are blocks of the same grid that meet in faces and cover all cells with an active voxel at a corner.
+ * They are divided until at least half of their voxels are in leaves and active tiles, or there are 256 of them.
+ * vtkStratusMultiBlockVolumeMapper draws them as one volume, without seams; the space between blocks is empty, whatever the background's
+ * value. Blocks that need more than MemoryLimit are an error that reports the bytes.
  */
 #ifndef vtkStratusVDBReader_h
 #define vtkStratusVDBReader_h

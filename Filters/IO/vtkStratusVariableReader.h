@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusVariableReader
- * @brief   what readers that read a file's variables one by one share: the file, the variable, and time
+ * @brief   base class of readers of one of a file's variables: the file name, the variable and the time
  *
- * A reader puts out one variable on its grid, at the time step that the pipeline asks for (the nearest one before it, else the first). An
- * error names the file and what is wrong, and empties the output.
+ * A reader outputs one variable on its grid, at the time step that the pipeline requests (the nearest step at or before it, otherwise the
+ * first). An error names the file and the fault, and empties the output.
  *
  * @sa vtkStratusCFReader vtkStratusImageReader vtkStratusUgridReader vtkStratusVDBReader
  */
@@ -44,8 +44,8 @@ public:
 
   //@{
   /**
-   * Get the variables that can be read, after UpdateInformation(): their number, all names, and the name, units and long name of each, ""
-   * for what the file does not tell. An index out of range gives "".
+   * Get the variables that can be read, after UpdateInformation(): their number, all names, and the name, units and long name of each. A
+   * text that the file does not contain is "". An index out of range gives "".
    */
   int GetNumberOfVariables();
   vtkStringArray* GetNamesOfVariables();
@@ -60,8 +60,8 @@ public:
   const char* GetTimeUnits();
 
   /**
-   * Get the unit of all three of the output's coordinates, such as "m" or "mm", or "" where the file does not tell or they differ. After
-   * UpdateInformation().
+   * Get the unit of all three of the output's coordinates, such as "m" or "mm", after UpdateInformation(). It is "" if the file has no
+   * units or they differ.
    */
   const char* GetLengthUnits();
 
@@ -82,7 +82,7 @@ protected:
   /// Looks up Variables, Times, TimeUnits, Description and WholeExtent. Returns the class of the output for the chosen variable.
   /// Throws vtkStratusReadError, as Build() and ChosenName() do.
   virtual std::string Inspect() = 0;
-  /// Fills the output, of the class that Inspect() told, with a step, which is 0 in a file without time.
+  /// Fills the output, whose class Inspect() reported, with the data of a time step. The step is 0 in a file without time.
   virtual void Build(size_t step, vtkDataObject* output) = 0;
   /// Returns VariableName, or the first variable if there is none. Fails with the list of variables for another name.
   std::string ChosenName() const;

@@ -5,7 +5,7 @@
  *
  * Input: a vtkUnstructuredGrid. Its linear, quadratic, Lagrange and Bezier cells and polyhedra are divided into tetrahedra that meet face
  * to face; of Bezier cells the nodes that only steer them move to the points that belong to them. Vertices, lines and polygons are dropped.
- * Planes then cut the tetrahedra, so that each piece lies in one leaf (Li et al. 2012). Neighbouring pieces share their points, across
+ * Planes then cut the tetrahedra, so that each piece is inside one leaf (Li et al. 2012). Neighbouring pieces share their points, across
  * leaves, too. Together the pieces of a cell fill the cell.
  *
  * Output: tetrahedra, leaf by leaf. The input's points keep their numbers. Behind them come the centres of quadratic cells that have no
@@ -111,9 +111,9 @@ public:
   //@}
 
   /**
-   * Get how the last output was built: a row for each stage, in the columns "Stage" (string), "Where" (string: the name of the device that
-   * ran kernels for it, else "host"), "Milliseconds" (double: on the clock, without stages within it), "Bytes" (vtkIdType: of what the
-   * stage made) and "Kernels" (vtkIdType: how many the device ran). There are no rows before the first output.
+   * Get the build stages of the last output. Each row is a stage. Columns: "Stage" (string), "Where" (string: the name of the device that
+   * ran its kernels, or "host"), "Milliseconds" (double: wall-clock time without nested stages), "Bytes" (vtkIdType: size of the stage's
+   * results) and "Kernels" (vtkIdType: number of kernels that the device ran). The table has no rows before the first output.
    */
   vtkTable* GetBuildReport();
 

@@ -92,9 +92,10 @@ public:
   //@}
 
   /**
-   * Get the stages of the last traversal: a row for each, in the columns "Stage" (string), "Where" (string: the name of the device that ran
-   * kernels for it, else "host"), "Milliseconds" (double: on the clock), "Bytes" (vtkIdType: of what the stage made) and "Kernels"
-   * (vtkIdType: how many the device ran). There are no rows before the first traversal, nor of what was reused.
+   * Get the stages of the last traversal. Each row is a stage. Columns: "Stage" (string), "Where" (string: the name of the device that ran
+   * its kernels, or "host"), "Milliseconds" (double: wall-clock time), "Bytes" (vtkIdType: size of the stage's results) and "Kernels"
+   * (vtkIdType: number of kernels that the device ran). The table has no rows before the first traversal, and none for results that were
+   * reused.
    */
   vtkTable* GetBuildReport();
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusPieceDistanceMapFilter
- * @brief   vtkStratusDistanceMapFilter of an image of which each rank of ParaView has a piece
+ * @brief   vtkStratusDistanceMapFilter for an image that is distributed over ParaView's ranks
  *
- * The ranks put together which blocks are occupied, so that distances are those of the whole image, as one rank has them: none tells of
- * emptiness that another rank's piece has not. Blocks begin at the first point of the whole. Each rank gives those that begin in a cell of
- * its own, which is no ghost; the extent of its output counts blocks of the whole. "StratusGlobalBlock" numbers them over all ranks, x
- * fastest. Ranks without blocks give none. Each keeps a byte for each block of the whole, and eight while distances are taken.
+ * The ranks combine their lists of occupied blocks, so that distances are equal to the distances in the whole image. In particular, no
+ * block counts as empty that another rank's piece occupies. Blocks begin at the first point of the whole image. Each rank outputs the
+ * blocks that begin in a cell that it owns (not a ghost). The extent of its output counts blocks of the whole image. "StratusGlobalBlock"
+ * numbers the blocks over all ranks, x fastest. A rank without blocks outputs none. Each rank keeps one byte for each block of the whole
+ * image, and eight bytes while distances are computed.
  *
- * Pieces must be images that share their border points; values of cells need a layer of ghost cells, which is asked for.
+ * Pieces must be images that share their border points. Cell values need a layer of ghost cells, which the filter requests.
  */
 #ifndef vtkStratusPieceDistanceMapFilter_h
 #define vtkStratusPieceDistanceMapFilter_h

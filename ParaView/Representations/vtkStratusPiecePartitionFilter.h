@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusPiecePartitionFilter
- * @brief   vtkStratusPartitionFilter of a mesh of which each rank of ParaView has a piece
+ * @brief   vtkStratusPartitionFilter for a mesh that is distributed over ParaView's ranks
  *
- * Each rank cuts its piece into leaves of its own, which are numbered from 0 on, as renderers read them. Beside these numbers the cells get
- * those among all ranks: "StratusGlobalLeaf", leaves of rank 0 first, and "StratusGlobalOriginalCell", the input's global id of the cell
- * that each comes from, or, where it has none, the cell's number among the pieces' cells, those of rank 0 first. Ranks without cells give
+ * Each rank cuts its piece into leaves of its own, which are numbered from 0, as renderers expect. In addition, the cells get numbers over
+ * all ranks: "StratusGlobalLeaf", leaves of rank 0 first, and "StratusGlobalOriginalCell", the global id of the input cell that each comes
+ * from. If the input has no global ids, this is the cell's number among the cells of all pieces, rank 0 first. A rank without cells outputs
  * none.
  */
 #ifndef vtkStratusPiecePartitionFilter_h

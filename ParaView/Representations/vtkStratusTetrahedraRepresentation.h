@@ -3,10 +3,10 @@
  * @class   vtkStratusTetrahedraRepresentation
  * @brief   ParaView's volume rendering of cells by vtkStratusTetrahedraMapper
  *
- * Draws unstructured and structured grids and composite data of them as they are: nothing divides their cells before the mapper does.
- * Several ranks deal the cells out, so that each has all that reach into the box that ParaView gives it, and draws what of them lies in the
- * box. Arrays of several components are drawn by their magnitude or one component, as the colour map says. The mapper refuses the rest by
- * an error in ParaView's messages.
+ * Draws unstructured and structured grids and composite data of them as they are: nothing divides their cells before the mapper does. If
+ * there are several ranks, they exchange cells: each rank receives every cell that reaches into its box, which ParaView assigns, and draws
+ * the part of the cells inside the box. Arrays of several components are drawn by their magnitude or one component, as the colour map says.
+ * The mapper refuses the rest by an error in ParaView's messages.
  *
  * @sa vtkStratusTetrahedraMapper
  */
@@ -87,9 +87,9 @@ public:
 
   //@{
   /**
-   * Get what the last picture took on this rank: tetrahedra that cells were divided into; those of them left out because a value is not
-   * finite or a point is repeated; tetrahedra that rays passed, or pieces of them that were composited where cells are projected;
-   * milliseconds of drawing; the method, why it was chosen, and the device.
+   * Get statistics of the last frame on this rank: tetrahedra that cells were divided into; tetrahedra left out because a value is not
+   * finite or a point is repeated; tetrahedra that rays passed, or pieces that were composited if cells are projected; milliseconds of
+   * drawing; the method, why it was chosen, and the device.
    */
   double GetTetrahedra();
   double GetLeftOut();
@@ -127,16 +127,16 @@ private:
   vtkNew<vtkPolyDataMapper> OutlineMapper;
   vtkSmartPointer<vtkDataObject> Cache; // what of the input this rank has
   vtkSmartPointer<vtkDataObject> Piece; // the same where it is drawn
-  // Among several ranks: what this one draws, the array of it, and what it was dealt for.
+  // With several ranks: the data that this rank draws, its array, and the settings that it was distributed for.
   vtkSmartPointer<vtkDataObject> Dealt;
   std::string DealtArray;
   bool DealtCells = false;
   std::vector<double> DealtFor;
   vtkSmartPointer<vtkDataObject> DealtOf;
   std::string DealtName;
-  bool Lost = false;         // whether data of before are shown, because those of now lack the array
+  bool Lost = false;         // whether earlier data are shown, because the current data lack the array
   std::string Refusal;       // of a device that is not there
-  std::string Problem, Told; // why this rank left something out, and what it told of it last
+  std::string Problem, Told; // why this rank left something out, and its last message about it
 };
 
 #endif

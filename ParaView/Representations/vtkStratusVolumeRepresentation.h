@@ -4,9 +4,9 @@
  * @brief   ParaView's volume rendering of uniform and rectilinear grids by vtkStratusVolumeMapper
  *
  * Composite data are drawn block by block, in exact order, and AMR by levels (vtkStratusMultiBlockVolumeMapper). Of AMR each of several
- * ranks gets all boxes, and draws a part of the space; each grid has its own sampling.
- * On several ranks each draws the cells that it owns; a layer of ghost cells is asked for, so that light and values at borders are those of
- * the whole. All ranks sample alike: they agree on what the automatic settings of each would take.
+ * ranks gets all boxes, and draws a part of the space; each grid has its own sampling. On several ranks each draws the cells that it owns.
+ * It requests a layer of ghost cells, so that light and values at borders equal those in the whole volume. All ranks sample alike: they
+ * agree on one choice of the automatic settings.
  * Supports everything of ParaView's own representation "Volume" that the mapper supports. The mapper refuses the rest by an error in
  * ParaView's messages. vtkStratusVolumeMapper documents the setters below.
  *
@@ -135,16 +135,16 @@ private:
   double SampleDistance = -1.0;
   double CellError = 0.0;
   double WholeBounds[6];             // of all ranks
-  vtkMTimeType AgreedFor = 0;        // of what the ranks have agreed on last
+  vtkMTimeType AgreedFor = 0;        // modification time of the settings that the ranks agreed on last
   double Agreed[3] = { 0., 0., 0. }; // sampling, sample distance, cell error
-  bool Lost = false;                 // whether data of before are shown, because those of now lack the array
+  bool Lost = false;                 // whether earlier data are shown, because the current data lack the array
   std::string Refusal;               // of a device that is not there
-  std::string Problem, Told;         // what is wrong with this rank's part, and what was told of it last
+  std::string Problem, Told;         // the fault in this rank's part, and the last message about it
   bool EndsAtBorders = false;
   vtkMTimeType EndedFor = 0;         // of the data
   vtkSmartPointer<vtkDataSet> Whole; // of all ranks' pieces, on rank 0
   bool Gathered = false;             // whether rank 0 has it
-  vtkMTimeType WholeFor = 0;         // of this rank's piece, when the whole was gathered; names and cells: what it has
+  vtkMTimeType WholeFor = 0;         // of this rank's piece, when the whole was gathered; its array names and cells follow
   std::vector<std::string> WholeNames;
   bool WholeCells = false;
 };

@@ -51,8 +51,8 @@ public:
 
   //@{
   /**
-   * Set/Get the promise that Modified() of this culler is called whenever bounds may have changed. Bounds are then asked for only after
-   * such a call, and of props that are new in the list. Props added, removed, shown or hidden need no call. Default off.
+   * Set/Get the promise that Modified() of this culler is called whenever bounds may have changed. Bounds are then queried only after such
+   * a call, and for props that are new in the list. Props added, removed, shown or hidden need no call. Default off.
    */
   vtkSetMacro(StaticProps, bool);
   vtkGetMacro(StaticProps, bool);
@@ -155,7 +155,7 @@ public:
 
   //@{
   /**
-   * Get statistics of the last call of Cull() for any renderer: props in the list, props kept, props whose bounds were asked for,
+   * Get statistics of the last call of Cull() for any renderer: props in the list, props kept, props whose bounds were queried,
    * milliseconds.
    */
   vtkGetMacro(NumberOfProps, vtkIdType);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusVolumePicker
- * @brief   picks the cell of a volume where the field first becomes as opaque as is asked for
+ * @brief   picks the first cell of a volume along a ray in which the scalar opacity reaches VolumeOpacityIsovalue
  *
- * vtkVolumePicker knows point values of images alone: of cell values it takes other places, and of rectilinear and unstructured grids none.
- * This one takes what vtkStratusVolumeMapper and vtkStratusTetrahedraMapper draw: images and rectilinear grids with values of points or
- * cells, structured and unstructured grids, the blocks of composite data, and each volume of a vtkStratusMultiVolume. Other props are the
- * superclass's, and so are images where UseVolumeGradientOpacity or PickCroppingPlanes is on.
+ * vtkVolumePicker supports only point values of images: it misplaces picks of cell values, and finds none in rectilinear and unstructured
+ * grids. This class picks all data that vtkStratusVolumeMapper and vtkStratusTetrahedraMapper draw: images and rectilinear grids with point
+ * or cell values, structured and unstructured grids, the blocks of composite data, and each volume of a vtkStratusMultiVolume. The
+ * superclass handles other props, and images if UseVolumeGradientOpacity or PickCroppingPlanes is on.
  *
- * Along the ray the field is what the picture shows: linear or nearest as the property's interpolation says, in tetrahedra linear. Picked
- * is the first place whose scalar opacity reaches VolumeOpacityIsovalue. It is found exactly, however narrow a peak of the opacity is:
- * a ray's way through a cell is cut where the field turns, and opacities are asked over whole intervals of values. Crop regions (of grids
- * of cells: the box), clip planes, ghosts and blanking count; blend modes, masks, labels and gradient opacity do not. Of several
- * components, VectorMode says which counts, else the first one, or of dependent ones the last.
+ * Along the ray the field is the one in the frame: linear or nearest as the property's interpolation says, in tetrahedra linear. The pick
+ * is the first place whose scalar opacity reaches VolumeOpacityIsovalue. It is found exactly, however narrow a peak of the opacity is: a
+ * ray's segment in a cell is cut at the extrema of the field, and the opacity is examined over whole intervals of values. Crop regions (of
+ * grids of cells: the box), clip planes, ghosts and blanking count; blend modes, masks, labels and gradient opacity do not. If there are
+ * several components, VectorMode says which one counts, otherwise the first, or the last of dependent ones.
  *
  * GetCellId() and GetPointId() (the nearest of the cell's points) are of GetDataSet(), GetPCoords() is the place in the cell; of images and
  * rectilinear grids, GetCellIJK() and GetPointIJK() count from 0 of the structured coordinates, extents included. Of composite data,

@@ -9,17 +9,19 @@
  * Supported are:
  * - linear and quadratic cells of every kind and polyhedra, of any orientation, in any number of parts, with gaps, hollows and flat
  *   cells. Cells are divided into linear tetrahedra, in which the field is linear; neighbours divide their common face alike.
- *   Lagrange and Bezier hexahedra, wedges and tetrahedra, rational ones, too, are divided at their nodes, of Bezier cells at the points
- *   that belong to these: the picture errs by what linear interpolation between nodes does, which falls with the square of their distance.
+ *   Lagrange and Bezier hexahedra, wedges and tetrahedra, including rational ones, are divided at their nodes, and Bezier cells at the
+ *   points of the cell that correspond to their nodes. The frame then has the error of linear interpolation between nodes, which falls with
+ *   the square of the node distance.
  *   Vertices, lines and polygons are ignored and counted; a grid that has nothing else is an error.
- * - structured (curvilinear) grids: hexahedra in layers, around poles, left-handed. Each is divided into six tetrahedra along the ways from
- *   its first corner to its last, which keep their orientation in layers over any ground; where layers cross, the cells that overlap all
- *   count. March needs some 21 bytes a hexahedron besides the grid, project some 490, as do grids in which layers cross;
- * - composite data sets of such grids, of rectilinear ones and of images, at any depth (vtkMultiBlockDataSet, vtkPartitionedDataSet,
- *   vtkPartitionedDataSetCollection), as one volume. Several structured grids stay as they are, as one alone does, if their scalars are of
- *   one type and the faces that two of them share have one diagonal, from lowest to highest index in both. Of all else, points of the same
- *   coordinates and values become one, so that blocks meet in whole faces. Blocks without the array or without a volume are left out with
- *   a warning. A block alone is drawn as it is;
+ * - structured (curvilinear) grids: hexahedra in layers, around poles, left-handed. Each is divided into six tetrahedra around the diagonal
+ *   from its first corner to its last. The tetrahedra keep their orientation in layers over any ground. Where layers cross, all overlapping
+ *   cells count. MARCH_METHOD needs about 21 bytes a hexahedron in addition to the grid. PROJECT_METHOD, and grids in which layers cross,
+ *   need about 490;
+ * - composite data sets of such grids, of rectilinear grids and of images, at any depth (vtkMultiBlockDataSet, vtkPartitionedDataSet,
+ *   vtkPartitionedDataSetCollection), as one volume. Several structured grids are drawn without conversion, like a single one, if their
+ *   scalars have one type and the faces that two of them share have one diagonal, from lowest to highest index in both. In all other cases,
+ *   points of equal coordinates and values are merged, so that blocks meet in whole faces. Blocks without the array or without a volume are
+ *   left out with a warning. A single block is drawn as it is;
  * - point and cell scalars of any numeric type but bits; also of 2 to 4 independent components, each with functions of its own, which mix
  *   in composite (ComponentMixing), while maximum, minimum, average and additive draw each by itself and add the weighted colours; and in
  *   composite of dependent ones: 2 (colour by the first, opacity by the second) and 4 unsigned bytes (red, green, blue, and the opacity's
@@ -37,8 +39,9 @@
  * - gradient opacity in composite, in values per mean spacing: the edge of a cube that six tetrahedra of the mean volume fill. It
  * multiplies the optical depth, or the opacity (GradientOpacityDistance). Light and gradient opacity are marched;
  * - up to 6 clipping planes (of origin and normal) and a crop box. They cut rays exactly, cells are not left out;
- * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): in composite rays are cast up to each of them, so that the parts
- * between lie in order; in other modes the whole picture lies between them, at its first depth;
+ * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes). In composite mode, rays are cast up to each surface, so that the
+ *   parts of the volume between surfaces are in depth order. In other modes the whole frame is placed between the surfaces, at its first
+ *   depth;
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
@@ -123,9 +126,12 @@ public:
 
   //@{
   /**
-   * Set/Get the world length over which gradient opacity multiplies the opacity. 0: none, it multiplies the optical depth; a value of
-   * opacity 1 then stays opaque. Above 0: a way of this length through opacity A (of this length) with gradient opacity F lets 1 - F A
-   * pass. Below 0: half of the mean spacing. NaN and infinity are an error when drawing. Default 0.
+   * Set/Get the world length over which gradient opacity multiplies the opacity (default 0).
+   * - 0: gradient opacity multiplies the optical depth instead. A value of opacity 1 then stays opaque.
+   * - Above 0: a ray segment of this length through opacity A (per this length) with gradient opacity F transmits 1 - F A.
+   * - Below 0: half of the mean spacing.
+   *
+   * NaN and infinity are an error when drawing.
    */
   vtkSetMacro(GradientOpacityDistance, double);
   vtkGetMacro(GradientOpacityDistance, double);
@@ -180,10 +186,11 @@ public:
   //@}
 
   /**
-   * Get how the last picture that built anything built it: a row for each stage, in the columns "Stage" (string), "Where" (string: the name
-   * of the device that ran kernels for it, else "host"), "Milliseconds" (double: on the clock, without stages within it), "Bytes"
-   * (vtkIdType: of what the stage made) and "Kernels" (vtkIdType: how many the device ran). Drawing itself is no stage. A picture that
-   * reuses all it needs changes no row, and an aborted one tells what it built until then. There are no rows before the first picture.
+   * Get the build stages of the last frame that built anything. Each row is a stage. Columns: "Stage" (string), "Where" (string: the name
+   * of the device that ran its kernels, or "host"), "Milliseconds" (double: wall-clock time without nested stages), "Bytes" (vtkIdType:
+   * size of the stage's results) and "Kernels" (vtkIdType: number of kernels that the device ran). Drawing itself is not a stage. A frame
+   * that reuses everything changes no row. An aborted frame reports the stages that it finished. The table has no rows before the first
+   * frame.
    */
   vtkTable* GetBuildReport();
 
@@ -238,9 +245,9 @@ public:
 
   //@{
   /**
-   * Get how many times the neighbours and borders of cells were found, and how many times values were taken, since the mapper was made. In
-   * the steps of a simulation whose points and cells keep their content, in whatever objects, values alone are taken, unless other cells
-   * show: those at values that are not finite and hidden ones do not.
+   * Get how many times the neighbours and borders of cells were found, and how many times values were read, since the mapper was made. If
+   * the points and cells of a simulation's steps keep their content, only values are read again, even if the data objects are new. The
+   * exception is a step that shows other cells: hidden cells and cells at values that are not finite do not show.
    */
   vtkTypeUInt64 GetGeometryBuilds();
   vtkTypeUInt64 GetValueBuilds();
@@ -269,8 +276,8 @@ public:
 
   //@{
   /**
-   * Get the bounds of the input: of a structured grid, those of its cells that are not hidden by a ghost or blanking array; of blocks,
-   * those of the blocks that are drawn.
+   * Get the bounds of the input. Cells of a structured grid that a ghost or blanking array hides do not count, nor do blocks that are not
+   * drawn.
    */
   double* GetBounds() VTK_SIZEHINT(6) override;
   using Superclass::GetBounds;

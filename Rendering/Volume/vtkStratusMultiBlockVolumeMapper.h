@@ -5,24 +5,24 @@
  *
  * Replaces vtkMultiBlockVolumeMapper and vtkAMRVolumeMapper. The input is a vtkImageData, a vtkRectilinearGrid, composite data of them at
  * any depth (vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection), or a vtkOverlappingAMR. Blocks that a plane
- * across an axis of the data parts are drawn in exact order, however uneven their sizes. Blocks that overlap are each drawn whole, the
- * farther middle first, with a warning: use vtkStratusMultiVolume for media that mix. Blocks that lack the array, and kinds of data that
- * are no grid of these, are left out with a warning. Each block chooses its own structure and sampling, and its gradients are one-sided at
- * its border unless it has ghost cells.
+ * across an axis of the data separates are drawn in exact order, however uneven their sizes. Blocks that overlap are each drawn whole, the
+ * block with the farther middle first, with a warning: use vtkStratusMultiVolume for media that mix. Blocks that lack the array, and data
+ * of other classes, are left out with a warning. Each block chooses its own structure and sampling. Its gradients are one-sided at its
+ * border unless it has ghost cells.
  *
- * Of AMR, each place has its finest cell, and the field has no crack between levels, whatever their ratios. Linear interpolation of values
- * of cells is between centres; a cell that finer ones cover has their field's value at its centre, and where two levels meet, the finer
- * side has the coarser side's values at the corners of halves of its cells. Values of points on such a border are those of the coarser
- * side, too. Nearest interpolation, and first hits, show each cell's own value. The mapper makes grids side by side that hold this field
- * exactly, with the finer cells of a place and, around them, the coarser ones at their own spacing; these are its blocks. Vectors are
- * interpolated by components before their magnitude is taken. Levels must nest: a box lies on whole cells of the next coarser level, which
- * has boxes there. Light by gradients, gradient opacity, functions of two variables and nearest interpolation of values of points are
- * refused by an error, and so is vtkNonOverlappingAMR.
+ * In AMR, the finest cell at a place is drawn, and the field has no crack between levels, whatever their ratios. Linear interpolation of
+ * cell values is between cell centres. A cell that finer cells cover has the value of their field at its centre. Where two levels meet, the
+ * finer side uses the coarser side's values at the corners of half cells. Point values on such a border are also taken from the coarser
+ * side. Nearest interpolation, and first hits, show each cell's own value. The mapper makes adjacent grids that hold this field exactly:
+ * the finer cells of a place and, around them, the coarser ones at their own spacing. These grids are its blocks. Vectors are interpolated
+ * by components before their magnitude is computed. Levels must nest: a box covers whole cells of the next coarser level, which has boxes
+ * there. Light by gradients, gradient opacity, functions of two variables and nearest interpolation of point values are refused by an
+ * error, and so is vtkNonOverlappingAMR.
  *
- * What vtkVolumeMapper has (scalars, blend mode, cropping, clipping planes) is set at this mapper, the rest at GetSettings(); both hold for
- * all blocks. The blocks' pictures are blended as floats, so that their borders show nothing. That draws the blend modes composite,
- * isosurface and slice, and first hits; more than one block in another mode is refused by an error, and nothing is drawn. The cost of a
- * picture grows with what is seen of each block, and each block keeps its own structure and tables.
+ * Set the members of vtkVolumeMapper (scalars, blend mode, cropping, clipping planes) at this mapper, and all other settings at
+ * GetSettings(). Both hold for all blocks. The blocks' frames are blended as floats, so that their borders do not show. This supports the
+ * blend modes composite, isosurface and slice, and first hits; more than one block in another mode is refused by an error, and nothing is
+ * drawn. The cost of a frame grows with the visible part of each block. Each block keeps its own structure and tables.
  *
  * @sa vtkStratusVolumeMapper vtkStratusMultiVolume
  */
@@ -46,14 +46,14 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Get the mapper whose settings each block's mapper takes. It draws nothing itself.
+   * Get the mapper that holds the settings of all blocks' mappers. It draws nothing itself.
    */
   vtkStratusVolumeMapper* GetSettings();
 
   //@{
   /**
-   * Set/Get which piece of AMR is drawn, and of how many: boxes of the space that share its values evenly. Other input is drawn whole.
-   * Numbers below their least become it. Default 0 of 1.
+   * Set/Get the piece of an AMR input that is drawn, and the number of pieces: boxes in space that share the values evenly. Other input is
+   * drawn whole. Numbers below the minimum are raised to it. Default 0 of 1.
    */
   vtkSetClampMacro(Piece, int, 0, VTK_INT_MAX);
   vtkGetMacro(Piece, int);
@@ -62,8 +62,8 @@ public:
   //@}
 
   /**
-   * Set what the columns and rows of a two-dimensional function cover: first and last value, and first and last of the second variable, as
-   * of data that this input is a part of. Where the first is greater than the last, as by default, each block's own data tell.
+   * Set the ranges of a two-dimensional function's columns and rows, if this input is a part of larger data: first and last value, and
+   * first and last value of the second variable. If first > last (default), each block's own data set the range.
    */
   void SetTransfer2DRanges(const double ranges[4]);
 
@@ -73,7 +73,8 @@ public:
   int GetNumberOfBlocks();
 
   /**
-   * Get the mapper of a block in the last picture, 0..GetNumberOfBlocks()-1, in the input's order; nullptr beyond. It tells of statistics.
+   * Get the mapper of a block in the last frame, 0..GetNumberOfBlocks()-1, in the input's order; nullptr beyond. Its getters report
+   * statistics.
    */
   vtkStratusVolumeMapper* GetBlockMapper(int block);
 
@@ -88,7 +89,7 @@ public:
   const char* GetLastError();
 
   /**
-   * Get the bounds of what is drawn: without cells that other pieces of the data own (DUPLICATECELL).
+   * Get the bounds of the drawn cells. Cells that other pieces of the data own (DUPLICATECELL) do not count.
    */
   double* GetBounds() VTK_SIZEHINT(6) override;
   using Superclass::GetBounds;

@@ -6,24 +6,24 @@
  * Where volumes that overlap are props of their own, one is drawn over the other. This prop draws them in one pass: along each ray the
  * optical depths of all volumes add up, and their colours are mixed by them. Grids, spacings, directions, types and matrices may differ.
  *
- * Its interface is vtkMultiVolume's: SetVolume() takes a vtkVolume and a port. VTK's own vtkMultiVolume works with
- * vtkGPUVolumeRayCastMapper only, which has all inputs; here each vtkVolume has a vtkStratusVolumeMapper of its own, which keeps its input,
- * array, cropping, clipping planes, mask, sampling and ImageErrorTolerance, beside its vtkVolumeProperty and matrix. Those volumes are not
- * added to the renderer; this prop is. A volume that is not visible (SetVisibility) is left out.
+ * Its interface is vtkMultiVolume's: SetVolume() accepts a vtkVolume and a port. VTK's own vtkMultiVolume works with
+ * vtkGPUVolumeRayCastMapper only, which holds all inputs. Here each vtkVolume has a vtkStratusVolumeMapper of its own, which keeps its
+ * input, array, cropping, clipping planes, mask, sampling and ImageErrorTolerance, and its own vtkVolumeProperty and matrix. Add this prop
+ * to the renderer, not those volumes. A volume that is not visible (SetVisibility) is left out.
  *
  * A volume may have a vtkStratusTetrahedraMapper instead: unstructured and structured grids, and blocks of such, mix with the others cell
  * by cell, of blend mode composite without light and gradient opacity, by method auto or march. At least one volume must have a
  * vtkStratusVolumeMapper. Where there is a mesh the host draws.
  *
- * Of volumes, supported are blend mode composite, one to four components, point and cell data, functions of two variables (TF_2D), light,
- * gradient opacity, binary masks and label maps, crop boxes (the inside region, or all) and up to six clipping planes a volume; opaque
- * geometry, translucent surfaces peeled with volumes, hardware picking of the prop. All else is refused by an error, and nothing is drawn.
- * One volume alone is drawn as its mapper draws it.
+ * Volumes support blend mode composite, one to four components, point and cell data, functions of two variables (TF_2D), light, gradient
+ * opacity, binary masks and label maps, crop boxes (the inside region, or all) and up to six clipping planes a volume. The prop supports
+ * opaque geometry, translucent surfaces peeled with volumes, and hardware picking. Everything else is refused by an error, and nothing is
+ * drawn. A single volume is drawn as by its mapper.
  *
- * Device, FinalColorWindow, FinalColorLevel, ImageSampleDistance, MaximumImageSampleDistance, AutoAdjustSampleDistances,
- * InteractiveUpdateRate, UseJittering, JitterSeed, NumberOfThreads, Audit and CountSamples are those of the vtkStratusVolumeMapper at the
- * lowest port. The sampling's step is the smallest that any volume asks for; volumes that need less take every so many of these steps, and
- * those whose functions are sharp go from cell to cell.
+ * The vtkStratusVolumeMapper at the lowest port sets Device, FinalColorWindow, FinalColorLevel, ImageSampleDistance,
+ * MaximumImageSampleDistance, AutoAdjustSampleDistances, InteractiveUpdateRate, UseJittering, JitterSeed, NumberOfThreads, Audit and
+ * CountSamples. The step is the smallest that any volume needs. A volume that needs a longer one uses every n-th of these steps, and a
+ * volume whose functions are sharp is integrated from cell to cell.
  *
  * @sa vtkStratusVolumeMapper vtkStratusTetrahedraMapper vtkMultiVolume
  */
@@ -61,8 +61,8 @@ public:
 
   //@{
   /**
-   * As in vtkMultiVolume: each volume has its own property. The getter returns that of the lowest port (nullptr without volumes), and the
-   * setter does nothing.
+   * As in vtkMultiVolume, each volume has its own property. The getter returns the property of the volume at the lowest port (nullptr
+   * without volumes), and the setter does nothing.
    */
   void SetProperty(vtkVolumeProperty* property) override;
   vtkVolumeProperty* GetProperty() override;

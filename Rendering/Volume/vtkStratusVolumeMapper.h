@@ -14,24 +14,25 @@
  * - the blend modes composite, maximum and minimum intensity, average intensity (AverageIPScalarRange), additive, isosurface
  *   (vtkVolumeProperty::GetIsoSurfaceValues(), up to 16, linear interpolation, every root of the field in each cell), and slice
  *   (SliceFunction: a vtkPlane, vtkSphere, vtkCylinder, vtkCone or vtkQuadric without a transform, in the world);
- * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes): in composite rays are cast up to each of them, so that the parts
- *   between lie in order; in other modes the whole picture lies between them, at its first depth;
+ * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes). In composite mode, rays are cast up to each surface, so that the
+ *   parts of the volume between surfaces are in depth order. In other modes the whole frame is placed between the surfaces, at its first
+ *   depth;
  * - hardware picking, which finds the volume where it is visible;
  * - arrays of any number of components by one component or the magnitude (VectorMode);
  * - pictures as images, not in the window (RenderToImage).
  *
  * Composite mode also supports:
- * - light (Shade; the renderer's lights and TwoSidedLighting, by VTK's formula with the normal and the eye's direction of each
- *   sample), as isosurfaces do, too;
- * - gradient opacity, over magnitudes in values per mean spacing as in VTK's mappers; it multiplies the optical depth, or, as VTK means it,
- *   the opacity (GradientOpacityDistance);
- * - arrays of 2 to 4 components. Independent components are media that mix: their optical depths, times ComponentWeight, add up, or, as VTK
- *   means it, each counts by its share (ComponentMixing); each has a Shade and a material of its own. Dependent components are colour and
- * opacity (2), or red, green, blue and opacity (4 of unsigned char);
- * - two-dimensional transfer functions (TF_2D): columns are over the range of the values, rows over gradient magnitudes from 0 to a quarter
- *   of that range in a mean spacing, as VTK's mapper has them, or over the range of a second array (Transfer2DYAxisArray); opacities are
- *   per ScalarOpacityUnitDistance. Sampled by the midpoint rule alone; with it the step keeps ImageErrorTolerance;
- * - UseClippedVoxelIntensity: gradients at clipping planes take ClippedVoxelIntensity beyond them (vtkImageData, one component);
+ * - light (Shade; the renderer's lights and TwoSidedLighting, by VTK's formula with the normal and the eye's direction of each sample).
+ *   Isosurface mode supports light, too;
+ * - gradient opacity, over magnitudes in values per mean spacing as in VTK's mappers. It multiplies the optical depth or, as in VTK, the
+ *   opacity (GradientOpacityDistance);
+ * - arrays of 2 to 4 components. Independent components are media that mix (ComponentMixing): their optical depths, multiplied by
+ *   ComponentWeight, add up or, as in VTK, each counts by its share. Each has its own Shade and material. Dependent components are colour
+ *   and opacity (2), or red, green, blue and opacity (4 of unsigned char);
+ * - two-dimensional transfer functions (TF_2D). Columns cover the range of the values. Rows cover gradient magnitudes from 0 to a quarter
+ *   of that range per mean spacing, as in VTK's mapper, or the range of a second array (Transfer2DYAxisArray). Opacities are per
+ *   ScalarOpacityUnitDistance. Sampling is by the midpoint rule only, with a step that keeps ImageErrorTolerance;
+ * - UseClippedVoxelIntensity: gradients at clipping planes use ClippedVoxelIntensity beyond the planes (vtkImageData, one component);
  * - label maps, with colours, opacities and gradient opacities of their own.
  *
  * Lights of all kinds shine, with attenuation and cones (vtkLight; a ConeAngle of 90 and more is none). Maximum, minimum, average and
@@ -114,8 +115,8 @@ public:
 
   //@{
   /**
-   * Set/Get whether pictures are coarser while the window's desired update rate is at least InteractiveUpdateRate. The time allotted to
-   * this volume tells how coarse they are: first steps get longer, then rays fewer. Below that rate the picture is exact. Default on.
+   * Set/Get whether frames are coarser while the window's desired update rate is at least InteractiveUpdateRate. The time allotted to this
+   * volume decides how coarse they are: steps get longer first, then there are fewer rays. Below that rate the frame is exact. Default on.
    */
   vtkSetClampMacro(AutoAdjustSampleDistances, vtkTypeBool, 0, 1);
   vtkGetMacro(AutoAdjustSampleDistances, vtkTypeBool);
@@ -232,11 +233,14 @@ public:
 
   //@{
   /**
-   * Set/Get the world length over which gradient opacity multiplies the opacity. 0: none, it multiplies the optical depth; a value of
-   * opacity 1 then stays opaque, and the picture follows from the functions alone. Above 0: a way of this length through opacity A (of this
-   * length) with gradient opacity F lets 1 - F A pass. That is the meaning that VTK's mappers give a sample of this length, but the picture
-   * does not depend on the sample distance. Below 0: half of the mean spacing, the length that vtkSmartVolumeMapper samples by where it
-   * chooses itself. Where the two meanings differ by much, a warning says so, once. NaN and infinity are an error when drawing. Default 0.
+   * Set/Get the world length over which gradient opacity multiplies the opacity (default 0).
+   * - 0: gradient opacity multiplies the optical depth instead. A value of opacity 1 then stays opaque, and the frame depends only on the
+   *   functions.
+   * - Above 0: a ray segment of this length through opacity A (per this length) with gradient opacity F transmits 1 - F A. VTK's mappers
+   *   apply gradient opacity in this way to a sample of this length, but here the frame does not depend on the sample distance.
+   * - Below 0: half of the mean spacing, which is vtkSmartVolumeMapper's automatic sample distance.
+   *
+   * If the two definitions differ by much, a warning says so, once. NaN and infinity are an error when drawing.
    */
   vtkSetMacro(GradientOpacityDistance, double);
   vtkGetMacro(GradientOpacityDistance, double);
@@ -258,9 +262,9 @@ public:
   enum VectorModeType { DISABLED = -1, MAGNITUDE = 0, COMPONENT = 1 };
   //@{
   /**
-   * Set/Get what of an array of several components is drawn, as in vtkSmartVolumeMapper: all of them (DISABLED), their magnitude, in double
-   * precision, or VectorComponent alone, both by what the property has for component 0. A component that the array lacks is an error. An
-   * array of one component is drawn as it is. Default DISABLED and 0.
+   * Set/Get which components of an array are drawn, as in vtkSmartVolumeMapper: all of them (DISABLED), their magnitude, computed in double
+   * precision (MAGNITUDE), or only VectorComponent (COMPONENT). The last two use the property's functions of component 0. A component that
+   * the array lacks is an error. An array of one component is drawn as it is. Default DISABLED and 0.
    */
   vtkSetClampMacro(VectorMode, int, DISABLED, COMPONENT);
   vtkGetMacro(VectorMode, int);
@@ -386,10 +390,10 @@ public:
 
   //@{
   /**
-   * Set/Get the root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause, at least 0 and finite;
-   * another is an error, and the last one stays. 0 takes the finest settings. Default 0.001: 60 dB, a quarter of an 8-bit step. It governs
-   * what is left automatic of Sampling, SampleDistance (of cells: CellError) and Termination, and nothing where all are set by hand.
-   * GetExpectedError() tells what error is expected.
+   * Set/Get the root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause, at least 0 and finite; any
+   * other value is an error and is ignored. 0 selects the finest settings. Default 0.001: 60 dB, a quarter of an 8-bit step. It governs
+   * whichever of Sampling, SampleDistance (with cells: CellError) and Termination are automatic. GetExpectedError() returns the error that
+   * is expected.
    */
   virtual void SetImageErrorTolerance(double tolerance);
   vtkGetMacro(ImageErrorTolerance, double);
@@ -487,8 +491,8 @@ public:
 
   //@{
   /**
-   * Get the milliseconds of the last picture's stages, 0 for a stage that was not needed. The draw time is that of reading the depth and
-   * displaying the picture.
+   * Get the milliseconds of the last frame's stages, 0 for a stage that was not needed. The draw time covers reading the depth and
+   * displaying the frame.
    */
   double GetRangeTime();
   double GetTableTime();
@@ -526,10 +530,11 @@ public:
   //@}
 
   /**
-   * Get how the last picture that built anything built it: a row for each stage, in the columns "Stage" (string), "Where" (string: the name
-   * of the device that ran kernels for it, else "host"), "Milliseconds" (double: on the clock, without stages within it), "Bytes"
-   * (vtkIdType: of what the stage made) and "Kernels" (vtkIdType: how many the device ran). Drawing itself is no stage. A picture that
-   * reuses all it needs changes no row, and an aborted one tells what it built until then. There are no rows before the first picture.
+   * Get the build stages of the last frame that built anything. Each row is a stage. Columns: "Stage" (string), "Where" (string: the name
+   * of the device that ran its kernels, or "host"), "Milliseconds" (double: wall-clock time without nested stages), "Bytes" (vtkIdType:
+   * size of the stage's results) and "Kernels" (vtkIdType: number of kernels that the device ran). Drawing itself is not a stage. A frame
+   * that reuses everything changes no row. An aborted frame reports the stages that it finished. The table has no rows before the first
+   * frame.
    */
   vtkTable* GetBuildReport();
 
@@ -565,9 +570,9 @@ public:
 
   /**
    * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
-   * Get what automatic settings would take, without a picture, so that the pieces of a larger volume can agree on one: the sampling (of
-   * SamplingType; CELLS_SAMPLING also where a mix of cells and midpoints would be taken), the sample distance and the cell error, 0 where
-   * it has no part. Builds what the next picture needs. Returns false where nothing would be drawn; the next picture tells why.
+   * Compute the automatic settings without drawing, so that the pieces of a larger volume can agree on one: the sampling (a SamplingType;
+   * CELLS_SAMPLING also for a mix of cells and midpoints), the sample distance and the cell error, 0 if it is not used. Builds the data
+   * that the next frame needs. Returns false if nothing would be drawn; the next frame reports the reason.
    */
   bool MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3]);
 
