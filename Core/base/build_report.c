@@ -36,7 +36,7 @@ void stratus_stage_end(stratus_context* context, const stratus_stage* stage, con
   const double ms = stratus_now_ms() - stage->start_ms - (report->ended_ms - stage->ended_ms);
   const uint64_t kernels = report->launched - stage->launched - (report->ended_kernels - stage->ended_kernels);
   const uint64_t returned = report->returned - stage->returned - (report->ended_returned - stage->ended_returned);
-  const bool on_device = kernels && !returned; /* of what the host took over, the device's kernels made nothing */
+  const bool on_device = kernels && !returned; /* if the host took the stage over, the device's kernels made nothing of it */
   stratus_build_stage* told = find_stage(report, name, on_device ? context->device_name : "host");
   if (told) {
     /* Differences of large sums may round below zero. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Measures the stages of building: their time, the bytes of what they make, and the kernels that they launch. */
+ * Measures the stages of building: their time, the bytes of their results, and the kernels that they launch. */
 #ifndef STRATUS_BUILD_REPORT_H
 #define STRATUS_BUILD_REPORT_H
 
@@ -17,7 +17,7 @@ typedef struct stratus_build_report {
   uint64_t ended_kernels, ended_returned;
 } stratus_build_report;
 
-/* What the sums were when a stage began. */
+/* The sums at the time when a stage began. */
 typedef struct stratus_stage {
   double start_ms, ended_ms;
   uint64_t launched, ended_kernels, returned, ended_returned;
@@ -25,7 +25,7 @@ typedef struct stratus_stage {
 
 /* Begins a stage. One that fails needs no end: it is not reported, and its time and kernels count for the stage around it. */
 stratus_stage stratus_stage_begin(const stratus_context* context);
-/* Ends a stage and adds it to the context's report. name: a constant; one stage has one name in all its calls. bytes: of what it made. */
+/* End a stage and add it to the context's report. name: a constant; one stage has one name in all its calls. bytes: size of its result. */
 void stratus_stage_end(stratus_context* context, const stratus_stage* stage, const char* name, size_t bytes);
 
 #endif

@@ -266,11 +266,11 @@ void stratus_calibration_add(stratus_calibration* calibration)
 
 /* ---------------------------------------------------------------- process */
 
-/* What this process has asked for. */
+/* The calibrations that this process has used. */
 static stratus_calibration kept[KEPT];
 static int kept_count;
 
-/* Takes the file's numbers or measures them. measuring_ms is left alone if nothing is measured. */
+/* Use the file's numbers or measure them. measuring_ms is unchanged if nothing is measured. */
 static stratus_status make(
   stratus_context* context, stratus_calibration* calibration, stratus_calibration_measure* measure, void* job, double* measuring_ms)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What things cost on this machine: measured by a process when it first asks, kept for the process, and stored in a file for later ones. */
+ * Costs of operations on this machine. A process measures them when it first needs them, keeps them, and stores them in a file for later
+ * processes. */
 #ifndef STRATUS_CALIBRATION_H
 #define STRATUS_CALIBRATION_H
 
@@ -13,24 +14,24 @@
 /* Costs that were measured. Numbers are times, or counts that no process has otherwise: of several processes' the least of each is kept,
  * because interruptions only add. */
 typedef struct stratus_calibration {
-  char name[STRATUS_CALIBRATION_NAME]; /* what was measured, and of which part of the machine */
+  char name[STRATUS_CALIBRATION_NAME]; /* the quantity measured, and the part of the machine */
   int processes;                       /* how many have measured it; 0: none */
   int count;
   double numbers[STRATUS_CALIBRATION_NUMBERS];
 } stratus_calibration;
 
-/* Returns a calibration of `count` numbers that nobody has measured. kind: what is measured; part: what it is measured of. Characters of
- * theirs that the file cannot have are replaced. */
+/* Return a calibration of `count` numbers that are not measured yet. kind: the quantity; part: the part of the machine. Characters that the
+ * file cannot contain are replaced. */
 stratus_calibration stratus_calibration_of(const char* kind, const char* part, int count);
-/* Does that of the host as the context uses it: its processor, instruction set and number of threads. */
+/* Return a calibration of the host as the context uses it: its processor, instruction set and number of threads. */
 stratus_calibration stratus_calibration_of_host(const stratus_context* context, const char* kind, int count);
 
-/* Measures the numbers. It must not ask for a calibration itself. */
+/* Measures the numbers. It must not use a calibration itself. */
 typedef stratus_status stratus_calibration_measure(stratus_context* context, void* job, double* numbers);
 
-/* Fills in the calibration's numbers. Those that this process has are taken, and else those of the file that three processes have measured.
- * Else they are measured, the least of them and of the file's are taken, and the file gets these. One thread at a time does so. Of more
- * than 16 calibrations the process forgets those before the last. A file that cannot be read or written is no failure. */
+/* Fill in the calibration's numbers. They are this process's numbers if it has them, otherwise the file's if three processes have measured
+ * them. Otherwise they are measured; the least of these and of the file's are used, and written to the file. One thread at a time does so.
+ * Of more than 16 calibrations the process forgets the ones before the last. A file that cannot be read or written is not a failure. */
 stratus_status stratus_calibrate(
   stratus_context* context, stratus_calibration* calibration, stratus_calibration_measure* measure, void* job);
 

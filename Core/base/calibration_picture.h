@@ -13,8 +13,8 @@
 /* Floats of the picture. */
 #define STRATUS_CALIBRATION_FLOATS (4 * STRATUS_CALIBRATION_SIDE * STRATUS_CALIBRATION_SIDE)
 
-/* Draws the picture where the context draws: on its device, or on the host by all its threads. ms: the shortest time of several, each with
- * the way of the picture back to `rgba`. The volume's way to a device and the building of its kernel are not in it. */
+/* Draw the calibration image where the context draws: on its device, or on the host by all its threads. ms: the shortest time of several.
+ * It includes copying the image back to `rgba`, but neither copying the volume to a device nor building its kernel. */
 stratus_status stratus_calibration_picture(stratus_context* context, float rgba[STRATUS_CALIBRATION_FLOATS], double* ms);
 
 /* calibration_picture_isa.c, once for each instruction set: draws tile `tile`, counted along rows. */

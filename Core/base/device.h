@@ -16,7 +16,8 @@
 /* Opens a device. selector: a decimal index, or a part of a name in any case. */
 stratus_status stratus_device_open(stratus_context* context, const char* selector, stratus_device** device);
 stratus_status stratus_device_open_id(stratus_context* context, cl_device_id id, stratus_device** device);
-/* Takes NULL. Returns how its queue ended, as OpenCL tells: the only news of a device that is lost after its last result was read. */
+/* Accepts NULL. Returns the status with which its queue ended, as OpenCL reports it. Only this reports a device that is lost after its last
+ * result was read. */
 cl_int stratus_device_close(stratus_device* device);
 
 /* Lists the devices that "auto" may take, and returns how many they are: GPUs, and with `processors` CPUs, too. */
@@ -28,8 +29,8 @@ void stratus_device_describe(cl_device_id id, char* text, size_t capacity);
  * "auto" took it. The reason goes to the log. A call of a device that was named fails, if not for want of memory. */
 bool stratus_device_hands_back(stratus_context* context, stratus_status status);
 
-/* True if the context's device builds structures: a device that was asked for by name, and a GPU that "auto" took. A CPU's OpenCL that
- * stands for a GPU in tests of "auto" does not: the host builds faster on the same cores. */
+/* True if the context's device builds structures: a device that was requested by name, or a GPU that "auto" chose. A CPU's OpenCL that
+ * replaces a GPU in tests of "auto" does not: the host builds faster on the same cores. */
 bool stratus_device_builds(const stratus_context* context);
 
 const char* stratus_device_label(const stratus_device* device);
@@ -38,17 +39,17 @@ bool stratus_device_is_cpu(const stratus_device* device);
 bool stratus_device_has_double(const stratus_device* device);
 size_t stratus_device_largest_allocation(const stratus_device* device);
 
-/* Gives kernel `kernel` of the embedded source `source` (its file's name without .cl), built with `defines` ("-DA=1 -DB=2"). The device
- * caches programs and kernels by source and defines, and owns the kernel. defines NULL: the kernel hangs on none, so that any program of
- * the source serves, if one is built. A failed build leaves its log in the message. */
+/* Get kernel `kernel` of the embedded source `source` (its file's name without .cl), built with `defines` ("-DA=1 -DB=2"). The device
+ * caches programs and kernels by source and defines, and owns the kernel. defines NULL: the kernel depends on no define, so that any
+ * program of the source serves, if one is built. A failed build leaves its log in the message. */
 stratus_status stratus_device_kernel(
   stratus_context* context, const char* source, const char* defines, const char* kernel, cl_kernel* result);
 /* Gives a kernel of the caller's `text`. `source` is its name in the cache and in messages. */
 stratus_status stratus_device_kernel_from(
   stratus_context* context, const char* source, const char* text, const char* defines, const char* kernel, cl_kernel* result);
 
-/* Creates a buffer of `bytes` (at least 1). host NULL: it is not initialised. Else it is a copy of `host`, or, with `borrow` and where
- * device and host share memory, `host` itself, which must then outlive the buffer. */
+/* Create a buffer of `bytes` (at least 1). host NULL: it is not initialised. Otherwise it is a copy of `host`. With `borrow`, and if device
+ * and host share memory, it is `host` itself, which must then outlive the buffer. */
 stratus_status stratus_device_buffer(
   stratus_context* context, cl_mem_flags access, size_t bytes, const void* host, bool borrow, cl_mem* buffer);
 void stratus_device_buffer_release(cl_mem buffer); /* takes NULL */

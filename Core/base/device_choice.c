@@ -11,8 +11,8 @@
 
 #define NAME_MOST 320
 
-/* Draws in a context like `context`, but on the device of `job`; NULL: on the host. Nobody asked for this picture, so the caller's
- * callbacks do not hear of it. */
+/* Draw in a context like `context`, but on the device of `job`; NULL: on the host. The user did not request this image, so the caller's
+ * callbacks are not called. */
 static stratus_status measure(stratus_context* context, void* job, double* numbers)
 {
   const cl_device_id* id = job;

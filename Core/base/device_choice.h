@@ -6,9 +6,9 @@
 
 #include "device.h"
 
-/* Gives a context without a device the one that the selector names, as stratus_context_options::device tells, and its name. Nothing is
- * measured by a selector other than "auto", or where "auto" has no candidate. A candidate that fails is left out, and the log says so.
- * processors: see stratus_device_candidates(); only tests let "auto" take CPUs, whose cores are the host's. */
+/* Give a context without a device the device that the selector names (see stratus_context_options::device), and its name. Nothing is
+ * measured for a selector other than "auto", or if "auto" has no candidate. A candidate that fails is left out, and the log says so.
+ * processors: see stratus_device_candidates(); only tests let "auto" use CPUs, whose cores are the host's. */
 stratus_status stratus_device_choose(stratus_context* context, const char* selector, bool processors);
 
 /* Returns the index of the device that takes the least time, or -1 if that is not less than the host's. A device whose time is INFINITY is

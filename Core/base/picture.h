@@ -14,8 +14,8 @@ void stratus_image_clear(const stratus_image* image);
 /* Makes room for a part of the image: colours in float and, where the image has them, depth and samples. */
 stratus_status stratus_image_part_create(stratus_context* context, const stratus_image* image, stratus_image* part);
 void stratus_image_part_destroy(stratus_context* context, stratus_image* part);
-/* Adds a part's premultiplied colours times weight, up to 1; its alpha likewise or, where pictures are opaque, the larger one. The nearer
- * depth stays. Samples add up. The sum's bytes are left as they are. */
+/* Add a part's premultiplied colours times weight, up to 1. Its alpha is added in the same way; if images are opaque, the larger alpha
+ * stays. The nearer depth stays. Samples add up. The sum's bytes are unchanged. */
 void stratus_image_add(const stratus_image* sum, const stratus_image* part, float weight, bool opaque);
 /* Rounds a colour, which is never negative, to a byte; those above 1 become 255. */
 static inline uint8_t stratus_image_byte(float color)

@@ -86,7 +86,7 @@ bool stratus_programs_are_kept(cl_device_id id)
     strcmp(name, "Portable Computing Language") == 0;
 }
 
-/* What the processor can do. Its name does not tell where a virtual machine hides it, and compilers for it ask for what it can do. */
+/* Write the processor's features. Its name does not show them if a virtual machine hides it, and compilers for it query the features. */
 static void processor_features(char* text, size_t capacity)
 {
 #if defined(__x86_64__) || defined(__i386__)
@@ -159,7 +159,7 @@ static bool read_whole(int handle, void* to, size_t size)
   return true;
 }
 
-/* Whether the file is one of ours for this key, as far as its header and its size tell. */
+/* Whether the file is one of ours for this key, by its header and its size. */
 static bool begins_well(int handle, const char* key, header* h)
 {
   struct stat status;

@@ -16,8 +16,8 @@ stratus_status stratus_program_folder(stratus_context* context, const char* fold
 /* Whether the device's OpenCL keeps programs of its own. PoCL does, and it would compile each kernel once more to give its binary. */
 bool stratus_programs_are_kept(cl_device_id id);
 
-/* Writes the key of a program: platform, device, vendor, driver and their versions, the processor's features where the device is one,
- * build options, and the source by length and hash. Returns false where OpenCL does not tell; then the program is not cached. */
+/* Write the key of a program: platform, device, vendor, driver and their versions, the processor's features if the device is one, build
+ * options, and the source by length and hash. Returns false if OpenCL does not report them; then the program is not cached. */
 bool stratus_program_key(cl_device_id id, const char* text, const char* options, char key[STRATUS_PROGRAM_KEY]);
 
 /* Gives a copy of the binary that is stored for the key, NULL where there is none. The caller releases it. Fails only where memory does. */

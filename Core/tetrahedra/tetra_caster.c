@@ -192,7 +192,7 @@ static stratus_status update_list(stratus_tetra_caster* caster, const stratus_me
   return status;
 }
 
-/* Takes a mesh, or the list of a lattice that cannot be drawn as it is. *drawn: what the caster has taken. */
+/* Update the caster to a mesh, or to the list of a lattice that cannot be drawn directly. *drawn: the mesh that the caster now has. */
 static stratus_status update(
   stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options, const stratus_mesh** drawn, double* ms)
 {
@@ -319,7 +319,7 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   return marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report);
 }
 
-/* In the report, counts and times are sums, the method is that of all. */
+/* In the report, counts and times are sums; the method is the same for all parts. */
 static void add_report(stratus_tetra_report* sum, const stratus_tetra_report* part)
 {
   sum->method = part->method;
@@ -384,7 +384,7 @@ static void fill_report(const stratus_tetra_caster* caster, stratus_tetra_report
     b->first.bytes + b->entries.bytes;
 }
 
-/* Checks what is drawn and takes it: mesh, list and table. *drawn: what the caster has taken. */
+/* Check the input and update the caster to it: mesh, list and table. *drawn: the mesh that the caster now has. */
 static stratus_status take(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera,
   const stratus_image* image, const stratus_mesh** drawn, stratus_tetra_report* report)
 {

@@ -18,13 +18,13 @@ typedef struct stratus_tetra_cells {
 } stratus_tetra_cells;
 
 stratus_tetra_cells stratus_tetra_cells_of(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh);
-/* The points of tetrahedron 0..count-1 by their numbers among those of `tetra`, of listed cells by those in the mesh, and where a value of
- * its own stands among the values of `tetra`. Returns false if it does not show or has no volume. */
+/* Get the points of tetrahedron 0..count-1, as indices into the points of `tetra`, or into the mesh for listed cells. value: index of its
+ * own value among the values of `tetra`. Returns false if the cell does not show or has no volume. */
 bool stratus_tetra_cell_at(const stratus_tetra_cells* cells, int64_t number, int32_t v[4], int64_t* value);
-/* The place of a point by the same numbers. */
+/* Get the place of a point by the same index. */
 void stratus_tetra_point_at(const stratus_tetra_cells* cells, int64_t point, double at[3]);
 
-/* The values of a part of the mesh, see stratus_mesh_part(): those of `tetra` from `first` on. */
+/* The values of a part of the mesh, see stratus_mesh_part(): the values of `tetra` from `first` on. */
 typedef struct stratus_tetra_slots {
   const stratus_mesh* mesh; /* the part */
   int64_t first, count;
@@ -39,7 +39,7 @@ int stratus_tetra_component_count(const stratus_mesh* mesh);
 stratus_volume stratus_tetra_component(const stratus_mesh* part, int c);
 /* stratus_volume_bias() of all parts' values of a component. */
 double stratus_tetra_bias(const stratus_mesh* mesh, int c);
-/* Fetches component c's values in the order of those of `tetra`. The caller releases them. */
+/* Return component c's values, reordered to match `tetra`. The caller frees the array. */
 stratus_status stratus_tetra_fetch_component(const stratus_tetra_cells* cells, int c, double* bias, float** values);
 /* Fetches the first component of a value; NAN where another component is not finite, so that its cells do not show. */
 float stratus_tetra_fetch(const stratus_mesh* part, const stratus_volume* volume, double bias, size_t value);

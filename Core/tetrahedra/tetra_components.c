@@ -85,7 +85,7 @@ typedef struct components_build {
   float scale[4], offset[4]; /* from a fetched value to its place */
 } components_build;
 
-/* The function of a component's table. half: points for one that has a colour alone. */
+/* Return the function of a component's table. half: points for a component that has only a colour. */
 static stratus_transfer function_of(const components_build* b, int c, double half[2])
 {
   const bool colors = b->made.dependent && c + 1 < b->made.count;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Measures what march and projection cost on this machine: both draw a small mesh, once with many pixels to a cell and once with few, so
- * that costs of pixels and costs of cells are told apart. What they draw is counted by the estimate that views
- * of the user's are counted by, so that what it is wrong by is in the costs. It is done once for each instruction set and number of
- * threads, by a few processes (calibration.h). */
+ * Measures the costs of march and projection on this machine. Both draw a small mesh, once with many pixels for each cell and once with
+ * few, so that costs of pixels and costs of cells can be separated. Segments and cells are counted by the estimate that is used for the
+ * user's views, so that the costs include the estimate's error. It is done once for each instruction set and number of threads, by a few
+ * processes (calibration.h). */
 #include "tetra_costs.h"
 
 #include "calibration.h"
@@ -23,7 +23,7 @@
 #define TOLERANCE 0.001
 
 typedef struct sample {
-  stratus_context context; /* without callbacks: nobody asked for these pictures */
+  stratus_context context; /* without callbacks: the user did not request these images */
   stratus_mesh mesh;
   stratus_tetra_mesh* tetra;
   stratus_table* table;
@@ -36,8 +36,8 @@ typedef struct sample {
   float rgba[4 * MANY * MANY];
 } sample;
 
-/* What is measured, in nanoseconds as stratus_tetra_costs has them. Only times that can be compared between processes: a piece's cost is a
- * difference of two, which is too small where an interruption made the second too large. */
+/* The measured times, in nanoseconds as in stratus_tetra_costs. They are only times that can be compared between processes: a piece's cost
+ * is a difference of two times, which is too small if an interruption made the second too large. */
 typedef enum measured {
   SEGMENT,
   SORTED,

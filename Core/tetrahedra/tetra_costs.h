@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What march and projection cost: the counts of a view, and the time that each takes on this machine. */
+ * Costs of march and projection: the counts of a view, and the time of each count on this machine. */
 #ifndef STRATUS_TETRA_COSTS_H
 #define STRATUS_TETRA_COSTS_H
 
 #include "tetra_caster.h"
 
-/* What decides which cells show. */
+/* The inputs that decide which cells show. */
 typedef struct stratus_tetra_shown {
   const stratus_tetra_mesh* tetra;
   const stratus_table* table;
@@ -27,13 +27,13 @@ struct stratus_tetra_costs {
   double segment, piece, packet, cell, sorted;
 };
 
-/* tetra_costs.c: copies the costs by this machine and by the context's instruction set and threads. They are kept for the process, and
- * three processes measure them before they are taken from a file: see calibration.h.
+/* tetra_costs.c: copy the costs on this machine with the context's instruction set and threads. They are kept for the process, and three
+ * processes measure them before they are read from a file: see calibration.h.
  *
- * They are those of one mesh: 25 thousand cells of like size and shape, all of which show, of an opacity that ends no ray, in pictures of
- * 96 x 96 and 16 x 16 pixels. So they say how two ways of drawing compare on this machine, not how long a view takes. A mesh of many
- * millions of cells misses the caches more often by either way, and threads share large pictures more evenly; slivers and rays that end
- * early make the counts themselves less sure. Where the two estimates are close, the dearer way may be taken. */
+ * They are measured with one mesh: 25 thousand cells of similar size and shape, all of which show, of an opacity that ends no ray, in
+ * images of 96 x 96 and 16 x 16 pixels. So they compare the two methods on this machine, and do not predict the time of a view. A mesh of
+ * many millions of cells misses the caches more often by either method, and threads share large images more evenly; slivers and rays that
+ * end early make the counts themselves less certain. If the two estimates are close, the slower method may be chosen. */
 stratus_status stratus_tetra_costs_here(stratus_context* context, stratus_tetra_costs* costs);
 
 #endif

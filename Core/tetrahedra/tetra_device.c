@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What both ways to draw tetrahedra on the OpenCL device need: buffers that are kept from frame to frame, the frame's way to the device,
- * and the picture's way back. */
+ * Common parts of both methods on the OpenCL device: buffers that are kept from frame to frame, copying the frame to the device, and
+ * copying the image back. */
 #include "tetra_device.h"
 
 #include "tetra_caster.h"

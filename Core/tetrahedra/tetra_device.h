@@ -6,7 +6,7 @@
 #include "device_frame.h"
 #include "tetra_project.h"
 
-/* What the device keeps from frame to frame. Both methods use one set of buffers, of which each draws with its own. */
+/* The buffers that the device keeps from frame to frame. Both methods share one set of buffers; each draws with its own part of it. */
 typedef enum stratus_tetra_slot {
   /* of the mesh: for the march cells and their values, for projection vertices and values of cells */
   TETRA_CELLS,
@@ -44,7 +44,7 @@ typedef enum stratus_tetra_slot {
 
 typedef struct stratus_tetra_device {
   stratus_device_slot slots[TETRA_SLOTS];
-  uint64_t march_mesh, march_values, project_mesh, project_values, table, gradients, components; /* build numbers of what the slots hold */
+  uint64_t march_mesh, march_values, project_mesh, project_values, table, gradients, components; /* build numbers of the slots' contents */
 } stratus_tetra_device;
 
 /* Identifies the mesh, its values and the table of a frame by build numbers > 0 that rise, so that the device copies them only once. A

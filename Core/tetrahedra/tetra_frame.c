@@ -22,7 +22,7 @@ typedef struct frame_build {
   const stratus_mesh* mesh;
   stratus_tetra_frame* frame;
   double matrix[16]; /* local -> a, b, c */
-  double scale;      /* from a, b, c to the floats' coordinates; parallel: of z alone */
+  double scale;      /* from a, b, c to the floats' coordinates; parallel: only of z */
   bool mirrored;
   stratus_tetra_border_face* faces;
 } frame_build;
@@ -224,7 +224,7 @@ static stratus_status place_points(frame_build* build, stratus_tetra_buffers* bu
   return STRATUS_OK;
 }
 
-/* Stores the parts of rays that depend on the column or the row alone. The padding beyond the picture repeats the last ones. */
+/* Store the parts of rays that depend only on the column or only on the row. The padding beyond the image repeats the last ones. */
 static stratus_status place_lines(frame_build* build, stratus_tetra_buffers* buffers)
 {
   stratus_tetra_frame* frame = build->frame;

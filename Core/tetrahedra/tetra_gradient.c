@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-/* What a range of points gathers. Threads share the points, not the cells, and each point adds its cells in their order: the result does
- * not depend on the number of threads. */
+/* The sums of a range of points. Threads share the points, not the cells, and each point adds its cells in their order: the result does not
+ * depend on the number of threads. */
 typedef struct gradient_build {
   stratus_tetra_cells cells;
   const stratus_tetra_mesh* tetra;
@@ -106,7 +106,7 @@ static stratus_status gather_all(const gradient_build* b, bool gradients)
   return stratus_tetra_join_sums(&b->cells, b->tetra->values ? b->values : NULL, b->sums);
 }
 
-/* The mean of what a point has gathered; 0 where no cell shows. */
+/* The mean of a point's sums; 0 if no cell shows. */
 static double mean_of(const double sum[4], int axis)
 {
   const double mean = sum[axis] / sum[3];

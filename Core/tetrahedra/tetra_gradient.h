@@ -10,8 +10,8 @@
 stratus_status stratus_tetra_gradients_create(
   const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, unsigned mask, stratus_tetra_gradients* gradients);
 
-/* tetra_seams.c: gives points of several lattices that lie in one place and have one value the sum of all their sums, four for each point.
- * values: of points; NULL: the place alone counts. */
+/* tetra_seams.c: replace the sums of points of several lattices that are in one place and have one value by the sum over all these points,
+ * four numbers for each point. values: of points; NULL: only the place counts. */
 stratus_status stratus_tetra_join_sums(const stratus_tetra_cells* cells, const float* values, double* sums);
 
 #endif

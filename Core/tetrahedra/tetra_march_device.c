@@ -85,7 +85,7 @@ static stratus_status march(device_march* m, size_t entries, uint32_t* sums)
   static const stratus_tetra_slot order[] = { TETRA_ARGUMENTS, TETRA_CELLS, TETRA_CELL_VALUES, TETRA_SUMS, TETRA_COLORS, TETRA_POINTS,
     TETRA_LINES, TETRA_ENDS, TETRA_FACES, TETRA_BIN_BEGIN, TETRA_BINS, TETRA_FIRST, TETRA_ENTRIES, TETRA_FOUND, TETRA_RGBA, TETRA_RGBA8,
     TETRA_DEPTH, TETRA_SAMPLES, TETRA_COUNTS, TETRA_GRADIENTS, TETRA_FACTORS, TETRA_COMPONENT_PLACES,
-    TETRA_COMPONENT_SUMS }; /* the last four of a lit frame alone */
+    TETRA_COMPONENT_SUMS }; /* the last four only of a lit frame */
   const stratus_image* image = &m->frame->image;
   const size_t sums_bytes = m->tiles * 4 * sizeof *sums;
   TRY(stratus_slot_reserve(m->context, m->slots + TETRA_ENTRIES, CL_MEM_READ_WRITE, 2 * sizeof(int32_t) * (entries > 0 ? entries : 1)));

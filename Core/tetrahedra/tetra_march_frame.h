@@ -62,7 +62,7 @@ typedef struct stratus_tetra_frame {
   const int32_t* media;    /* their sums */
   size_t media_count;
   stratus_camera camera;
-  double basis[3][3];            /* what a unit of a, b and z of the rays' coordinates is in the world */
+  double basis[3][3];            /* world vectors of one unit of a, b and z of the rays' coordinates */
   double middle, per_z, lean[2]; /* k = middle + per_z*z - lean[0]*u - lean[1]*v */
   stratus_image image;
 } stratus_tetra_frame;

@@ -26,7 +26,7 @@ bool stratus_tetra_shows(
   return shows;
 }
 
-/* What the values of a mesh say: which cells show, and the range of those with a volume. */
+/* Counts from the values of a mesh: the cells that show, and the range of values of the cells with a volume. */
 typedef struct value_counts {
   int64_t shown, blanked, repeated, changed; /* changed: cells that show and did not, or the other way round */
   float low, high;
@@ -107,7 +107,7 @@ static int face_with(const int32_t cell[4], const int32_t point[3])
   return -1;
 }
 
-/* Returns the orientation of a cell that fits that of the neighbour behind its face f: both lie on either side of the face. */
+/* Return the orientation of a cell that agrees with the neighbour behind its face f: the two are on either side of the face. */
 static int fitting_orientation(const stratus_mesh* mesh, int64_t cell, int f, int32_t neighbour, int orientation)
 {
   const int32_t* w = mesh->vertices + 4 * (int64_t)neighbour;
@@ -199,7 +199,7 @@ static void pack_cells(
   }
 }
 
-/* Lists the border faces unless faces is NULL, and returns their count. Their order is that of their cells' places, so that the faces of a
+/* List the border faces unless faces is NULL, and return their count. They are in the order of their cells' places, so that the faces of a
  * tile are near each other in memory. */
 static size_t list_faces(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency,
   const stratus_tetra_places* places, stratus_tetra_face* faces)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Chooses between march and projection by their estimated cost for a view: what the view has to draw, times what each takes on this
- * machine. Earlier frames have no influence, so a still camera never changes the method. A processor's OpenCL draws by the host's costs:
- * both methods run the host's code there, and slow down alike. */
+ * Chooses between march and projection by their estimated cost for a view: the view's counts, times the time of each count on this machine.
+ * Earlier frames have no influence, so a still camera never changes the method. A processor's OpenCL draws by the host's costs: both
+ * methods run the host's code there, and slow down equally. */
 #include "tetra_caster.h"
 
 #include "tetra_cells.h"

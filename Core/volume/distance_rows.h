@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Operations on rows of distances, one byte for each block. No distance exceeds 127, so that one can be added without overflow. Every loop
- * consists of a few unsigned byte minima and additions, which any compiler vectorises. `side` tells where along x the other blocks lie: -1,
+ * consists of a few unsigned byte minima and additions, which any compiler vectorises. `side` is the side of the other blocks along x: -1,
  * 0 (both sides), +1. */
 #ifndef STRATUS_DISTANCE_ROWS_H
 #define STRATUS_DISTANCE_ROWS_H
@@ -106,7 +106,7 @@ static inline void row_near(const uint8_t* restrict row, int64_t n, int side, ui
   }
 }
 
-/* Merges the distance of empty blocks in `row` with that of occupied blocks in `inner`, which gets its mark. One of the two is 0. */
+/* Merge the distance of empty blocks in `row` with the distance of occupied blocks in `inner`, which gets its mark. One of the two is 0. */
 static inline void row_merge(const uint8_t* restrict inner, int64_t n, uint8_t* restrict row)
 {
   for (int64_t x = 0; x < n; ++x) {

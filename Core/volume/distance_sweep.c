@@ -3,7 +3,7 @@
  * block in the next row are one step away: D = min(D, 1 + least of them). Along z these are 3x3 neighbours, in one octant 2x2. The sweeps
  * up and down z are independent, and the distance is the minimum of both. Threads share these sweeps and the octants.
  *
- * An octant's distance counts only occupied blocks that lie behind the block on no axis, as seen along the octant's direction. Each axis
+ * An octant's distance counts only occupied blocks that are behind the block on no axis, as seen along the octant's direction. Each axis
  * therefore needs one sweep in one direction. */
 #include "distance_sweep.h"
 #include "distance_rows.h"

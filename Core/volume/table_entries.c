@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Lays out a table's entries: a uniform grid, and cells divided where the function has steps or features narrower than cells.
  *
- * Smooth functions have the grid alone. Whole numbers lie in the middles of cells, and an odd number of cells from one to the next puts a
+ * Smooth functions have only the grid. Whole numbers are in the middles of cells, and an odd number of cells from one to the next puts a
  * border half-way: label windows need no divided cell. */
 #include "table_entries.h"
 
@@ -41,9 +41,10 @@ static double narrowest_feature(const stratus_transfer* transfer, double range)
   return narrowest;
 }
 
-/* Shrinks lo..hi, the data's values, to the function's points and a margin. Nothing changes beyond that margin. A mean over entries counts
- * all of the way from one value to another: sums shrink by that only where the function is transparent, which rays know (*cut). Beyond an
- * end that shows they reach OUTSIDE_SPANS times the points' span, so that a fill value far away makes no entry coarse. */
+/* Shrink lo..hi, the data's values, to the function's points and a margin. Nothing changes beyond that margin. A mean over entries counts
+ * the whole range from one value to another. Running sums therefore shrink to the margin only if the function is transparent there, which
+ * rays know (*cut). Beyond an end that shows they reach OUTSIDE_SPANS times the points' span, so that a fill value far away makes no entry
+ * coarse. */
 static void table_span(const stratus_transfer* transfer, bool sums, double* lo, double* hi, bool* cut)
 {
   const double* first = transfer->opacity;
@@ -135,7 +136,7 @@ static int cell_of(const stratus_table_entries* t, float value)
   return stratus_grid_cell(t->scale, t->offset, t->cells, value);
 }
 
-/* Returns the least float from lo to hi with a cell of at least `cell`, which that of hi is. */
+/* Return the least float from lo to hi with a cell of at least `cell`. hi has such a cell. */
 static float cell_begin(const stratus_table_entries* t, float lo, float hi, int cell)
 {
   int64_t least = stratus_float_rank(lo), most = stratus_float_rank(hi);
@@ -281,7 +282,7 @@ static double middle_of_cell(const dividing* d, int cell)
   return d->has_few_floats && floats_of_cell(d, cell, &first, &last) ? value_of_entry(d, first, last) : d->t->from + cell * d->t->width;
 }
 
-/* By how much a value may lie beyond that of the float that it is fetched as. */
+/* Return by how much a value may exceed the value of the float that it is fetched as. */
 static double reach_of(const dividing* d, float first, float last)
 {
   return d->values->fetching.wide ? fmax(fabs((double)first), fabs((double)last)) * 0x1p-23 : 0.0;
@@ -373,7 +374,7 @@ static stratus_status bound_point(dividing* d, double x, float first, float last
     const double at = fetching->integer ? ceil(x) : x, before = fetching->integer ? at - 1.0 : nextafter(x, -INFINITY);
     from = fminf(above, (float)(at - fetching->bias));
     to = fmaxf(above, nextafterf((float)(before - fetching->bias), INFINITY));
-  } else if (stratus_fetching_value(fetching, above) == x) { /* opacity 1 or 0 may be that of the point alone */
+  } else if (stratus_fetching_value(fetching, above) == x) { /* only the point may have opacity 1 or 0 */
     const double opacity = stratus_curve_at(&d->pieces->opacity, x);
     to = opacity <= 0.0 || opacity >= 1.0 ? nextafterf(above, INFINITY) : above;
   }
@@ -385,7 +386,7 @@ static stratus_status bound_point(dividing* d, double x, float first, float last
   return STRATUS_OK;
 }
 
-/* Adds bounds between the floats first..last, which lie in one piece, so that its opacity and colours change little in each part. */
+/* Add bounds between the floats first..last of one piece, so that its opacity and colours change little in each part. */
 static stratus_status bound_ramp(dividing* d, float first, float last)
 {
   const double lo = stratus_fetching_value(&d->values->fetching, first), hi = stratus_fetching_value(&d->values->fetching, last);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Copies of transfer functions, which structures keep after the call, and the comparison with those of the next call. */
+ * Copies of transfer functions, which structures keep after the call, and their comparison with the functions of the next call. */
 #include "volume.h"
 
 #include <string.h>

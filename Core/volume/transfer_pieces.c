@@ -258,7 +258,7 @@ float stratus_fetching_above(const stratus_fetching* fetching, double value)
   return stratus_float_of_rank(lo);
 }
 
-/* Appends lo..hi if lo <= hi, or lengthens the last interval if no float lies between. */
+/* Append lo..hi if lo <= hi, or lengthen the last interval if there is no float between. */
 static void append_floats(stratus_shown* shown, float lo, float hi)
 {
   if (!(lo <= hi)) {
@@ -287,7 +287,7 @@ static void append_fetched(stratus_shown* shown, const stratus_fetching* fetchin
     if (least <= most && !(first <= last)) {
       first = from;
       last = to;
-    } else if (least <= most) { /* the two overlap: a float between them would be the nearest to what is fetched beyond it */
+    } else if (least <= most) { /* the two overlap: a float between them would be nearest to the values that are fetched beyond it */
       first = from < first ? from : first;
       last = to > last ? to : last;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The transfer function's own pieces. What they answer is exact in double: no table of samples stands between. */
+ * The transfer function's own pieces. Their results are exact in double, because no table of samples is involved. */
 #ifndef STRATUS_TRANSFER_PIECES_H
 #define STRATUS_TRANSFER_PIECES_H
 
@@ -25,8 +25,8 @@ typedef struct stratus_pieces {
 
 stratus_status stratus_pieces_create(stratus_context* context, const stratus_transfer* transfer, stratus_pieces** pieces);
 void stratus_pieces_destroy(stratus_pieces* pieces);
-/* Returns where x is between left and right, left <= x <= right, left < right: 0 at left, 1 at right, never outside 0..1. Differences of
- * large numbers may overflow, those of their halves do not. */
+/* Return where x is between left and right, left <= x <= right, left < right: 0 at left, 1 at right, never outside 0..1. Differences of
+ * large numbers may overflow, differences of their halves do not. */
 static inline double stratus_part_between(double x, double left, double right)
 {
   const double width = right - left;
@@ -48,7 +48,7 @@ typedef struct stratus_intervals {
 
 /* Finds the values of opacity above 0. The caller releases intervals->of. */
 stratus_status stratus_transfer_intervals(stratus_context* context, const stratus_transfer* transfer, stratus_intervals* intervals);
-/* Appends lo..hi if lo <= hi. If no double lies between it and the last interval, it lengthens that one. */
+/* Append lo..hi if lo <= hi. If there is no double between it and the last interval, lengthen that interval. */
 void stratus_intervals_append(stratus_intervals* intervals, double lo, double hi);
 
 /* ---- fetched values that show */
@@ -77,8 +77,8 @@ typedef struct stratus_shown {
   float (*of)[2];
 } stratus_shown;
 
-/* Finds the floats that a value of the intervals is fetched as, and those whose own value lies in an interval, as interpolated ones may.
- * The caller releases shown->of. */
+/* Find the floats that a value of the intervals is fetched as, and the floats whose own value is in an interval, as interpolated values may
+ * be. The caller frees shown->of. */
 stratus_status stratus_shown_create(
   stratus_context* context, const stratus_fetching* fetching, const stratus_intervals* intervals, stratus_shown* shown);
 /* The same for the values of opacity above 0. */

@@ -9,12 +9,12 @@
 #define MIDPOINT_ENTRIES 4096
 #define PREINTEGRATED_ENTRIES 16384
 #define MOST_ENTRIES 65536
-/* The tolerance for which these are enough. A value is off by up to half an entry, so that half the tolerance asks for twice as many. */
+/* The tolerance for which these are enough. A value is off by up to half an entry, so that half the tolerance needs twice as many. */
 #define ENTRIES_TOLERANCE 1e-3
 /* Units of width over all values: so narrow may a feature be beside them that running sums hold. */
 #define WIDTH_UNITS (1 << 29)
-/* Optical depth of a midpoint sample of opacity 1, instead of infinity. Even the smallest part of such a sample stays opaque, as long as
- * floats tell it from 0. */
+/* Optical depth of a midpoint sample of opacity 1, instead of infinity. Even the smallest part of such a sample stays opaque, as long as it
+ * is above 0 as a float. */
 #define OPAQUE_DEPTH 1e30f
 /* Optical depth per unit distance of entries of opacity 1, instead of infinity, which running sums cannot hold. fill_opaque() marks these
  * entries, since opacities just below 1 may be deeper. */
@@ -78,8 +78,8 @@ stratus_status stratus_transfer_check(stratus_context* context, const stratus_tr
   return STRATUS_OK;
 }
 
-/* Moves *at to the last point with value <= x, or to -1. Calls mostly have rising x, and *at begins at -1. The values of entries may fall:
- * a cell that no float is in has its own middle, and its neighbours have those of their floats. */
+/* Move *at to the last point with value <= x, or to -1. Calls mostly have rising x, and *at begins at -1. The values of entries may fall: a
+ * cell that no float is in has its own middle, and its neighbours have their floats' middles. */
 static void walk_to(const double* points, size_t count, size_t width, double x, ptrdiff_t* at)
 {
   while (*at >= 0 && points[(size_t)*at * width] > x) {
@@ -193,7 +193,7 @@ static double width_of(const stratus_table* table, int e)
   return widths ? (double)(widths[e + 1] - widths[e]) : 1.0;
 }
 
-/* What running sums are made of, over a part of the entries. */
+/* The numbers from which running sums are made, over a part of the entries. */
 typedef struct sum_part {
   double least[3], most[3], steepest; /* of colours where the function shows */
 } sum_part;
@@ -208,7 +208,7 @@ static void fill_addends(const stratus_table* table, const stratus_transfer* tra
   double before[3] = { 0 }, tau_before = 0.0, width_before = 0.0;
   color_at[0] = color_at[1] = color_at[2] = last_point(transfer->color, transfer->color_count, 4, begin);
   *part = (sum_part){ .least = { 1.0, 1.0, 1.0 } };
-  for (int e = first > 0 ? first - 1 : 0; e < last; ++e) { /* the entry before the part tells how steep colours are */
+  for (int e = first > 0 ? first - 1 : 0; e < last; ++e) { /* the entry before the part shows how steep colours are */
     const double x = entries->value[e], opacity = walk(transfer->opacity, transfer->opacity_count, 2, 1, x, &at);
     const double tau = !entries->shows[e] || outside(transfer, x) ? 0.0 : tau_of(transfer, opacity), width = width_of(table, e);
     double addends[4];
@@ -279,9 +279,9 @@ static bool stays_opaque(const stratus_transfer* transfer, double value, size_t*
   return stays;
 }
 
-/* Fills the two rows behind the sums, which tell where rays meet opacity 1. For an entry of opacity 1 both rows hold the entry itself. For
+/* Fill the two rows after the sums, which show where rays meet opacity 1. For an entry of opacity 1 both rows hold the entry itself. For
  * any other, the first row holds the next entry upwards where the function stays 1 over an interval, or `size`; the second row holds the
- * next one downwards, or -1. A ray at an entry of opacity 1 stops at once. A ray on its way to other entries stops at the first where the
+ * next one downwards, or -1. A ray at an entry of opacity 1 stops at once. A ray that passes to other entries stops at the first where the
  * function stays 1. Where the function only touches 1, the optical depth is also infinite, but only logarithmically: it adds little to rays
  * that pass, and everything to rays that stay. */
 static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, const stratus_table_entries* entries)
@@ -405,7 +405,7 @@ static stratus_status allocate_table(stratus_table* table, const stratus_table_e
   return STRATUS_OK;
 }
 
-/* Moves points that lie at the number above a float, which is not whole, onto that float. */
+/* Move points that are at the number above a float, which is not whole, onto that float. */
 static void settle(const double* points, size_t count, size_t width)
 {
   for (double* x = (double*)points; count > 0; x += width, --count) {
@@ -414,9 +414,9 @@ static void settle(const double* points, size_t count, size_t width)
   }
 }
 
-/* Copies a function for values that are whole numbers. VTK holds the value left of a step at the step, so that a translated function has
- * its step at the next number. Whole numbers tell no difference, and between two of them a ray meets that one float hardly ever; but a
- * label window's step now lies at the border of the grid's cells, none of which need be divided. */
+/* Copy a function for values that are whole numbers. VTK holds the value left of a step at the step, so that a translated function has its
+ * step at the next number. Whole numbers make no difference, and between two of them a ray hardly ever meets that one float. But a label
+ * window's step is now at the border of the grid's cells, and no cell need be divided. */
 static stratus_status copy_settled(stratus_context* context, const stratus_transfer* transfer, stratus_transfer** copy)
 {
   TRY(stratus_transfer_copy(context, transfer, 1, copy));

@@ -48,7 +48,7 @@ static int NAME(widen)(const TYPE* const rows[4], int64_t nx, double bias, ACC* 
   return bad;
 }
 
-/* Makes lo[x] the least of lo[x .. x+size], cut at the row's end, by doubling windows; hi likewise the greatest. */
+/* Set lo[x] to the least of lo[x .. x+size], cut at the row's end, by doubling windows, and hi[x] to the greatest of hi[x .. x+size]. */
 static void NAME(window)(int64_t nx, int size, ACC* lo, ACC* hi)
 {
   for (int step = 1; step <= size; step *= 2) {
@@ -61,7 +61,7 @@ static void NAME(window)(int64_t nx, int size, ACC* lo, ACC* hi)
 }
 
 #if FLOATS
-/* Recomputes lo and hi from the finite values alone. bad[x]: a value of column x is not finite. */
+/* Recompute lo and hi from only the finite values. bad[x]: a value of column x is not finite. */
 static void NAME(careful)(const span* s, ACC* lo, ACC* hi, uint8_t* bad)
 {
   const double bias = s->bias;

@@ -10,7 +10,7 @@
 /* Number of values, evenly spread, among which stratus_volume_bias() seeks the one of least magnitude. */
 #define BIAS_VALUES_ASKED 4096
 /* Neighbouring coordinates are at least this part of the whole extent apart. A ray's position in mean index coordinates is a float: with
- * all that is rounded on the way it errs by 2^-22 of the extent, so that a cell is found at most one off, even where it is halved. */
+ * all roundings before it, its error is 2^-22 of the extent, so that a cell is found at most one off, even if it is halved. */
 #define COORDINATES_APART 0x1p-19
 
 static const double identity3[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
@@ -181,7 +181,7 @@ static stratus_status check_finite(stratus_context* context, const char* what, c
   return STRATUS_OK;
 }
 
-/* Checks that coordinates are finite and rise or fall strictly, by steps that floats tell apart along a ray. */
+/* Check that coordinates are finite and rise or fall strictly, by steps that floats distinguish along a ray. */
 static stratus_status check_coordinates(stratus_context* context, const stratus_volume* volume, int axis)
 {
   const double* x = volume->coordinates[axis];

@@ -20,7 +20,7 @@ stratus_status stratus_volume_check_floats(stratus_context* context, const strat
 float stratus_volume_fetch(const stratus_volume* volume, double bias, size_t index);
 /* Gives the number of cells between value positions along each axis: dimensions-1, at least 0. */
 void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3]);
-/* Returns whether two views show the same values and ghosts, wherever they lie in the world. Components are not compared. */
+/* Return whether two views show the same values and ghosts, wherever they are in the world. Components are not compared. */
 bool stratus_volume_same_data(const stratus_volume* a, const stratus_volume* b);
 bool stratus_type_is_wide(stratus_type type);
 bool stratus_type_is_integer(stratus_type type);
@@ -44,8 +44,8 @@ static inline bool stratus_volume_is_stretched(const stratus_volume* volume)
 double stratus_volume_begin(const stratus_volume* volume, int axis);
 /* Returns the spacing of an axis. With coordinates it is the mean one, negative where they fall. */
 double stratus_volume_spacing(const stratus_volume* volume, int axis);
-/* Gives the 4x4 row-major affine matrix from index coordinates to world. Along axes with coordinates these are mean index coordinates:
- * those of a grid with the same ends and equal spacing. */
+/* Get the 4x4 row-major affine matrix from index coordinates to world. Along axes with coordinates it maps mean index coordinates, which
+ * are the index coordinates of a grid with the same ends and equal spacing. */
 void stratus_volume_index_to_world(const stratus_volume* volume, double matrix[16]);
 /* Sets *hidden to one byte for each cell (cell_centered: for each value), 1 where HIDDEN points or cells make it transparent. *hidden stays
  * NULL if there is no such cell. */
@@ -80,7 +80,7 @@ static inline stratus_fetching stratus_value_range_fetching(const stratus_value_
  *
  * The trilinear interpolation of volumes needs none: it never leaves the hull of its corners. v_lerp() is fma(t, d, a), where d is b - a
  * rounded and t a float in 0 <= t < 1, because it is a position less its whole part, which is exact. Then t <= 1 - 2^-24, and rounding has
- * made |d| greater than |b - a| by at most |d| 2^-24. So a + t d lies between a and b, and so does the float that it is rounded to. */
+ * made |d| greater than |b - a| by at most |d| 2^-24. So a + t d is between a and b, and so is the float that it is rounded to. */
 #define STRATUS_HULL_SLACK 1e-6f
 
 /* ---- transfer_table.c */
@@ -119,8 +119,8 @@ typedef struct stratus_table {
   int size;            /* number of entries */
   int cells;           /* of the uniform grid: cell = (int) clamp(fma(s, scale, offset), 0, cells-1) */
   float scale, offset; /* of the grid */
-  int search_steps;    /* 0: entries are cells. Else cells have several: so many bisections find one */
-  bool preintegrated;  /* it has sums, else rgba */
+  int search_steps;    /* 0: entries are cells. Otherwise cells have several entries, and this many bisections find one */
+  bool preintegrated;  /* it has sums, otherwise rgba */
   bool jumps;          /* the function has vertical steps, or features narrower than a cell */
   int* next_shown;     /* size+1 numbers: the smallest entry >= i with any opacity, `size` if there is none */
   /* NULL if pre-integrated. Behind the size*4 floats follow 4 more for each entry: the optical depth of a whole sample distance, 0, 0,
@@ -213,8 +213,8 @@ struct stratus_occupancy {
 
 /* Adds the occupied blocks of `other`, which has the same blocks. */
 void stratus_occupancy_add(stratus_occupancy* occupancy, const stratus_occupancy* other);
-/* Marks the blocks whose range meets an interval of fetched values that show. gaps: a block with gaps counts as occupied if anything shows
- * at all, which segments between two samples need: two blocks whose shared layer is not finite may lie on both sides of a peak. Blocks
+/* Mark the blocks whose range meets an interval of fetched values that show. gaps: a block with gaps counts as occupied if anything shows
+ * at all. Segments between two samples need this: two blocks whose shared layer is not finite may be on both sides of a peak. Blocks
  * without gaps share finite voxels, so that a cube of empty blocks has one connected, transparent hull. */
 stratus_status stratus_occupancy_build(
   stratus_context* context, const stratus_value_range* ranges, const stratus_shown* shown, bool gaps, stratus_occupancy** occupancy);
