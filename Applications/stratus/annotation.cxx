@@ -12,6 +12,7 @@ namespace cli {
 
 namespace {
 constexpr int text_size = 13, title_size = 15, bar_wide = 16, margin = 14;
+constexpr double bar_room = 96.0; // pixels for the colour bar and its numbers
 using vec = std::array<double, 3>;
 
 double dot(const double* a, const double* b)
@@ -27,7 +28,7 @@ vec corner(const double bounds[6], int bits)
 
 std::string short_number(double value)
 {
-  return format("%.6g", std::fabs(value) < 1e-300 ? 0.0 : value);
+  return format("%.9g", std::fabs(value) < 1e-300 ? 0.0 : value);
 }
 
 // Returns round values within low..high, at most about `most`.
@@ -40,7 +41,47 @@ std::vector<double> ticks_of(double low, double high, int most)
   }
   return ticks;
 }
+
+// A rectangle of pixels, with its last column and row.
+struct pixels {
+  int left, bottom, right, top;
+  bool meets(const pixels& other) const
+  {
+    return this->left <= other.right && other.left <= this->right && this->bottom <= other.top && other.bottom <= this->top;
+  }
+};
+
+// Turns text by a right angle, so that it is read from below.
+text_image turn(const text_image& image)
+{
+  text_image turned;
+  turned.width = image.height;
+  turned.height = image.width;
+  turned.coverage.resize(image.coverage.size());
+  for (int j = 0; j < image.height; ++j) {
+    for (int i = 0; i < image.width; ++i) {
+      turned.coverage[static_cast<size_t>(i * turned.width + image.height - 1 - j)] =
+        image.coverage[static_cast<size_t>(j * image.width + i)];
+    }
+  }
+  return turned;
+}
 } // namespace
+
+double share_of_bar(const options& o)
+{
+  return o.axes && o.color_bar ? std::min(bar_room / o.width, 0.4) : 0.0;
+}
+
+// An edge of the box in the picture, along which an axis has its numbers.
+struct annotation::edge {
+  int axis = 0;
+  vec from = { { 0.0, 0.0, 0.0 } };      // in the world
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0; // both ends, in pixels
+  double out_x = 0, out_y = 0;           // across the edge, away from the box
+  bool seen = false;
+  double length() const { return std::hypot(this->x1 - this->x0, this->y1 - this->y0); }
+};
 
 // A picture of one's own that is put before or behind another.
 class annotation::layer
@@ -104,18 +145,49 @@ public:
     }
   }
 
-  // Writes text with the point (x, y) at the part (across, along) of its size.
-  void write(const std::string& text, double x, double y, double across, double along, int size)
+  // Returns the pixels of text of which the point (x, y) is at the part (across, along) of its size.
+  static pixels place(const text_image& image, double x, double y, double across, double along)
   {
-    const text_image image = render_text(text, size);
     const int left = static_cast<int>(std::lround(x - across * image.width)),
               bottom = static_cast<int>(std::lround(y - along * image.height));
+    return { left, bottom, left + image.width - 1, bottom + image.height - 1 };
+  }
+
+  void write(const text_image& image, const pixels& where)
+  {
     for (int j = 0; j < image.height; ++j) {
       for (int i = 0; i < image.width; ++i) {
         const float coverage = static_cast<float>(image.coverage[static_cast<size_t>(j * image.width + i)]) / 255.0f;
-        this->put(left + i, bottom + j, coverage, this->Ink, this->Ink, this->Ink);
+        this->put(where.left + i, where.bottom + j, coverage, this->Ink, this->Ink, this->Ink);
       }
     }
+    this->take(where);
+  }
+
+  // Keeps other text out of these pixels.
+  void take(const pixels& where) { this->Taken.push_back(where); }
+
+  // Keeps titles off the line.
+  void keep_off(double xa, double ya, double xb, double yb)
+  {
+    const int count = static_cast<int>(std::min(std::hypot(xb - xa, yb - ya) / 4.0, 4096.0)) + 1;
+    for (int i = 0; i <= count; ++i) {
+      const double t = static_cast<double>(i) / count, x = xa + t * (xb - xa), y = ya + t * (yb - ya);
+      if (x >= 0.0 && y >= 0.0 && x < this->Width && y < this->Height) {
+        const int left = static_cast<int>(x) - 2, bottom = static_cast<int>(y) - 2;
+        this->Lines.push_back({ left, bottom, left + 4, bottom + 4 });
+      }
+    }
+  }
+
+  // Returns whether text there is whole, and meets neither other text nor, if it is a title, a line.
+  bool is_free(const pixels& where, bool title) const
+  {
+    const int gap = title ? 4 : 0;
+    const pixels wide = { where.left - gap, where.bottom - gap, where.right + gap, where.top + gap };
+    const auto meets = [&wide](const pixels& other) { return wide.meets(other); };
+    return where.left >= 2 && where.bottom >= 2 && where.right < this->Width - 2 && where.top < this->Height - 2 &&
+      std::none_of(this->Taken.begin(), this->Taken.end(), meets) && !(title && std::any_of(this->Lines.begin(), this->Lines.end(), meets));
   }
 
 private:
@@ -123,6 +195,7 @@ private:
   const stratus_camera& Camera;
   float Ink;
   std::vector<float> Rgba;
+  std::vector<pixels> Taken, Lines;
 };
 
 annotation::annotation(const options& o) : Axes(o.axes), Bar(o.color_bar), Caption(o.caption)
@@ -150,27 +223,52 @@ void annotation::draw_box(layer& under, layer& over, const scene_frame& frame) c
       const int high_a = edge & 1, high_b = edge >> 1, bits = high_a << a | high_b << b;
       layer& where = facing[2 * a + high_a] || facing[2 * b + high_b] ? over : under;
       where.line(corner(frame.bounds, bits), corner(frame.bounds, bits | 1 << axis));
+      double x0, y0, x1, y1;
+      if (over.project(corner(frame.bounds, bits), x0, y0) > 1e-9 && over.project(corner(frame.bounds, bits | 1 << axis), x1, y1) > 1e-9) {
+        over.keep_off(x0, y0, x1, y1);
+      }
     }
-    this->draw_axis(over, frame, axis, facing);
+  }
+  // All axes of length have one unit, so that their numbers compare. Titles are last, because they go where there is room.
+  double longest = 0.0;
+  for (int side = 0; side < 6; ++side) {
+    if (frame.axes[static_cast<size_t>(side / 2)].units == "m") {
+      longest = std::max(longest, std::fabs(frame.bounds[side] / frame.scale[side / 2]));
+    }
+  }
+  std::array<edge, 3> edges;
+  for (int axis = 0; axis < 3; ++axis) {
+    edges[static_cast<size_t>(axis)] = this->find_edge(over, frame, axis, facing);
+    this->draw_numbers(over, frame, edges[static_cast<size_t>(axis)], longest >= 10000.0);
+  }
+  for (const edge& one : edges) {
+    const axis_label& label = frame.axes[static_cast<size_t>(one.axis)];
+    const std::string units = label.units == "m" && longest >= 10000.0 ? "km" : label.units;
+    const std::string name = label.name.empty() ? std::string(1, "xyz"[one.axis]) : label.name;
+    if (one.seen) {
+      this->draw_title(over, name + (units.empty() ? "" : " (" + units + ")"), one);
+    }
   }
 }
 
-// Puts ticks and numbers along an edge on the outline of the box: the lowest one in the picture, or of an axis that stands upright, the
-// leftmost.
-void annotation::draw_axis(layer& over, const scene_frame& frame, int axis, const bool facing[6]) const
+// Finds the edge on the outline of the box that an axis has its numbers along: the lowest one in the picture, or of an axis that stands
+// upright, the leftmost.
+annotation::edge annotation::find_edge(const layer& over, const scene_frame& frame, int axis, const bool facing[6]) const
 {
   const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-  const double low = frame.bounds[2 * axis] / frame.scale[axis], high = frame.bounds[2 * axis + 1] / frame.scale[axis];
+  edge result;
+  result.axis = axis;
   int best = -1;
-  double least = INFINITY, x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0, middle_x = 0.0, middle_y = 0.0;
+  double least = INFINITY, middle_x = 0.0, middle_y = 0.0;
   const vec middle = { { 0.5 * (frame.bounds[0] + frame.bounds[1]), 0.5 * (frame.bounds[2] + frame.bounds[3]),
     0.5 * (frame.bounds[4] + frame.bounds[5]) } };
   over.project(middle, middle_x, middle_y);
-  for (int edge = 0; edge < 4; ++edge) {
-    const int bits = (edge & 1) << a | (edge >> 1) << b;
-    if (facing[2 * a + (edge & 1)] == facing[2 * b + (edge >> 1)]) {
+  for (int i = 0; i < 4; ++i) {
+    const int bits = (i & 1) << a | (i >> 1) << b;
+    if (facing[2 * a + (i & 1)] == facing[2 * b + (i >> 1)]) {
       continue;
     }
+    double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
     const bool seen =
       over.project(corner(frame.bounds, bits), x0, y0) > 1e-9 && over.project(corner(frame.bounds, bits | 1 << axis), x1, y1) > 1e-9;
     const double order = std::fabs(y1 - y0) > 2.0 * std::fabs(x1 - x0) ? x0 + x1 : y0 + y1;
@@ -179,30 +277,80 @@ void annotation::draw_axis(layer& over, const scene_frame& frame, int axis, cons
       best = bits;
     }
   }
-  if (best < 0 || !(high > low)) {
+  if (best < 0 || !(frame.bounds[2 * axis + 1] > frame.bounds[2 * axis])) {
+    return result;
+  }
+  result.seen = true;
+  result.from = corner(frame.bounds, best);
+  over.project(result.from, result.x0, result.y0);
+  over.project(corner(frame.bounds, best | 1 << axis), result.x1, result.y1);
+  const double across_x = result.y1 - result.y0, across_y = result.x0 - result.x1;
+  const double sign = across_x * (result.x0 - middle_x) + across_y * (result.y0 - middle_y) < 0.0 ? -1.0 : 1.0;
+  result.out_x = across_x * sign / std::max(result.length(), 1e-9);
+  result.out_y = across_y * sign / std::max(result.length(), 1e-9);
+  return result;
+}
+
+// Puts ticks along an edge, and numbers where there is room for them. A short axis has one number at least.
+void annotation::draw_numbers(layer& over, const scene_frame& frame, const edge& where, bool kilo) const
+{
+  const size_t axis = static_cast<size_t>(where.axis);
+  const double unit = kilo && frame.axes[axis].units == "m" ? 1000.0 : 1.0;
+  const double low = frame.bounds[2 * axis] / frame.scale[axis] / unit, high = frame.bounds[2 * axis + 1] / frame.scale[axis] / unit;
+  if (!where.seen) {
     return;
   }
-  const vec from = corner(frame.bounds, best);
-  over.project(from, x0, y0);
-  over.project(corner(frame.bounds, best | 1 << axis), x1, y1);
-  const double length = std::hypot(x1 - x0, y1 - y0);
-  double out_x = y1 - y0, out_y = x0 - x1; // across the edge, away from the middle
-  const double sign = out_x * (x0 - middle_x) + out_y * (y0 - middle_y) < 0.0 ? -1.0 : 1.0;
-  out_x *= sign / std::max(length, 1e-9);
-  out_y *= sign / std::max(length, 1e-9);
-  const bool kilo = frame.length_units == "m" && std::max(std::fabs(low), std::fabs(high)) >= 10000.0;
-  const double unit = kilo ? 1000.0 : 1.0;
-  for (double tick : ticks_of(low / unit, high / unit, std::max(1, static_cast<int>(length / 60.0)))) {
-    vec place = from;
-    double x, y;
-    place[static_cast<size_t>(axis)] = tick * unit * frame.scale[axis];
-    over.project(place, x, y);
-    over.flat_line(x, y, x + 5.0 * out_x, y + 5.0 * out_y);
-    over.write(short_number(tick), x + 9.0 * out_x, y + 9.0 * out_y, 0.5 - 0.5 * out_x, 0.5 - 0.5 * out_y, text_size);
+  std::vector<double> ticks;
+  for (int most = std::max(1, static_cast<int>(where.length() / 60.0)); ticks.empty() && most < 100; most *= 2) {
+    ticks = ticks_of(low, high, most);
   }
-  const std::string units = kilo ? "km" : frame.length_units;
-  over.write(std::string(1, "xyz"[axis]) + (units.empty() ? "" : " (" + units + ")"), 0.5 * (x0 + x1) + 50.0 * out_x,
-    0.5 * (y0 + y1) + 34.0 * out_y, 0.5 - 0.5 * out_x, 0.5 - 0.5 * out_y, title_size);
+  for (double tick : ticks) {
+    vec place = where.from;
+    double x, y;
+    place[axis] = tick * unit * frame.scale[axis];
+    over.project(place, x, y);
+    over.flat_line(x, y, x + 5.0 * where.out_x, y + 5.0 * where.out_y);
+    const text_image number = render_text(short_number(tick), text_size);
+    const pixels at = layer::place(number, x + 9.0 * where.out_x, y + 9.0 * where.out_y, 0.5 - 0.5 * where.out_x, 0.5 - 0.5 * where.out_y);
+    if (over.is_free(at, false)) {
+      over.write(number, at);
+    }
+  }
+}
+
+// Writes an axis' title as near to the middle of its edge as there is room outside of the box, along the edge of an upright axis if it can,
+// else beyond one of its ends. A picture without room has no title.
+void annotation::draw_title(layer& over, const std::string& title, const edge& where) const
+{
+  const text_image level = render_text(title, title_size), turned = turn(level);
+  const double length = std::max(where.length(), 1e-9), x = (where.x1 - where.x0) / length, y = (where.y1 - where.y0) / length;
+  const bool upright = std::fabs(y) > 2.0 * std::fabs(x);
+  const text_image* best = nullptr;
+  pixels place = { 0, 0, 0, 0 };
+  double least = INFINITY;
+  const auto attempt = [&](const text_image& image, double at_x, double at_y, double to_x, double to_y, double cost) {
+    const pixels at = layer::place(image, at_x, at_y, 0.5 - 0.5 * to_x, 0.5 - 0.5 * to_y);
+    if (cost < least && over.is_free(at, true)) {
+      least = cost;
+      best = &image;
+      place = at;
+    }
+  };
+  for (double distance = 14.0; distance <= 90.0; distance += 4.0) {
+    for (double part = 0.05; part < 1.0; part += 0.05) {
+      const double at_x = where.x0 + part * (where.x1 - where.x0) + distance * where.out_x,
+                   at_y = where.y0 + part * (where.y1 - where.y0) + distance * where.out_y, cost = distance + 60.0 * std::fabs(part - 0.5);
+      attempt(level, at_x, at_y, where.out_x, where.out_y, cost + (upright ? 30.0 : 0.0));
+      if (upright) {
+        attempt(turned, at_x, at_y, where.out_x, where.out_y, cost);
+      }
+    }
+    attempt(level, where.x1 + distance * x, where.y1 + distance * y, x, y, distance + 100.0);
+    attempt(level, where.x0 - distance * x, where.y0 - distance * y, -x, -y, distance + 110.0);
+  }
+  if (best) {
+    over.write(*best, place);
+  }
 }
 
 void annotation::draw_bar(layer& over, const scene_frame& frame, const transfer& look) const
@@ -236,19 +384,19 @@ void annotation::draw_bar(layer& over, const scene_frame& frame, const transfer&
   for (double tick : ticks) {
     const double t = place(tick);
     if (t > -1e-6 && t < 1.0 + 1e-6) {
-      over.write(short_number(tick), left + bar_wide + 6, bottom + t * (tall - 1), 0.0, 0.5, text_size);
+      const text_image number = render_text(short_number(tick), text_size);
+      over.write(number, layer::place(number, left + bar_wide + 6, bottom + t * (tall - 1), 0.0, 0.5));
     }
   }
-  over.write(frame.title, over.width() - margin, bottom + tall + 10, 1.0, 0.0, title_size);
+  const text_image title = render_text(frame.title, title_size);
+  over.write(title, layer::place(title, over.width() - margin, bottom + tall + 10, 1.0, 0.0));
+  over.take({ left - 6, bottom - 6, over.width(), bottom + tall + 6 });
 }
 
 void annotation::draw(
   std::vector<float>& rgba, int width, int height, const scene_frame& frame, const transfer& look, const std::string& time) const
 {
   layer under(width, height, frame.camera, this->Ink), over(width, height, frame.camera, this->Ink);
-  if (this->Axes) {
-    this->draw_box(under, over, frame);
-  }
   if (this->Bar) {
     this->draw_bar(over, frame, look);
   }
@@ -257,7 +405,11 @@ void annotation::draw(
     caption.replace(at, 6, time);
   }
   if (!caption.empty()) {
-    over.write(caption, margin, height - margin, 0.0, 1.0, title_size);
+    const text_image text = render_text(caption, title_size);
+    over.write(text, layer::place(text, margin, height - margin, 0.0, 1.0));
+  }
+  if (this->Axes) {
+    this->draw_box(under, over, frame);
   }
   for (size_t i = 0; i < rgba.size(); i += 4) {
     const float* const o = &over.rgba()[i];

@@ -6,17 +6,26 @@
 #include "options.h"
 #include "transfer.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace cli {
 
+// The name and unit of an axis of coordinates, "" if unknown.
+struct axis_label {
+  std::string name, units;
+};
+
+// The part of a picture's width that axes leave to the colour bar beside them.
+double share_of_bar(const options& o);
+
 struct scene_frame {
   stratus_camera camera;
   double bounds[6];              // of the data in the world
   double scale[3] = { 1, 1, 1 }; // world = scale * the data's coordinates
-  std::string length_units;      // of coordinates, "" where unknown
-  std::string title;             // of the values, with their unit
+  std::array<axis_label, 3> axes;
+  std::string title; // of the values, with their unit
 };
 
 class annotation
@@ -31,7 +40,10 @@ public:
 private:
   class layer;
   void draw_box(layer& under, layer& over, const scene_frame& frame) const;
-  void draw_axis(layer& over, const scene_frame& frame, int axis, const bool facing[6]) const;
+  struct edge;
+  edge find_edge(const layer& over, const scene_frame& frame, int axis, const bool facing[6]) const;
+  void draw_numbers(layer& over, const scene_frame& frame, const edge& where, bool kilo) const;
+  void draw_title(layer& over, const std::string& title, const edge& where) const;
   void draw_bar(layer& over, const scene_frame& frame, const transfer& look) const;
 
   bool Axes, Bar;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "camera.h"
 
+#include "annotation.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -103,7 +105,16 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
   double high;
   fit(around, half[up], elevation, away, o.parallel, wide, high);
   const double room = o.axes ? 1.3 : 1.02; // leaves space for the numbers next to the box
-  const double scale = room * std::max(high, wide / aspect) / o.zoom;
+  const double bar = share_of_bar(o);
+  const double scale = room * std::max(high, wide / (aspect * (1.0 - bar))) / o.zoom;
+  // The camera moves to the right, so that the box is in the middle of what the colour bar leaves.
+  const double moved = bar * scale * aspect * (o.parallel ? 1.0 : away),
+               level = std::hypot(direction[(up + 1) % 3], direction[(up + 2) % 3]);
+  const double right[2] = { -direction[(up + 2) % 3] / level, direction[(up + 1) % 3] / level };
+  for (int a = 0; a < 2; ++a) {
+    eye[(up + 1 + a) % 3] += moved * right[a];
+    focal[(up + 1 + a) % 3] += moved * right[a];
+  }
   stratus_camera camera;
   if (o.parallel) {
     core.check(stratus_camera_parallel(core, eye, focal, view_up, scale, aspect, &camera), "camera");

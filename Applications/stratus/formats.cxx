@@ -20,6 +20,7 @@
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
 #include <vtkCellData.h>
+#include <vtkCommand.h>
 #include <vtkCompositeDataSet.h>
 
 #include <vtkDataSetReader.h>
@@ -46,7 +47,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <set>
 #include <system_error>
 
 namespace {
@@ -79,10 +82,35 @@ made ensight(const std::string& path)
   return reader;
 }
 
+#ifdef STRATUS_NETCDF
+// Prints a reader's warnings, each once. Without it they would be taken for failures, as those of VTK's readers are.
+class warnings : public vtkCommand
+{
+public:
+  static warnings* New() { return new warnings; }
+  void Execute(vtkObject*, unsigned long, void* data) override
+  {
+    std::string text = data ? static_cast<const char*>(data) : "";
+    const size_t at = text.find("): "); // behind file, line and class
+    text = text.substr(at == std::string::npos ? 0 : at + 3);
+    text = text.substr(0, text.find_last_not_of('\n') + 1);
+    if (this->Said.insert(text).second) {
+      std::fprintf(stderr, "stratus: %s\n", text.c_str());
+    }
+  }
+
+private:
+  std::set<std::string> Said;
+};
+#endif
+
 made netcdf(const std::string& path)
 {
 #ifdef STRATUS_NETCDF
-  return vtkStratusUgridReader::CanReadFile(path.c_str()) ? reader_for<vtkStratusUgridReader>(path) : reader_for<vtkStratusCFReader>(path);
+  const made reader =
+    vtkStratusUgridReader::CanReadFile(path.c_str()) ? reader_for<vtkStratusUgridReader>(path) : reader_for<vtkStratusCFReader>(path);
+  reader->AddObserver(vtkCommand::WarningEvent, vtkSmartPointer<warnings>::New());
+  return reader;
 #else
   throw cli::failure(
     "cannot read '" + path + "': this program was built without libnetcdf (Debian: libnetcdf-dev), which reads netCDF files");
@@ -314,10 +342,16 @@ std::string choice_of(vtkAlgorithm* reader)
     format(" of %d%s", by_name->GetNumberOfVariables(), chosen.empty() ? ", --variable NAME for another" : "");
 }
 
-std::string length_units_of(vtkAlgorithm* reader)
+std::string axis_name_of(vtkAlgorithm* reader, int axis)
 {
   vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
-  return by_name ? by_name->GetLengthUnits() : "";
+  return by_name ? by_name->GetNameOfAxis(axis) : "";
+}
+
+std::string axis_units_of(vtkAlgorithm* reader, int axis)
+{
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  return by_name ? by_name->GetUnitsOfAxis(axis) : "";
 }
 
 std::string value_units_of(vtkAlgorithm* reader)

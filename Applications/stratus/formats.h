@@ -44,7 +44,8 @@ std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time);
 std::string time_units_of(vtkAlgorithm* reader);
 std::string description_of(vtkAlgorithm* reader);
 std::string choice_of(vtkAlgorithm* reader);
-std::string length_units_of(vtkAlgorithm* reader);
+std::string axis_name_of(vtkAlgorithm* reader, int axis);
+std::string axis_units_of(vtkAlgorithm* reader, int axis);
 std::string value_units_of(vtkAlgorithm* reader); // of the chosen variable
 // True where the reader does not read by variables. "wind.x" is there where "wind" is.
 bool has_variable(vtkAlgorithm* reader, const std::string& name);

@@ -32,7 +32,9 @@ void annotate(cli::frame& frame, const cli::options& o, const cli::drawing& draw
 {
   cli::scene_frame place = drawing.place();
   if (in) {
-    place.length_units = in->length_units();
+    for (int axis = 0; axis < 3; ++axis) {
+      place.axes[static_cast<size_t>(axis)] = { in->axis_name(axis), in->axis_units(axis) };
+    }
     place.title += in->value_units().empty() || in->value_units() == "1" ? "" : " (" + in->value_units() + ")";
   }
   frame.annotate(cli::annotation(o), place, drawing.functions(), in ? in->time_of(step) : "");

@@ -265,9 +265,14 @@ std::string series::time_of(size_t step) const
   return this->Times.empty() ? "" : format("%.9g", this->Times[step]) + (this->Units.empty() ? "" : " " + this->Units);
 }
 
-std::string series::length_units() const
+std::string series::axis_name(int axis) const
 {
-  return this->Reader ? length_units_of(this->Reader) : "";
+  return this->Reader ? axis_name_of(this->Reader, axis) : "";
+}
+
+std::string series::axis_units(int axis) const
+{
+  return this->Reader ? axis_units_of(this->Reader, axis) : "";
 }
 
 std::string series::value_units() const

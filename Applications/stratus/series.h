@@ -27,8 +27,9 @@ public:
   vtkSmartPointer<vtkDataObject> read(size_t step);
   // "1.5 hours since ...", "" for a file without time.
   std::string time_of(size_t step) const;
-  // The unit of coordinates, and of the variable: "" if the file or the format has none.
-  std::string length_units() const;
+  // The name and unit of an axis of coordinates, and the unit of the variable: "" if the file or the format has none.
+  std::string axis_name(int axis) const;
+  std::string axis_units(int axis) const;
   std::string value_units() const;
   // Returns "step 3 of 24, at 1.5 hours since ...", or "" for a file without time.
   std::string describe(size_t step) const;

@@ -261,8 +261,24 @@ void vtkStratusCFGrid::ConvertUnits()
       (a == 0 && this->Continuous ? ", made continuous where it jumps, " : ", ");
   }
   this->Description += this->Vertical->Describe();
+  this->NameAxes(from, units, degrees);
   for (int a = 0; a < 3; ++a) {
     this->ConvertAxis(a);
+  }
+}
+
+// Names axes by what their numbers are now: distances on the sphere, heights, or the file's own coordinates.
+void vtkStratusCFGrid::NameAxes(const std::array<const Variable*, 2>& from, const std::array<vtkStratusUnit, 2>& units, bool degrees)
+{
+  for (size_t a = 0; a < 3; ++a) {
+    const Variable* coordinate = a < 2 ? from[a] : this->Along[a];
+    const bool length = a < 2 ? degrees || units[a].IsLength() : this->Vertical->IsLength();
+    const std::string text = coordinate ? this->File.Text(*coordinate, "units") : "";
+    this->Names[a] = coordinate ? coordinate->BaseName() : this->File.NameOf(this->Dimensions[a]);
+    this->Units[a] = length ? "m" : a < 2 && units[a].IsAngle() ? "degrees" : text == "1" ? "" : text;
+    if (a < 2 ? degrees : length) {
+      this->Names[a] = a == 0 ? "east" : a == 1 ? "north" : "height";
+    }
   }
 }
 

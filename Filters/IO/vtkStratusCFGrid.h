@@ -37,6 +37,9 @@ public:
   bool IsUniform() const;
   std::string Describe() const { return this->Description; }
   bool IsInMetres() const { return this->Metres; }
+  // The name of an axis of the points' coordinates and their unit, "" if it has none.
+  const std::string& GetAxisName(int axis) const { return this->Names[static_cast<size_t>(axis)]; }
+  const std::string& GetAxisUnits(int axis) const { return this->Units[static_cast<size_t>(axis)]; }
   bool IsSheet() const { return this->Flat && !this->Metres; } // x and y are in metres, and z is not
   int GetTime() const { return this->Layout.GetTime(); }       // a dimension, or -1
   const Variable& GetVariable() const { return this->Of; }
@@ -65,6 +68,7 @@ private:
   vtkStratusUnit UnitOf(const Variable& coordinate) const;
   void ReadAxis(int axis);
   void ConvertUnits();
+  void NameAxes(const std::array<const Variable*, 2>& from, const std::array<vtkStratusUnit, 2>& units, bool degrees);
   void ConvertAxis(int axis);
   double MiddleLatitude() const;
   std::vector<double> ReadHorizontal(int axis, size_t step, std::array<size_t, 3>& strides) const;
@@ -85,6 +89,7 @@ private:
   bool Continuous = false;                          // longitudes were made so
   bool Metres = true, Flat = false;                 // all axes are in metres; x and y are
   std::string Description;
+  std::array<std::string, 3> Names, Units; // of the points' coordinates
 };
 
 #endif

@@ -98,6 +98,10 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
       << "' have no unit of length or pressure, and no formula that is known: heights are mere numbers beside x and y in metres");
   }
   this->LengthUnits = grid.IsInMetres() ? "m" : "";
+  for (int a = 0; a < 3; ++a) {
+    this->AxisNames[a] = grid.GetAxisName(a);
+    this->AxisUnits[a] = grid.GetAxisUnits(a);
+  }
   return grid.IsCurved() ? "vtkStructuredGrid" : grid.IsUniform() ? "vtkImageData" : "vtkRectilinearGrid";
 }
 

@@ -43,6 +43,11 @@ public:
   }
   // Returns whether longitudes around a pole tear the face apart.
   bool IsTorn(size_t face) const { return !this->Torn.empty() && this->Torn[face] != 0; }
+  std::string GetAxisName(int axis) const
+  {
+    const std::string& name = axis == 0 ? this->XName : this->YName;
+    return this->Degrees ? (axis == 0 ? "east" : "north") : name.substr(name.rfind('/') + 1);
+  }
   bool IsInMetres() const { return this->Metres; }
   const std::string& Describe() const { return this->Description; }
 

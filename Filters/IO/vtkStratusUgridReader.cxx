@@ -149,6 +149,10 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
   }
   const Variable& chosen = *file.Find(this->ChosenName());
   this->LengthUnits = mesh.IsInMetres() ? "m" : "";
+  for (int a = 0; a < 3; ++a) {
+    this->AxisNames[a] = a < 2 ? mesh.GetAxisName(a) : "height";
+  }
+  this->AxisUnits[2] = "m";
   this->Description = mesh.Describe() + "; " + layers.Describe() + mesh.DescribeOthers(chosen) + file.DescribeValues(chosen);
   const int time = mesh.FindTime(chosen) >= 0 ? mesh.FindTime(chosen) : layers.GetTime();
   if (time >= 0) {

@@ -76,6 +76,16 @@ const char* vtkStratusVariableReader::GetLengthUnits()
   return this->LengthUnits.c_str();
 }
 
+const char* vtkStratusVariableReader::GetNameOfAxis(int axis)
+{
+  return axis >= 0 && axis < 3 ? this->AxisNames[axis].c_str() : "";
+}
+
+const char* vtkStratusVariableReader::GetUnitsOfAxis(int axis)
+{
+  return axis < 0 || axis > 2 ? "" : this->AxisUnits[axis].empty() ? this->LengthUnits.c_str() : this->AxisUnits[axis].c_str();
+}
+
 const char* vtkStratusVariableReader::GetDescription()
 {
   return this->Description.c_str();
@@ -109,6 +119,10 @@ bool vtkStratusVariableReader::Look()
   this->TimeUnits.clear();
   this->Description.clear();
   this->LengthUnits.clear();
+  for (int axis = 0; axis < 3; ++axis) {
+    this->AxisNames[axis].clear();
+    this->AxisUnits[axis].clear();
+  }
   this->SetErrorCode(vtkErrorCode::NoError);
   if (!this->FileName || !*this->FileName) {
     this->SetErrorCode(vtkErrorCode::NoFileNameError);

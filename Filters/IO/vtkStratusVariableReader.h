@@ -65,6 +65,16 @@ public:
    */
   const char* GetLengthUnits();
 
+  //@{
+  /**
+   * Get the name of an axis of the output's coordinates, 0 to 2, and the unit of its numbers: "east" (from the meridian of longitude 0, on
+   * the sphere) and "m", "height" and "m", or the name and unit of the file's coordinate or dimension. "" where the file does not tell, and
+   * for another axis. After UpdateInformation().
+   */
+  const char* GetNameOfAxis(int axis);
+  const char* GetUnitsOfAxis(int axis);
+  //@}
+
   /**
    * Get a sentence on how coordinates became a grid, "" before the first update: which variables they are, and what was made of their
    * units.
@@ -100,7 +110,8 @@ protected:
   std::string TimeUnits;
   std::string Description;
   std::string LengthUnits;
-  int WholeExtent[6]; // of an output with an extent
+  std::string AxisNames[3], AxisUnits[3]; // units: "" as LengthUnits
+  int WholeExtent[6];                     // of an output with an extent
 
 private:
   vtkStratusVariableReader(const vtkStratusVariableReader&) = delete;

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Axes around a picture: titles are whole, keep off the colour bar, and name what the numbers are, in one unit of length. Usage:
+test_axes.py PATH-OF-STRATUS FOLDER"""
+import os
+import subprocess
+import sys
+
+import netCDF4
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+STRATUS, FOLDER = os.path.realpath(sys.argv[1]), sys.argv[2]
+os.makedirs(FOLDER, exist_ok=True)
+os.chdir(FOLDER)
+nz, ny, nx = 6, 7, 9
+failures = 0
+
+
+def check(condition, what):
+    global failures
+    if not condition:
+        failures += 1
+        print("does not hold:", what)
+
+
+def write(name, axes, more=()):
+    """axes: (name, values, attributes) of z, y, x; more: other variables, as (name, dimensions, values, attributes)"""
+    with netCDF4.Dataset(name + ".nc", "w") as file:
+        for axis, values, attributes in axes:
+            file.createDimension(axis, len(values))
+            if attributes is not None:
+                file.createVariable(axis, "f8", (axis,))[:] = values
+                file[axis].setncatts(attributes)
+        for other, dimensions, values, attributes in more:
+            for dimension, size in zip(dimensions, numpy.shape(values)):
+                if dimension not in file.dimensions:
+                    file.createDimension(dimension, size)
+            file.createVariable(other, "f8", dimensions)[...] = values
+            file[other].setncatts(attributes)
+        values = file.createVariable("q", "f4", [axis for axis, _, _ in axes])
+        values[:] = numpy.linspace(0, 1, values.size).reshape(values.shape)
+        values.units = "kg kg-1"
+        if more:
+            values.coordinates = "XLONG XLAT"
+    return name + ".nc"
+
+
+def run(*words):
+    return subprocess.run([STRATUS, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+
+
+def drawn(name, *words, size="512x512"):
+    """The annotations of a picture that shows nothing otherwise, over black: brightness[row, column], bottom row first."""
+    done = run("render", name, "-o", "out.png", "--size", size, "--device", "host", "--variable", "q", "--opacity", "0:0", "--background",
+        "black", "--color", "viridis", *words)
+    check(done.returncode == 0, "%s %s: %s" % (name, " ".join(words), done.stdout))
+    reader = vtkPNGReader()
+    reader.SetFileName("out.png")
+    reader.Update()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)[..., :3].max(axis=2).astype(int)
+
+
+metres, east, north = {"units": "m"}, numpy.linspace(-1e4, 2e4, nx), numpy.linspace(0, 25e3, ny)
+shapes = {"flat": (numpy.linspace(0, 500, nz), 1), "deep": (numpy.linspace(-5700, -0.5, nz), 1), "cube": (numpy.linspace(0, 12e3, nz), 2),
+    "tall": (numpy.linspace(0, 12e3, nz), 9)}
+for name, (height, exaggeration) in shapes.items():
+    path = write(name, (("zh", height, metres), ("yh", north, metres), ("xh", east, metres)))
+    for size in ("512x512", "800x500") if name == "flat" else ("512x512",):
+        bar = drawn(path, "--color-bar", size=size)
+        rows, columns = numpy.nonzero(bar)
+        left = numpy.nonzero(bar[(rows.min() + rows.max()) // 2])[0].min()
+        place = slice(rows.min(), rows.max() + 1), slice(left, bar.shape[1])
+        for look in (("--azimuth", "0"), ("--azimuth", "200", "--elevation", "60", "--parallel"),
+            ("--azimuth", "330", "--elevation", "25")):
+            both = drawn(path, "--color-bar", "--axes", "--exaggerate", str(exaggeration), *look, size=size)
+            edge = numpy.concatenate([both[:2].ravel(), both[-2:].ravel(), both[:, :2].ravel(), both[:, -2:].ravel()])
+            where = "%s at %s %s" % (name, size, " ".join(look))
+            check(edge.max() == 0, where + ": a title or number is cut off at the picture's edge")
+            check(numpy.array_equal(both[place], bar[place]), where + ": something runs into the colour bar")
+
+
+def same(one, other, what):
+    """Alike up to roundings of places: letters and lines may differ by a few pixels."""
+    difference = numpy.abs(one - other)
+    check((difference > 60).sum() <= 12, "%s: %d pixels differ" % (what, (difference > 60).sum()))
+
+
+def bare(name, names, height, y, x):
+    """The same numbers without units, under names that say what the titles have to say."""
+    return write(name, tuple((label, values, {}) for label, values in zip(names, (height, y, x))))
+
+
+height = shapes["flat"][0]
+kilo = bare("kilo", ("height (km)", "yh (km)", "xh (km)"), height / 1000, north / 1000, east / 1000)
+same(drawn("flat.nc", "--axes"), drawn(kilo, "--axes"), "axes of metres are in km, all of them")
+in_km = write("in km", (("zh", height / 1000, {"units": "km"}), ("yh", north / 1000, {"units": "km"}), ("xh", east / 1000, {"units": "km"})))
+same(drawn("flat.nc", "--axes"), drawn(in_km, "--axes"), "a file in km")
+short = write("short", (("zh", height, metres), ("yh", north / 10, metres), ("xh", east / 10, metres)))
+same(drawn(short, "--axes"), drawn(bare("metre", ("height (m)", "yh (m)", "xh (m)"), height, north / 10, east / 10), "--axes"),
+    "axes below 10 km are in m")
+changed = write("changed", (("zh", height, metres), ("yh", north, metres), ("other", east, metres)))
+check((numpy.abs(drawn("flat.nc", "--axes") - drawn(changed, "--axes")) > 60).sum() > 50, "the title of x is its coordinate's name")
+
+# Longitudes and latitudes become distances to the east and north, and WRF's levels heights.
+lon, lat, top = numpy.linspace(-97, -96.3, nx), numpy.linspace(40, 40.5, ny), numpy.linspace(0, 12e3, nz + 1)
+degree = 6371 * numpy.pi / 180
+x, y = lon * degree * numpy.cos(numpy.radians(40.25)), lat * degree
+z = .5 * (top[1:] + top[:-1])
+plain = bare("plain", ("height (km)", "north (km)", "east (km)"), z / 1000, y, x)
+globe = write("globe", (("zh", z, metres), ("lat", lat, {"units": "degrees_north"}), ("lon", lon, {"units": "degrees_east"})))
+stack = numpy.ones((1, ny, nx))
+geopotential = numpy.broadcast_to(9.81 * top[:, None, None], (nz + 1, ny, nx))
+levels = ("bottom_top_stag", "south_north", "west_east")
+wrf = write("wrf", (("bottom_top", z, None), ("south_north", lat, None), ("west_east", lon, None)), (
+    ("XLONG", levels[1:], numpy.broadcast_to(lon, (ny, nx)), {"units": "degree_east"}),
+    ("XLAT", levels[1:], numpy.broadcast_to(lat[:, None], (ny, nx)), {"units": "degree_north"}),
+    ("PH", levels, 0 * geopotential, {"units": "m2 s-2"}), ("PHB", levels, geopotential, {"units": "m2 s-2"})))
+expected = drawn(plain, "--axes")
+same(drawn(globe, "--axes"), expected, "degrees are distances to the east and north")
+same(drawn(wrf, "--axes"), expected, "WRF's axes have names and units")
+
+# Levels that are mere numbers are drawn, with one line that says so.
+numbers = write("numbers", (("lev", numpy.arange(nz) + 1.0, {}), ("lat", lat, {"units": "degrees_north"}),
+    ("lon", lon, {"units": "degrees_east"})))
+done = run("info", numbers)
+check(done.returncode == 0 and done.stdout.count("heights are mere numbers") == 1, "levels without a unit: " + done.stdout)
+sys.exit(1 if failures else 0)
