@@ -4,6 +4,7 @@
 #include "reading.h"
 #include "support.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkInformation.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
@@ -19,6 +20,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <set>
 #include <sstream>
 #include <sys/stat.h>
 #include <utility>
@@ -101,7 +103,18 @@ void check_file(const std::string& path)
   }
 }
 
-// Watches a reader's work, and turns every complaint into a failure.
+// Prints a warning, each text once.
+void print_warning(vtkObject*, unsigned long, void*, void* text)
+{
+  static std::set<std::string> printed;
+  const std::string message = first_message(static_cast<const char*>(text));
+  if (printed.insert(message).second) {
+    std::fprintf(stderr, "stratus: warning: %s\n", message.c_str());
+  }
+}
+
+// Watches a reader's work, and turns every complaint into a failure. Warnings of our own readers are only printed, because they are about
+// files that can be drawn; a warning of VTK's readers means a damaged file.
 class guard
 {
 public:
@@ -110,12 +123,19 @@ public:
   template <class Work> void run(vtkAlgorithm* reader, const Work& work)
   {
     this->Watched.follow(reader);
+    vtkNew<vtkCallbackCommand> warned;
+    warned->SetCallback(print_warning);
+    const bool ours = reader->IsA("vtkStratusVariableReader");
+    const unsigned long observer = ours ? reader->AddObserver(vtkCommand::WarningEvent, warned) : 0;
     try {
       work();
     } catch (const std::bad_alloc&) {
       throw cli::failure("cannot read '" + this->Path + "': " + reader->GetClassName() + " wants more memory than there is");
     } catch (const std::exception& error) {
       throw cli::failure("cannot read '" + this->Path + "': " + reader->GetClassName() + " failed: " + error.what());
+    }
+    if (ours) {
+      reader->RemoveObserver(observer);
     }
     const std::string heard = this->Listener.heard();
     if (!heard.empty()) {

@@ -91,9 +91,25 @@ def test_no_volume():
     expect(1, r"no variable on a grid of three dimensions.*'tas' has the dimensions time \(3\), y \(5\), x \(6\)$", "info", "flat.nc")
 
 
+def test_warning():
+    """Levels without a unit are a warning, which is printed once, and drawn."""
+    with netCDF4.Dataset("levels.nc", "w") as file:
+        for name, units, size in (("lev", "1", 4), ("lat", "degrees_north", 5), ("lon", "degrees_east", 6)):
+            file.createDimension(name, size)
+            variable = file.createVariable(name, "f8", (name,))
+            variable.setncatts({"units": units, "axis": {"lev": "Z", "lat": "Y", "lon": "X"}[name]})
+            variable[:] = numpy.arange(size)
+        file.createVariable("q", "f4", ("lev", "lat", "lon"))[:] = numpy.arange(120).reshape(4, 5, 6)
+    said = expect(0, "stratus: warning: levels.nc: the levels of 'q' have no unit", "info", "levels.nc")
+    if said.count("warning") != 1 or ranges(said) != {"q": (0, 119)}:
+        fail(f"a warning is printed once, and the file is read:\n{said}")
+    expect(0, "picture +levels.png", "render", "levels.nc", "-o", "levels.png", *LOOK)
+
+
 os.makedirs(FOLDER, exist_ok=True)
 os.chdir(FOLDER)
 test_select()
 test_groups()
 test_no_volume()
+test_warning()
 sys.exit(1 if failures else 0)
