@@ -64,6 +64,37 @@ bool IsDeep(vtkOpenGLRenderWindow* window)
   return target && target->GetVTKDataType() != VTK_UNSIGNED_CHAR;
 }
 
+// While it lives, only the first of the frame buffer's colours is written. A pass such as vtkSSAOPass has others, of places and normals,
+// which the picture has not.
+class FirstColorOnly
+{
+public:
+  FirstColorOnly()
+  {
+    GLint most = 1;
+    glGetIntegerv(GL_MAX_DRAW_BUFFERS, &most);
+    for (int n = 1; n < most; ++n) {
+      GLint target = GL_NONE;
+      glGetIntegerv(static_cast<GLenum>(GL_DRAW_BUFFER0 + n), &target);
+      if (target != GL_NONE) {
+        this->Others.push_back(static_cast<GLuint>(n));
+        glColorMaski(static_cast<GLuint>(n), GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+      }
+    }
+  }
+  ~FirstColorOnly()
+  {
+    for (GLuint n : this->Others) {
+      glColorMaski(n, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    }
+  }
+  FirstColorOnly(const FirstColorOnly&) = delete;
+  void operator=(const FirstColorOnly&) = delete;
+
+private:
+  std::vector<GLuint> Others;
+};
+
 const char* const Unshown = "the picture can't be shown: the render window is not an OpenGL one, or it compiles no shader";
 } // namespace
 
@@ -319,6 +350,7 @@ bool vtkStratusDisplay::Blend(
   vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);
   vtkOpenGLState::ScopedglBlendFuncSeparate blendFunction(state);
   vtkOpenGLState::ScopedglDepthMask depthMask(state);
+  const FirstColorOnly firstColor;
   state->vtkglViewport(part.To[0], part.To[1], part.ToSize[0], part.ToSize[1]);
   state->vtkglScissor(part.To[0], part.To[1], part.ToSize[0], part.ToSize[1]);
   // The rays end at the opaque depth, so that no depth test is needed. Depth is only written with the test enabled.
@@ -377,7 +409,9 @@ bool vtkStratusDisplay::Blend(
 vtkStratusPeels::Draw vtkStratusDisplay::ChooseStage(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper)
 {
   vtkOpenGLRenderWindow* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
-  const bool outside = window && window->GetRenderFramebuffer()->GetMultiSamples() > 0;
+  vtkStratusTarget target;
+  target.Find(renderer);
+  const bool outside = window && target.Buffer == 0 && window->GetRenderFramebuffer()->GetMultiSamples() > 0;
   const vtkStratusPeels::Draw stage = this->Peels.Begin(prop, mapper);
   if (stage == vtkStratusPeels::FIRST && outside) {
     return vtkStratusPeels::OUTSIDE;

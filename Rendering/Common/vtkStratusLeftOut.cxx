@@ -21,6 +21,13 @@ void vtkStratusLeftOut::AddTransforms(vtkAbstractMapper* mapper)
   }
 }
 
+void vtkStratusLeftOut::WarnOnce(vtkObject* object, const std::string& warning)
+{
+  if (this->Told.insert(warning).second) {
+    vtkWarningWithObjectMacro(object, << warning);
+  }
+}
+
 void vtkStratusLeftOut::Warn(vtkObject* object)
 {
   std::string text;

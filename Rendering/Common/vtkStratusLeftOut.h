@@ -24,6 +24,8 @@ public:
   void AddUnused(const char* setting, const char* mode);
   // Adds the transforms of clipping planes, of which origin and normal are used as they are.
   void AddTransforms(vtkAbstractMapper* mapper);
+  // Raises a warning of `object`, unless it has been raised before.
+  void WarnOnce(vtkObject* object, const std::string& warning);
   // Raises one warning of `object` about all settings that no earlier warning named.
   void Warn(vtkObject* object);
 

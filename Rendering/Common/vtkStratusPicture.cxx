@@ -199,7 +199,8 @@ bool vtkStratusPicture::Set(vtkRenderer* renderer, const stratus_volume& volume,
 
 bool vtkStratusPicture::Set(vtkRenderer* renderer, const std::vector<Box>& boxes, double coarseness, bool solid)
 {
-  renderer->GetTiledSizeAndOrigin(&this->Viewport[2], &this->Viewport[3], &this->Viewport[0], &this->Viewport[1]);
+  this->Target.Find(renderer);
+  std::copy_n(this->Target.Viewport, 4, this->Viewport);
   vtkCamera* camera = renderer->GetActiveCamera();
   vtkMatrix4x4* view = camera->GetModelViewTransformMatrix();
   vtkMatrix4x4* projection = camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1);
@@ -303,7 +304,7 @@ const float* vtkStratusPicture::ReadOpaqueDepth(vtkRenderer* renderer, const Oth
   }
   const int x = this->Viewport[0] + from[0], y = this->Viewport[1] + from[1];
   this->PartDepth.resize(static_cast<size_t>(size[0]) * size[1]);
-  renderer->GetRenderWindow()->GetZbufferData(x, y, x + size[0] - 1, y + size[1] - 1, this->PartDepth.data());
+  this->Target.ReadDepth(renderer, x, y, size[0], size[1], this->PartDepth.data());
   if (size[0] == rectangle[2] && size[1] == rectangle[3]) {
     this->WindowDepth.swap(this->PartDepth);
   } else {

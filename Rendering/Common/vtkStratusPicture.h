@@ -6,6 +6,7 @@
 #include "stratus.h"
 
 #include "vtkStratusInput.h"
+#include "vtkStratusTarget.h"
 
 #include "vtkSmartPointer.h"
 
@@ -20,7 +21,8 @@ class vtkProp;
 class vtkRenderer;
 
 struct VTK_STRATUS_PRIVATE vtkStratusPicture {
-  int Viewport[4] = { 0, 0, 0, 0 };  // of the renderer: x, y in the window, width, height
+  vtkStratusTarget Target;           // the frame buffer that the picture goes to
+  int Viewport[4] = { 0, 0, 0, 0 };  // of the renderer: x, y in the frame buffer, width, height
   int Rectangle[4] = { 0, 0, 0, 0 }; // part that the volume may cover: x, y in the viewport, width, height
   int Size[2] = { 0, 0 };            // rays to cast; fewer than the rectangle's pixels in a coarse picture
   stratus_camera Camera;

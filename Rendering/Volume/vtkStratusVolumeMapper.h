@@ -8,6 +8,8 @@
  *
  * Supported are:
  * - point and cell scalars of any numeric type but bits, with linear and nearest interpolation, ghost and blanking arrays;
+ * - one layer of points (40x30x1, 1x1xN) as a sheet of a voxel's thickness about them: the image's spacing along that axis, or the mean
+ *   spacing of the other axes where it has none, as rectilinear grids have;
  * - the image's extent, spacing, origin and direction, and the volume's matrix;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance;
  * - cropping to any of the 27 regions, up to six clipping planes, binary masks, jitter;
@@ -17,6 +19,7 @@
  * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes). In composite mode, rays are cast up to each surface, so that the
  *   parts of the volume between surfaces are in depth order. In other modes the whole frame is placed between the surfaces, at its first
  *   depth;
+ * - render passes of the renderer (vtkSSAAPass, vtkEDLShading, ...), whose frame buffers may be of another size than the window;
  * - hardware picking, which finds the volume where it is visible;
  * - arrays of any number of components by one component or the magnitude (VectorMode);
  * - pictures as images, not in the window (RenderToImage).
@@ -37,6 +40,12 @@
  *
  * Lights of all kinds shine, with attenuation and cones (vtkLight; a ConeAngle of 90 and more is none). Maximum, minimum, average and
  * additive draw each of 2 to 4 independent components by itself, and add their weighted colours, as VTK's mappers do.
+ *
+ * Cropping planes are along the image's own axes, as in VTK's mappers: at origin + spacing * index, before the direction matrix. Planes
+ * that are taken from GetBounds() may miss a mirrored or turned image; a warning says so.
+ *
+ * Colours are those that GetColor() of the property's function returns, also where a vtkDiscretizableColorTransferFunction discretises and
+ * where lookup is indexed, which VTK's mappers ignore.
  *
  * A setting that the mode does not use is left out, as VTK's mappers leave it out, and one warning a mapper says so: Shade outside of
  * composite, isosurface and first hits; GradientOpacity, label maps and functions of two variables outside of composite; functions of
@@ -557,7 +566,7 @@ public:
   vtkImageData* GetLastImage();
 
   /**
-   * Get the input's bounds, extended by half a voxel on all sides for first hits of point data.
+   * Get the input's bounds, extended by half a voxel on all sides for first hits of point data, and along axes of one layer of points.
    */
   double* GetBounds() VTK_SIZEHINT(6) override;
   using Superclass::GetBounds;

@@ -39,12 +39,26 @@ bool vtkStratusVolumeMapper::Internals::SetShading(
   return vtkStratusSetShading(renderer, property, shading, error);
 }
 
-// Voxels of values reach halfway beyond the first and the last one.
+// Voxels of values reach halfway beyond the first and the last one. A layer of points has half a voxel on either side.
 void vtkStratusVolumeMapper::Internals::WidenBounds(double bounds[6]) const
 {
   vtkStratusVolumeMapper* mapper = this->Mapper;
   vtkDataSet* input = vtkStratusAsImage(mapper->GetDataObjectInput());
-  if (!this->IsFirstHit() || !input || !(bounds[0] <= bounds[1])) {
+  if (!input || !(bounds[0] <= bounds[1])) {
+    return;
+  }
+  if (!this->IsFirstHit()) {
+    double thickness[3];
+    vtkStratusSheet::FindThickness(input, thickness);
+    vtkImageData* turned = vtkImageData::SafeDownCast(input);
+    for (int a = 0; a < 3; ++a) {
+      double half = 0.0;
+      for (int b = 0; b < 3; ++b) {
+        half += 0.5 * thickness[b] * (turned ? std::fabs(turned->GetDirectionMatrix()->GetData()[3 * a + b]) : a == b ? 1.0 : 0.0);
+      }
+      bounds[2 * a] -= half;
+      bounds[2 * a + 1] += half;
+    }
     return;
   }
   int cells = 0;

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace {
 // Returns the highest label that has functions of its own and fits in a byte.
@@ -160,6 +161,30 @@ void vtkStratusVolumeMapper::Internals::NoteLeftOut(vtkVolumeProperty* property)
   this->LeftOut.AddTransforms(this->Mapper);
 }
 
+// Warns where the inside of the cropping planes misses a turned or mirrored image, which is then not shown at all.
+void vtkStratusVolumeMapper::Internals::WarnOfCrop(const stratus_ray_cast_options& options)
+{
+  const stratus_volume& volume = this->Image.GetVolume();
+  bool turned = false;
+  for (int i = 0; i < 9; ++i) {
+    turned = turned || volume.direction[i] != (i % 4 == 0 ? 1.0 : 0.0);
+  }
+  for (int a = 0; turned && options.crop && options.crop_regions == STRATUS_CROP_INSIDE && a < 3; ++a) {
+    const double* planes = this->Mapper->CroppingRegionPlanes + 2 * a;
+    const double begin = volume.origin[a] - this->Image.GetCropOffset()[a];
+    const double end = begin + volume.spacing[a] * static_cast<double>(volume.dimensions[a] - (volume.cell_centered ? 0 : 1));
+    if (begin < end && (planes[1] <= begin || planes[0] >= end)) {
+      std::ostringstream text;
+      text << "nothing is shown: the cropping planes " << planes[0] << " and " << planes[1] << " miss the image, which extends from "
+           << begin << " to " << end << " along its own "
+           << "xyz"[a] << " axis. Cropping planes are along the image's own axes, before its "
+           << "direction matrix, and not along those of GetBounds()";
+      this->LeftOut.WarnOnce(this->Mapper, text.str());
+      return;
+    }
+  }
+}
+
 vtkTypeUInt64 vtkStratusVolumeMapper::Internals::GetFunctionBuilds() const
 {
   vtkTypeUInt64 builds = 0;
@@ -226,6 +251,7 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
     error = "the input image is empty, it needs at least one point";
     return false;
   }
+  image = this->IsFirstHit() ? image : this->Sheet.Get(image); // a voxel of first hits has a thickness anyway
   bool cells = false;
   vtkDataArray* array = this->FindArray(image, cells, error);
   if (!array) {
@@ -262,16 +288,21 @@ vtkDataArray* vtkStratusVolumeMapper::Internals::FindArray(vtkDataSet* image, bo
   return array;
 }
 
-bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
+bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error)
 {
   vtkImageData* mask = this->Mapper->MaskInput;
   if (!mask || (this->HasLabelMap() && !this->HasLabels())) {
     return true;
   }
-  vtkUnsignedCharArray* bytes = vtkUnsignedCharArray::SafeDownCast(mask->GetPointData()->GetScalars());
   const int64_t* wanted = this->Image.GetVolume().dimensions;
+  const uint64_t time = mask->GetMTime();
   int dimensions[3];
   mask->GetDimensions(dimensions);
+  if (this->Sheet.IsOf(this->Mapper->GetDataObjectInput()) && !this->Image.GetVolume().cell_centered) { // as the input has become
+    mask = vtkImageData::SafeDownCast(this->MaskSheet.Get(mask));
+    mask->GetDimensions(dimensions);
+  }
+  vtkUnsignedCharArray* bytes = vtkUnsignedCharArray::SafeDownCast(mask->GetPointData()->GetScalars());
   if (!bytes || bytes->GetNumberOfComponents() != 1) {
     error = "MaskInput has no point scalars of one unsigned char each";
   } else if (dimensions[0] != wanted[0] || dimensions[1] != wanted[1] || dimensions[2] != wanted[2]) {
@@ -284,7 +315,7 @@ bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, str
   } else {
     options.label_count = this->HasLabels() ? HighestLabel(property) : 0;
     options.mask = this->HasLabels() && options.label_count == 0 ? nullptr : bytes->GetPointer(0);
-    options.mask_revision = std::max<uint64_t>(bytes->GetMTime(), mask->GetMTime());
+    options.mask_revision = std::max<uint64_t>({ bytes->GetMTime(), mask->GetMTime(), time });
   }
   return error.empty();
 }
@@ -312,7 +343,7 @@ bool vtkStratusVolumeMapper::Internals::SetContours(
   return true;
 }
 
-bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
+bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error)
 {
   const vtkStratusVolumeMapper* mapper = this->Mapper;
   options = stratus_ray_cast_options_default();

@@ -9,6 +9,7 @@
 #include "vtkStratusInput.h"
 #include "vtkStratusLeftOut.h"
 #include "vtkStratusPicture.h"
+#include "vtkStratusSheet.h"
 #include "vtkStratusVectors.h"
 #include "vtkStratusVolumeMapper.h"
 
@@ -47,7 +48,7 @@ public:
   // Fills an image of the viewport's size, or empties it where there is no picture.
   void FillColorImage(vtkImageData* image) const;
   void FillDepthImage(vtkImageData* image, int type) const;
-  // Extends the bounds by half a voxel on all sides, in first hits of point data.
+  // Extends the bounds by half a voxel on all sides, in first hits of point data, and along the axes of which there is one layer of points.
   void WidenBounds(double bounds[6]) const;
 
   vtkStratusVolumeMapper* Mapper;
@@ -89,13 +90,14 @@ private:
   bool HasLabelMap() const;     // whether the mask is a label map
   bool HasLabels() const;       // whether that map is drawn
   void NoteLeftOut(vtkVolumeProperty* property);
+  void WarnOfCrop(const stratus_ray_cast_options& options);
   bool SetTransfers(vtkVolumeProperty* property, std::string& error);
-  bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
+  bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
   // Light and first hits (vtkStratusVolumeMapperFirstHit.cxx).
   bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
   bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
   bool SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options);
-  bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
+  bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
   // Functions of two variables and slices (vtkStratusVolumeMapperLookup.cxx).
   bool HasTransfer2D(vtkVolumeProperty* property) const; // whether the function is drawn
   bool PrepareTransfer2D(vtkVolume* prop, vtkDataSet* image, vtkDataArray* array, bool cells, int component, std::string& error);
@@ -126,6 +128,7 @@ private:
   vtkSmartPointer<vtkImageData> LastImage;
   std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{}; // of the picture's components
   vtkStratusVectors Vectors;
+  vtkStratusSheet Sheet, MaskSheet;                       // of an input, and of a mask, of one layer of points
   stratus_transfer_2d Transfer2D = stratus_transfer_2d(); // of this picture, if the property has one
   vtkSmartPointer<vtkDataArray> PairOf[2], Pairs;         // the arrays of two variables, and both in one as of PairTime
   vtkMTimeType PairTime = 0;

@@ -166,6 +166,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     return false;
   }
   this->LeftOut.Warn(this->Mapper);
+  this->WarnOfCrop(options);
   this->WarnOfGradientOpacity(prop->GetProperty());
   this->OfferTree(this->Caster, this->Context.Get());
   const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);

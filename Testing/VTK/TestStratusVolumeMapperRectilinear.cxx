@@ -333,9 +333,47 @@ void BadGrids()
   flat->SetZCoordinates(Axis(2, 0.0, 1.0, 1.0));
   flat->GetPointData()->SetScalars(scene.Values);
   scene.Mapper->SetInputData(flat);
-  CHECK(scene.Picture().empty() && scene.Errors->Has("flat"), "a flat grid: '%s'", scene.Errors->Text.c_str());
+  CHECK(scene.Picture().empty() && scene.Errors->Has("flat"), "a flat grid of two coordinates: '%s'", scene.Errors->Text.c_str());
   scene.Mapper->SetInputData(scene.Grid);
   CHECK(scene.Picture() == picture, "after a flat grid the picture is another");
+}
+
+// A grid of one layer of points is a sheet, as thick as the mean spacing: the picture of two layers of its values.
+void Sheet()
+{
+  Scene scene(64, 48), thick(64, 48);
+  vtkNew<vtkRectilinearGrid> flat, layers;
+  vtkNew<vtkFloatArray> values, twice;
+  for (int i = 0; i < 2 * 20 * 15; ++i) {
+    const float value = static_cast<float>(0.5 + 0.4 * std::sin(i % 300));
+    twice->InsertNextValue(value);
+    if (i < 20 * 15) {
+      values->InsertNextValue(value);
+    }
+  }
+  for (vtkRectilinearGrid* grid : { flat.Get(), layers.Get() }) {
+    grid->SetDimensions(20, 15, grid == flat ? 1 : 2);
+    grid->SetXCoordinates(Axis(20, 0.0, 1.0, 1.0));
+    grid->SetYCoordinates(Axis(15, 0.0, 1.0, 1.0));
+    vtkNew<vtkFloatArray> z;
+    z->InsertNextValue(grid == flat ? 3.0f : 2.5f);
+    if (grid == layers) {
+      z->InsertNextValue(3.5f);
+    }
+    grid->SetZCoordinates(z);
+    grid->GetPointData()->SetScalars(grid == flat ? values : twice);
+  }
+  scene.Mapper->SetInputData(flat);
+  thick.Mapper->SetInputData(layers);
+  scene.Look(35, 20);
+  thick.Look(35, 20);
+  const std::vector<float> picture = scene.Picture(), of_layers = thick.Picture();
+  double worst = 0.0, light = 0.0;
+  for (size_t i = 0; i < std::min(picture.size(), of_layers.size()); ++i) {
+    worst = std::max(worst, std::fabs(static_cast<double>(picture[i]) - of_layers[i]));
+    light += picture[i];
+  }
+  CHECK(light > 10.0 && worst < 0.01, "a sheet: light %g, %g from two layers; %s", light, worst, scene.Errors->Text.c_str());
 }
 
 // Solid voxels: halfway to the neighbours, on both ends too, so that bounds and pictures reach beyond the grid; of equal spacing the
@@ -396,6 +434,7 @@ int main()
   Picking();
   Filters();
   BadGrids();
+  Sheet();
   FirstHits();
   return Failures ? 1 : 0;
 }
