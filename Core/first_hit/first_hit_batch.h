@@ -18,10 +18,10 @@ typedef struct stratus_hit_batch {
 } stratus_hit_batch;
 
 void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch);
-/* Whether packets and beams, or a device, may walk the tree: it is a wide hierarchy, or its siblings lie on two sides of a plane and not
+/* Whether packets and beams, or a device, may walk the tree: it is a wide hierarchy, or its siblings are on two sides of a plane and not
  * every position is in doubt. */
 bool stratus_hit_takes_packets(const stratus_hit_batch* batch);
-/* What the kernels are told of a tree that packets may walk; `count` is 0. */
+/* Return the kernels' arguments for a tree that packets may walk; `count` is 0. */
 stratus_hit_arguments stratus_hit_arguments_of(const stratus_hit_batch* batch);
 
 #define STRATUS_HIT_CHUNK 512 /* rays that a thread takes at once: their state fits the second-level cache */
@@ -38,8 +38,8 @@ typedef struct stratus_hit_chunk {
   int state[STRATUS_HIT_CHUNK], visited[STRATUS_HIT_CHUNK]; /* out: STRATUS_HIT_*, steps; `cell` is then the voxel */
 } stratus_hit_chunk;
 
-/* Prefetches some of the next chunk's rays and of this chunk's hits, those of numbers `from` on before `to`. Returns the next number. A
- * walk calls it at each step. Without it each chunk would begin and end by waiting for memory. */
+/* Prefetch some of the next chunk's rays and of this chunk's hits, with numbers `from` up to `to`. Returns the next number. A walk calls it
+ * at each step. Without it each chunk would begin and end by waiting for memory. */
 static inline int stratus_hit_fetch(const stratus_hit_chunk* chunk, int from, int to)
 {
   const int few = from + 4 < to ? from + 4 : to;
@@ -66,7 +66,7 @@ typedef struct stratus_hit_functions {
 const stratus_hit_functions* stratus_hit_functions_for(const stratus_context* context); /* first_hit_functions.c */
 extern const stratus_hit_functions stratus_hit_functions_isa0, stratus_hit_functions_isa1, stratus_hit_functions_isa2;
 
-/* first_hit_exact.c: finds the hit of one ray in any tree, in double precision. The voxel and the bits of t are those of voxel_walk.c. */
+/* first_hit_exact.c: find the hit of one ray in any tree, in double precision. The voxel and the bits of t equal voxel_walk.c's. */
 void stratus_first_hit_exact(const stratus_hit_batch* batch, const stratus_ray* ray, stratus_hit* hit);
 /* Computes the hit of a known voxel; t is INFINITY if the ray misses it or meets it outside t_min..t_max. */
 void stratus_hit_of_voxel(const stratus_hit_batch* batch, const stratus_ray* ray, const int voxel[3], stratus_hit* hit);

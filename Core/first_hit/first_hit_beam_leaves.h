@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Beams of rays (first_hit_beams.h) through trees: a beam descends to the leaves that its cross-section touches, those in front first, and
- * is placed anew in the field of each. Of two siblings, one lies before a plane across an axis, and the rays meet it first.
+ * Beams of rays (first_hit_beams.h) through trees. A beam descends to the leaves that its cross-section touches, front leaves first, and is
+ * placed again in the field of each. One of two siblings is before a plane across an axis, and the rays meet it first.
  *
  * Included by first_hit_isa.c. */
 #ifndef STRATUS_FIRST_HIT_BEAM_LEAVES_H
@@ -10,7 +10,7 @@
 
 #define BEAM_STACK 130 /* a beam leaves one node behind at each level; trees are at most 128 deep */
 
-/* Sets the cells that a beam is placed in to those of a box of voxels. */
+/* Set the cells in which a beam is placed to the cells of a box of voxels. */
 static inline void beam_cells(const int32_t lo[3], const int32_t hi[3], stratus_hit_arguments* a)
 {
   for (int axis = 0; axis < 3; ++axis) {
@@ -44,7 +44,7 @@ static inline bool beam_alive(const beam_rays* rays)
   return left != 0;
 }
 
-/* Walks the beam through a leaf. `a` and `beam` are those of the whole tree. */
+/* Walk the beam through a leaf. `a` and `beam` belong to the whole tree. */
 static inline void beam_walk_leaf(const stratus_hit_batch* batch, const stratus_hit_arguments* a, const stratus_hit_chunk* c,
   const hit_beam* beam, const stratus_tree_node* node, beam_rays* rays, int* looks)
 {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Beams of rays that run side by side, such as those of a tile of pixels, through one distance field whose cells are bricks. A beam of
- * BEAM rays looks a cell up once for all of them: it leaps while its whole cross-section is known to be empty. Else it crosses one layer of
- * bricks, and the rays meet the boxes of those voxels that lie within the beam.
+ * Beams of rays that run side by side, such as the rays of a tile of pixels, through one distance field whose cells are bricks. A beam of
+ * BEAM rays looks a cell up once for all of them: it leaps while its whole cross-section is known to be empty. Otherwise it crosses one
+ * layer of bricks, and the rays meet the boxes of the voxels within the beam.
  *
  * A position in float is off by up to `slack`, as in first_hit.h. A ray misses a voxel for certain if it misses its box grown by the slack,
- * and hits it for certain if it hits the box shrunk by as much. Where it does neither, in front of all voxels that it hits, it is given up
- * as doubtful. Of two voxels that a ray hits for certain, one lies behind a plane between them, and the ray meets that one later, in the
+ * and hits it for certain if it hits the box shrunk by as much. If it does neither, in front of all voxels that it hits, it is given up as
+ * doubtful. Of two voxels that a ray hits for certain, one is behind a plane between them, and the ray meets that one later, in the
  * roundings of floats as well.
  *
  * Included by first_hit_isa.c. Lengths are in voxels. Positions that are called reflected are counted from the field's border on, in the
@@ -35,13 +35,13 @@ typedef struct hit_beam {
   int axis, across[2]; /* the rays' longest axis, and the others */
   int octant, up[3];
   float begin, end;        /* where it starts and ends along its axis: reflected, in cells */
-  four border, slope;      /* its lower two and its upper two borders across the axis at `begin`, likewise, and how they move on */
+  four border, slope;      /* its lower two and its upper two borders across the axis at `begin`, in the same order, and how they move on */
   float inverse[2];        /* of the upper borders' slopes */
   four_int last;           /* the last cells across, twice */
   int64_t origin, step[3]; /* cell of the field at reflected (0, 0, 0), and from cell to cell along the axis and across it */
 } hit_beam;
 
-/* What the rays of a beam have met so far. */
+/* The voxels that the rays of a beam have met so far. */
 typedef struct beam_rays {
   vfloat inverse[3][BEAM_PARTS], offset[3][BEAM_PARTS], end[BEAM_PARTS]; /* a plane at p is met at p * inverse + offset */
   vfloat nearest[BEAM_PARTS], safely[BEAM_PARTS]; /* where a ray enters its nearest certain voxel: at the earliest, at the latest */
@@ -228,7 +228,7 @@ static inline __attribute__((always_inline)) void beam_meet(
   }
 }
 
-/* Ends the rays that have met a voxel. Nothing that is met later lies in front of it. Returns false once no ray is left. */
+/* End the rays that have met a voxel. Nothing that is met later is in front of it. Returns false once no ray is left. */
 static inline bool beam_settle(beam_rays* rays)
 {
   int left = 0;

@@ -30,7 +30,7 @@ typedef struct launch {
   int32_t *input, *output; /* of a launch; a device that shares memory with the host works in them */
 } launch;
 
-/* Copies the arrays of chunk c to their place among those of `count` rays. */
+/* Copy the arrays of chunk c to their place in the arrays of `count` rays. */
 static void pack_chunk(const launch* l, int c, int count)
 {
   const stratus_hit_chunk* chunk = &l->chunks[c];

@@ -9,9 +9,9 @@
 /* The error of a position relative to its size: about ten roundings. */
 #define HAIR 4e-15
 
-/* A crossing of a plane between voxels. Crossings are ordered by t, those of equal t by axis. Axis 3 is the ray's own start, which comes
- * after all crossings of the same t. The rule and the bits of t are those of voxel_walk.c: a ray is in one voxel at a time, in the same
- * order for every tree. */
+/* A crossing of a plane between voxels. Crossings are ordered by t, and at equal t by axis. Axis 3 is the ray's own start, which comes
+ * after all crossings of the same t. The rule and the bits of t are as in voxel_walk.c: a ray is in one voxel at a time, in the same order
+ * for every tree. */
 typedef struct crossing {
   double t;
   int axis;
@@ -48,7 +48,7 @@ static inline bool enters(const stratus_ray* ray, const double from[3], const do
     const double first = ((double)(along[a] > 0.0 ? voxel[a] : voxel[a] + 1) - from[a]) / along[a];
     const double last = ((double)(along[a] > 0.0 ? voxel[a] + 1 : voxel[a]) - from[a]) / along[a];
     /* No branches: nobody can foresee by which axis a ray enters. Axes come in rising order, so that of equal crossings the last one counts
-     * for entering, and the first one for leaving. The ray's own start comes after all of the same t. */
+     * for entering, and the first one for leaving. The ray's own start comes after all crossings of the same t. */
     in.axis = (first > in.t) | ((first == in.t) & (in.axis != 3)) ? a : in.axis;
     in.t = first > in.t ? first : in.t;
     out.axis = last < out.t ? a : out.axis;
@@ -249,7 +249,7 @@ static void walk_spheres(walker* w, const stratus_tree_field* field, double ente
 {
   const double length = sqrt(w->d[0] * w->d[0] + w->d[1] * w->d[1] + w->d[2] * w->d[2]); /* voxels for each unit of t */
   const double across = (double)field->cells[0] + (double)field->cells[1] + (double)field->cells[2];
-  const double end = fmin((leave - enter) * length, across); /* far away, rounding may make more of the way than there is */
+  const double end = fmin((leave - enter) * length, across); /* far away, rounding may make the length too large */
   double done = 0.0;
   while (done <= end) {
     int voxel[3];

@@ -99,7 +99,7 @@ static inline double prepare_block(const stratus_hit_batch* batch, const stratus
     {
       const float unit = (float)(along[a][i] * most[i]);
       const float used = fabsf(unit) < 1e-30f ? (unit < 0.0f ? -1e-30f : 1e-30f) : unit, one_over = 1.0f / used;
-      /* The slack keeps a ray that runs within a face of the box inside the box all the way, not only from t = 0 on. */
+      /* The slack keeps a ray that runs within a face of the box inside the box everywhere, not only from t = 0 on. */
       const double hair = fabsf(unit) < 1e-30f ? slack : 0.0;
       const double t0 = (lo - hair - from[a][i]) * (double)one_over, t1 = (hi + hair - from[a][i]) * (double)one_over;
       const double enter = smaller(t0, t1), leave = larger(t0, t1);

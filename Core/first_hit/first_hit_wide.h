@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * First hits in wide hierarchies. The boxes of a node's 16 children are tested at once against one ray, grown by the slack of positions in
- * float, so that none is missed. Several rays take turns: while one waits for a node of its own, the others compute. In a brick floats tell
- * which voxels the ray may meet, and doubles decide between them as voxel_walk.c does, so that a hit is never in doubt.
+ * float, so that none is missed. Several rays alternate: while one waits for a node of its own, the others compute. In a brick floats find
+ * the voxels that the ray may meet, and doubles decide between them as voxel_walk.c does, so that a hit is never in doubt.
  *
  * Included by first_hit_isa.c. */
 #ifndef STRATUS_FIRST_HIT_WIDE_H
@@ -18,7 +18,7 @@
 typedef struct wide_line {
   float inverse[3];
   float early[3], late[3]; /* the origin, off by the slack: planes are met at (p - early) * inverse at the earliest, and so on */
-  float end;               /* what the ray enters behind it cannot be its hit */
+  float end;               /* voxels that the ray enters behind it cannot be its hit */
   stratus_hit hit;
 } wide_line;
 
@@ -47,7 +47,7 @@ static inline uint32_t bits_of(float f)
   return bits;
 }
 
-/* Puts an entry on the stack, below those of the same node that the ray enters earlier. */
+/* Put an entry on the stack, below the entries of the same node that the ray enters earlier. */
 static inline void wide_push(wide_ray* r, int least, uint64_t entry)
 {
   int at = r->top++;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Beams of rays through wide hierarchies. BEAM rays that follow each other and run side by side visit a node once for all of them. The
- * borders of the beam tell which of the node's children it may meet. These are tested against those rays that have come so far, and a child
- * goes on the stack with the set of rays that may meet it. Rays that do not, or no longer, share what they visit go on one by one.
+ * borders of the beam determine which of the node's children it may meet. These are tested against the rays that have come so far, and a
+ * child goes on the stack with the set of rays that may meet it. Rays that do not, or no longer, share their visits continue one by one.
  *
  * The borders enclose all rays of the beam. Across its axis, the lower border is a line of the rays' least position and slope, the upper
  * one a line of the greatest. A box is met between them as by a ray: it is entered by the upper border and left by the lower one. As in
@@ -395,7 +395,7 @@ static inline bool wide_beam_narrow(const wide_beam* beam)
   return 3 * pairs >= beam->top * __builtin_popcountll(rays);
 }
 
-/* Stores what the rays have met. Each of the live ones has its share of what the beam visited. */
+/* Store the rays' hits. Each live ray has its share of the nodes that the beam visited. */
 static inline void wide_beam_store(const wide_beam* beam, stratus_hit_chunk* c)
 {
   const int live = __builtin_popcountll(beam->live), share = live ? beam->visited / live : 0;

@@ -13,7 +13,7 @@
 #define NO_FACE UINT32_MAX
 #define MANY (UINT32_MAX - 1) /* in face_slot.second: more than two faces coincide, and all count as broken */
 
-/* A face's points, ascending. b's high bit: the cell lies on the positive side of (a, b, c); c's: on the negative; neither: the cell is
+/* A face's points, ascending. b's high bit: the cell is on the positive side of (a, b, c); c's: on the negative; neither: the cell is
  * flat. */
 typedef struct face_record {
   uint32_t a, b, c, face;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Neighbours through faces on the context's OpenCL device: all faces are sorted by their points, and those of the same points paired. The
- * host has found the orientations, which take exact arithmetic. */
+ * Neighbours through faces on the context's OpenCL device: all faces are sorted by their points, and faces of the same points are paired.
+ * The host has found the orientations, which need exact arithmetic. */
 #include "adjacency_device.h"
 #include "radix_sort_device.h"
 

@@ -126,7 +126,7 @@ static stratus_status check_block(stratus_context* context, const stratus_mesh* 
   return check_values(context, block);
 }
 
-/* Blocks: each a lattice, of what the mesh says of all. */
+/* Check blocks: each is a lattice, with the mesh's type, components and counts. */
 static stratus_status check_blocks(stratus_context* context, const stratus_mesh* mesh)
 {
   int64_t points = 0, cells = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What is derived from a mesh of tetrahedra: neighbours through faces, and exact orientations. */
+ * Data derived from a mesh of tetrahedra: neighbours through faces, and exact orientations. */
 #ifndef STRATUS_MESH_H
 #define STRATUS_MESH_H
 
@@ -7,7 +7,7 @@
 #include "stratus/mesh.h"
 #include "volume.h"
 
-/* Times the largest coordinate: points nearer than this to a partition's plane lie on it. It exceeds the rounding errors of a point
+/* Times the largest coordinate: points nearer than this to a partition's plane count as on it. It exceeds the rounding errors of a point
  * computed to be there. */
 #define STRATUS_PLANE_TOLERANCE 0x1p-46
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the files of the partition share. While the mesh is being cut, the leaves of the K-D tree hold their cells. */
+ * Types and functions that the partition's files share. While the mesh is being cut, the leaves of the K-D tree hold their cells. */
 #ifndef STRATUS_PARTITION_BUILD_H
 #define STRATUS_PARTITION_BUILD_H
 
@@ -52,7 +52,7 @@ typedef struct stratus_kdtree_plane {
   double growth, imbalance; /* beta, alpha */
 } stratus_kdtree_plane;
 
-/* A point's height above a plane, 0 if it is on it. It depends on the point alone, so that all cells at the point agree. */
+/* A point's height above a plane, 0 if it is on it. It depends only on the point, so that all cells at the point agree. */
 static inline double stratus_kdtree_above(double coordinate, double value, double tolerance)
 {
   const double above = coordinate - value;

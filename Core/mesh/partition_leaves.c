@@ -46,7 +46,7 @@ static bool is_scattered(const stratus_partition* partition, const stratus_kdtre
   return node->count > STRATUS_MORTON_FEW_CELLS && distance > SCATTERED * extent * (double)asked;
 }
 
-/* What place_cell() needs to place a cell on the curve. */
+/* The inputs of place_cell(), which places a cell on the curve. */
 typedef struct leaf_places {
   const stratus_partition* partition;
   const stratus_kdtree_cell* cells;

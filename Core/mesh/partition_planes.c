@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#define MIDDLE_LOW 0.4 /* a median plane lies between these quantiles of the cells */
+#define MIDDLE_LOW 0.4 /* a median plane is between these quantiles of the cells */
 #define MIDDLE_HIGH 0.6
 
 typedef struct candidate_set {
@@ -53,7 +53,7 @@ static void count_sides(const stratus_partition* partition, const stratus_kdtree
       low = fmin(low, x[v]);
       high = fmax(high, x[v]);
     }
-    /* A cell that lies in the plane counts as below it. */
+    /* A cell in the plane counts as below it. */
     const int first_cut = find_candidate(set, low, tolerance, true), first_below = find_candidate(set, high, tolerance, false);
     ++set->below[first_below];
     set->above[first_cut < first_below ? first_cut : first_below]++;
@@ -66,7 +66,7 @@ static void count_sides(const stratus_partition* partition, const stratus_kdtree
       }
       stratus_kdtree_pieces(below, above, &pieces_below, &pieces_above);
       set->added[c] += pieces_below + pieces_above - 1;
-      /* The pieces count for this candidate alone. */
+      /* The pieces count only for this candidate. */
       set->below[c] += pieces_below;
       set->below[c + 1] -= pieces_below;
       set->above[c] -= pieces_above;

@@ -22,7 +22,7 @@ typedef struct stratus_frustum_plan {
   /* for separating axes only */
   bool solid;           /* the planes bound a solid with eight corners; false: they are only six half-spaces */
   double corners[8][3]; /* bit 0 of the index: right, bit 1: top, bit 2: far */
-  bool directions[8];   /* the corner lies at infinity, and corners[] holds its direction */
+  bool directions[8];   /* the corner is at infinity, and corners[] holds its direction */
   double edges[12][3];
   int edge_count;
 } stratus_frustum_plan;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Frusta as solids: their corners, and every axis that may separate one from a box. The six half-spaces alone keep boxes that lie beyond an
+ * Frusta as solids: their corners, and every axis that may separate one from a box. The six half-spaces by themselves keep boxes beyond an
  * edge. */
 #include "frustum.h"
 
@@ -33,7 +33,7 @@ static bool meet(const double p[4], const double q[4], const double* r, double r
   return isfinite(result[0]) && isfinite(result[1]) && isfinite(result[2]);
 }
 
-/* True if the corner lies in the frustum: half-spaces that bound no solid have corners outside. */
+/* True if the corner is in the frustum: half-spaces that bound no solid have corners outside. */
 static bool corner_is_inside(const stratus_frustum_plan* plan, int corner)
 {
   const double* point = plan->corners[corner];
@@ -52,7 +52,7 @@ static void add_edge(stratus_frustum_plan* plan, int from, int to)
 {
   double edge[3], along[3];
   if (plan->directions[from] && plan->directions[to]) {
-    return; /* both corners lie at infinity */
+    return; /* both corners are at infinity */
   }
   for (int a = 0; a < 3; ++a) {
     const double* finite = plan->corners[from];

@@ -81,7 +81,7 @@ typedef struct stratus_octree_place {
 /* A frustum's planes relative to the tree's origin: in floats for packs, in doubles (`wide`) for nodes. */
 typedef struct stratus_octree_planes {
   float normal[STRATUS_PLANES][3], offset[STRATUS_PLANES];
-  float band[STRATUS_PLANES]; /* floats cannot tell on which side a value nearer to 0 lies */
+  float band[STRATUS_PLANES]; /* nearer to 0 than this, floats cannot decide the side of a value */
   double wide[STRATUS_PLANES][4];
 } stratus_octree_planes;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Culling: which objects of an octree a frustum sees. Nodes are tested from the root down (Li & Huang 2024, section 4), then their boxes,
- * sixteen at a time in floats, and those that floats cannot decide in double precision. The answer therefore equals that of testing every
- * object, whatever the tree. */
+ * Culling: the objects of an octree that a frustum sees. Nodes are tested from the root down (Li & Huang 2024, section 4), then their
+ * boxes, sixteen at a time in floats. Boxes that floats cannot decide are tested in double precision. The result therefore equals a test of
+ * every object, whatever the tree. */
 #include "octree.h"
 
 #include <string.h>

@@ -121,7 +121,7 @@ static void fit_root(stratus_octree* tree)
   (void)frexp(fmax(1.01 * width, (double)FLT_MIN), &exponent);
   tree->edge = tree->first_edge = ldexp(1.0, exponent);
   for (int a = 0; a < 3; ++a) {
-    /* Objects lie in the cube's middle, so that they can spread to each side. */
+    /* Objects are in the cube's middle, so that they can spread to each side. */
     const double corner = 0.5 * (least[a] + greatest[a]) - 0.5 * tree->edge;
     tree->corner[a] = floor(corner * (FIRST_GRID / tree->edge) + 0.5) * (tree->edge / FIRST_GRID);
   }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Nodes where a box belongs. They follow from the box and the root's cell alone, so that no object stores a link to its node. Cells are
+ * Nodes where a box belongs. They follow from only the box and the root's cell, so that no object stores a link to its node. Cells are
  * exact in double (their widths are powers of two) and stay the same when the root grows. */
 #include "octree.h"
 
@@ -73,7 +73,7 @@ static unsigned enclosing_octant(double pad, const double corner[3], double size
   return octant;
 }
 
-/* The paper's six bits, two for each axis, tell which halves of the cell the sphere touches. */
+/* The paper's six bits, two for each axis: the halves of the cell that the sphere touches. */
 static unsigned touched_octants(const double corner[3], double size, const float box[6])
 {
   static const unsigned lower[3] = { 0x55, 0x33, 0x0f };

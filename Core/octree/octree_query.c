@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Queries of an octree: boxes, spheres, rays, nearest objects. Nodes are tested with room for rounding, objects by their given bounds in
- * double precision, so that the answer equals that of a loop over all objects. */
+ * double precision, so that the result equals a loop over all objects. */
 #include "octree.h"
 
 #include <stdlib.h>

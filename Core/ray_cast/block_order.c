@@ -25,7 +25,7 @@ static int by_key(const void* a, const void* b)
   return first->key < second->key ? -1 : first->key > second->key ? 1 : (first->box > second->box) - (first->box < second->box);
 }
 
-/* Returns 1 where rays pass a plane across an axis from below, -1 where from above, 0 where they lie in it. */
+/* Return 1 if rays pass a plane across an axis from below, -1 if from above, 0 if they are in it. */
 static int side_of(const stratus_block_eye* eye, int axis, double plane)
 {
   const double upwards = eye->parallel ? eye->point[axis] : plane - eye->point[axis];

@@ -110,7 +110,7 @@ static bool make_ray(const first_hit_frame* frame, uint32_t x, uint32_t y, strat
   return ray->t_min <= ray->t_max && meets(frame, ray);
 }
 
-/* Stores the rays of one row of tiles from index `at` on, those of a whole tile if one of them can meet a voxel; returns their count. */
+/* Store the rays of one row of tiles from index `at` on: all rays of a tile if one of them can meet a voxel. Returns their count. */
 static size_t make_row(first_hit_frame* frame, int tile_row, size_t at)
 {
   size_t count = 0;

@@ -8,7 +8,7 @@
 #include "tree.h"
 #include "voxels.h"
 
-/* Voxels and tree lie in index coordinates, voxel (i,j,k) centred at (i,j,k), so that a change of geometry does not make them stale. */
+/* Voxels and tree are in index coordinates, voxel (i,j,k) centred at (i,j,k), so that they stay valid when the geometry changes. */
 struct stratus_first_hit {
   stratus_volume volume;      /* source of voxels and tree */
   stratus_transfer* transfer; /* its copied transfer function; NULL: nothing is built */
@@ -75,7 +75,7 @@ typedef struct stratus_shader {
 void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_voxel_borders* borders,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const double index_to_world[16],
   const double world_to_index[16]);
-/* Computes colour (alpha 1) and world distance of a hit from ray and voxel alone, so that every structure gives the same bits. */
+/* Compute colour (alpha 1) and world distance of a hit from only ray and voxel, so that every structure gives the same bits. */
 void stratus_shader_apply(
   const stratus_shader* shader, const stratus_ray* ray, uint32_t cut, const int32_t voxel[3], float rgba[4], float* depth);
 

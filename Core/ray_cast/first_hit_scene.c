@@ -97,7 +97,7 @@ static void set_borders(const double* x, int64_t n, bool cells, double* at)
 {
   const double whole = cells ? (double)n : (double)(n - 1), per_unit = whole / (x[cells ? n : n - 1] - x[0]);
   for (int64_t i = 0; i <= n; ++i) {
-    if (cells) { /* of which there may be one alone */
+    if (cells) { /* there may be only one cell */
       at[i] = (x[i] - x[0]) * per_unit;
       continue;
     }

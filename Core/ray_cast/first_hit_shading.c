@@ -144,7 +144,7 @@ static double entry(const stratus_voxel_borders* borders, const stratus_ray* ray
 
 /* ---- light */
 
-/* What reaches a point, of 1: `to` leads from there to the light, whose distance is `distance`. */
+/* Return the fraction of the light that reaches a point. `to` leads from the point to the light, whose distance is `distance`. */
 static double reaching(const stratus_light* light, const double to[3], double distance)
 {
   const double* a = light->attenuation;
@@ -170,7 +170,7 @@ static void illuminate(
     }
     const double distance = shader->lights[i].positional ? stratus_vector_normalize(to) : 1.0;
     if (distance == 0.0) {
-      memcpy(to, normal, sizeof to); /* the light stands on the hit */
+      memcpy(to, normal, sizeof to); /* the light is at the hit */
     }
     const double cosine = stratus_vector_dot(normal, to);
     if (!(cosine > 0.0)) {

@@ -123,7 +123,7 @@ static void blend_behind(const blocks* b, const int window[4], const int inside[
   }
 }
 
-/* Draws one block, and tells of it in the terms of the whole picture. */
+/* Draw one block, and report on it in coordinates of the whole image. */
 static stratus_status draw_block(blocks* b, int number, stratus_ray_cast_report* report)
 {
   const stratus_ray_cast_input* in = &b->inputs[number];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The tiles of one way to march, for each type of values that has a fetch of its own, and the generic one for all others. The including
- * file defines STRATUS_RAY_SET, the way's name, STRATUS_PREINTEGRATED and, unless rays composite, STRATUS_RAY_MODE. Receives the table
- * tiles_NAME of stratus_type + 1. Only rays that composite by a lattice have fetches for int8 and float64. */
+ * The tile functions of one kind of march: one for each type of values that has its own fetch, and a generic one for all others. The
+ * including file defines STRATUS_RAY_SET, the kind's name, STRATUS_PREINTEGRATED and, unless rays composite, STRATUS_RAY_MODE. Defines the
+ * table tiles_NAME, indexed by stratus_type + 1. Only rays that composite by a lattice have fetches for int8 and float64. */
 #define STRATUS_TYPE -1
 #define RAY_NAME(x) JOIN(x, JOIN(STRATUS_RAY_SET, any))
 #include "ray_cast_tile.h"

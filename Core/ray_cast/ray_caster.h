@@ -20,7 +20,7 @@ typedef struct stratus_first_hit stratus_first_hit;
 typedef struct stratus_ray_made_table {
   stratus_table* table; /* NULL: none */
   double distance;      /* between samples */
-  int entries;          /* asked for, at least */
+  int entries;          /* the requested minimum */
   uint64_t number;      /* of the caster's tables, in the order of their making */
 } stratus_ray_made_table;
 
@@ -29,7 +29,7 @@ typedef struct stratus_ray_costs {
   double frame[STRATUS_STRUCTURE_HYBRID + 1], build[STRATUS_STRUCTURE_HYBRID + 1], trial;
 } stratus_ray_costs;
 
-/* What an automatic choice of the structure has measured since the occupancy changed, see ray_trial.h. */
+/* The measurements for an automatic choice of the structure since the occupancy changed, see ray_trial.h. */
 typedef struct stratus_ray_trial {
   stratus_structure map;                    /* of caster->map; AUTO: none was made yet */
   bool tried[STRATUS_STRUCTURE_HYBRID + 1]; /* maps that were built */
@@ -46,11 +46,11 @@ typedef struct stratus_ray_trial {
 struct stratus_ray_caster {
   stratus_context* context;
 
-  stratus_volume volume;       /* as last rendered; its coordinates are those of `grid` */
+  stratus_volume volume;       /* as last rendered; its coordinates point into `grid` */
   stratus_ray_grid grid;       /* of volumes with coordinates */
   int64_t owned[2][3];         /* the cells lo..hi - 1 that this piece owns */
   bool owns_all;               /* these are all cells */
-  stratus_volume traversed;    /* what rays read: the volume itself, or its fetched values */
+  stratus_volume traversed;    /* the values that rays read: the volume itself, or its fetched values */
   float* fetched;              /* float copy of the values; NULL: none */
   uint64_t samples_since_data; /* samples that rays have taken of the data; decides when the copy pays */
   bool copy_failed;            /* memory ran out for it since the data changed */
@@ -68,13 +68,14 @@ struct stratus_ray_caster {
   stratus_ray_choice choice;
   stratus_ray_choice measured;            /* the last that the probe made; its sample distance is 0 before the first */
   stratus_ray_choice_inputs measured_for; /* the inputs of `measured`; tolerance -1: data or function have changed since */
-  char tried[256];                        /* what the probe tried; empty: there was none */
+  char tried[256];                        /* the settings that the probe tried; empty: there was no probe */
   stratus_ray_made_table made;            /* the table that is drawn by */
   stratus_ray_made_table spare_table; /* of the other kind, samples or running sums: the probe and coarse pictures change between them */
   stratus_shown values;               /* the fetched values that matter; of NULL: not known yet */
-  float* layers;                      /* of several volumes, by midpoint: what each entry of a table shows over a segment; NULL: none */
-  uint64_t layers_of;                 /* that table's number */
-  double layers_step;                 /* the segment's length */
+  /* of several volumes, by midpoint: colour and optical depth of each table entry over a segment; NULL: none */
+  float* layers;
+  uint64_t layers_of;     /* that table's number */
+  double layers_step;     /* the segment's length */
   bool shades, dependent; /* shades: stratus_ray_shading_wanted() of this render; dependent: options->dependent of `transfers` */
   stratus_ray_shading_tables shading_tables;
   stratus_ray_transfer_2d transfer_2d;
@@ -100,9 +101,9 @@ struct stratus_ray_caster {
   uint64_t range_builds, table_builds, occupancy_builds, structure_builds, uploads, probe_builds;
 };
 
-/* ray_caster_drop.c: each function also drops everything derived from what it drops. stratus_ray_forget_offer() makes the caster check an
- * offered tree again if it is of cells, or of voxels. stratus_ray_drop_offer_map() does so for one of cells, and drops a map that is a
- * tree's. */
+/* ray_caster_drop.c: each function also drops the data derived from its own. stratus_ray_forget_offer() makes the caster check an offered
+ * tree again if it is of cells, or of voxels. stratus_ray_drop_offer_map() does so for a tree of cells, and drops a map that was made from
+ * a tree. */
 void stratus_ray_forget_offer(stratus_ray_caster* caster, bool of_cells);
 void stratus_ray_drop_transfer(stratus_ray_caster* caster);
 void stratus_ray_drop_values(stratus_ray_caster* caster);
@@ -123,12 +124,12 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
 /* Makes a map for a structure other than NONE. offered: of the tree that came with the data. *map: NULL if no block is occupied and the
  * structure is a tree. */
 stratus_status stratus_ray_make_map(stratus_ray_caster* caster, stratus_structure structure, bool offered, stratus_distance_map** map);
-/* times: what was measured may decide where the structure is automatic. */
+/* times: measured times may decide if the structure is automatic. */
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, bool times, stratus_structure* used,
   char* why, size_t capacity, stratus_ray_cast_report* report);
 
-/* ray_caster_render.c. stratus_ray_check_input() checks what a picture is drawn of, but camera and image. stratus_ray_fill_report() tells
- * what was counted and chosen. */
+/* ray_caster_render.c. stratus_ray_check_input() checks the input of an image except camera and image. stratus_ray_fill_report() reports
+ * the counts and choices. */
 stratus_status stratus_ray_check_input(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
 void stratus_ray_fill_report(

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Draws what is asked for: one picture, or, in modes that find one value a ray, one of each independent component. Such a component has a
- * caster of its own, which keeps its structures, and the pictures are added. */
+ * Draws one image, or, in modes that find one value for each ray, one image of each independent component. Such a component has its own
+ * caster, which keeps its structures, and the images are added. */
 #include "picture.h"
 #include "ray_caster.h"
 #include "ray_shading_table.h"
@@ -51,7 +51,7 @@ static void add_component(stratus_ray_cast_report* sum, const stratus_ray_cast_r
   sum->tolerance_met = sum->tolerance_met && part->tolerance_met;
 }
 
-/* In the report, counts and times are sums, the choices those of the first component. */
+/* In the report, counts and times are sums; the choices are the first component's. */
 static stratus_status draw_parts(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
 {

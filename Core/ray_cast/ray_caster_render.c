@@ -44,7 +44,7 @@ static stratus_status check_crop(stratus_context* context, const stratus_ray_cas
   return STRATUS_OK;
 }
 
-/* What lies beyond a clip plane is known a voxel away, of one component. */
+/* Gradients at clip planes need a distance of one voxel, which only grids of equal spacing have, and one component. */
 static stratus_status check_clip_gradients(stratus_context* context, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   if (!options->clip_gradients || options->clip_plane_count == 0) {
@@ -221,7 +221,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   char why[192] = "";
   stratus_ray_drawn drawn = { .count = 0 };
   bool empty = false;
-  const bool times = !image->samples; /* a picture of samples, which hang on the structure, follows from no times */
+  const bool times = !image->samples; /* an image of samples must not depend on times, because samples depend on the structure */
   const bool tries = times && options->structure == STRATUS_STRUCTURE_AUTO;
 
   caster->where[0] = '\0';

@@ -126,7 +126,7 @@ static stratus_status keep_transfers(stratus_ray_caster* caster, const stratus_t
   return STRATUS_OK;
 }
 
-/* What the caster's choice follows from, besides values and transfer functions. */
+/* Return the inputs of the caster's choice, except values and transfer functions. */
 static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   const int materials = options->materials && options->mode == STRATUS_MODE_COMPOSITE ? stratus_ray_shading_media(volume, options) : 0;
@@ -151,8 +151,8 @@ static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, con
   return in;
 }
 
-/* Updates the copied transfer functions and the values that they show in this mode. Occupancy hangs on nothing else: neither on the
- * sampling nor on a table. */
+/* Update the copied transfer functions and the values that they show in this mode. Occupancy depends on nothing else, in particular not on
+ * sampling or tables. */
 static stratus_status update_function(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_ray_cast_options* options, bool* changed)
 {
@@ -173,7 +173,7 @@ static stratus_status update_function(stratus_ray_caster* caster, const stratus_
   return STRATUS_OK;
 }
 
-/* Whether a table of the midpoint rule or of running sums is what is asked for. Sums serve every distance. */
+/* Whether the table is of the requested kind (midpoint or running sums), entries and distance. Sums serve every distance. */
 static bool table_fits(const stratus_ray_made_table* made, bool sums, int entries, double distance)
 {
   return made->table && (made->table->sums != NULL) == sums && made->entries == entries && (sums || made->distance == distance);
@@ -210,8 +210,8 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
   return caster->shades ? stratus_ray_shading_tables_update(caster, caster->dependent) : STRATUS_OK;
 }
 
-/* Makes the choice anew where something changed that it follows from. What was measured last serves again where only options changed and
- * are as they were, as after the coarse pictures of a moving camera. */
+/* Make a new choice if its inputs changed. If only options changed, and are again as they were when the choice was measured, the last
+ * measurement serves again. This happens after the coarse images of a moving camera. */
 static void update_choice(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, bool changed)
 {
   const stratus_ray_choice_inputs inputs = choice_inputs(volume, options);
@@ -247,8 +247,8 @@ stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const strat
   return STRATUS_OK;
 }
 
-/* Returns the structure whose map an automatic choice draws, or tries first. stratus_ray_try() measures whether it pays. In modes that skip
- * by bounds, no number of occupied blocks tells that nothing can be skipped. */
+/* Return the structure whose map an automatic choice draws, or tries first. stratus_ray_try() measures whether it pays. In modes that skip
+ * by bounds, the number of occupied blocks never shows that nothing can be skipped. */
 static stratus_status automatic(stratus_ray_caster* caster, bool times, stratus_structure* structure)
 {
   const int64_t* n = caster->occupancy->blocks;
@@ -349,7 +349,7 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
     ++caster->occupancy_builds;
     report->occupancy_ms = stratus_now_ms() - start;
   }
-  if (wanted == STRATUS_STRUCTURE_AUTO) { /* stratus_ray_try() tells more, where it measures */
+  if (wanted == STRATUS_STRUCTURE_AUTO) { /* if stratus_ray_try() measures, it adds its results */
     TRY(automatic(caster, times, used));
     snprintf(why, capacity, "%s: %s", stratus_structure_name(*used),
       caster->shown.mode == STRATUS_MODE_SLICE ? "a ray takes two samples at most"

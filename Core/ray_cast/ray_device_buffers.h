@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a ray caster keeps on the OpenCL device. */
+ * The data that a ray caster keeps on the OpenCL device. */
 #ifndef STRATUS_RAY_DEVICE_BUFFERS_H
 #define STRATUS_RAY_DEVICE_BUFFERS_H
 

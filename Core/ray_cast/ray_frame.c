@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-/* Floats cannot tell more samples than this apart on one ray. */
+/* Floats cannot distinguish more samples than this on one ray. */
 #define SAMPLES_MOST 4e6
 /* Bounds shrink by FLOAT_COARSENESS times the sum of the dimension and the length of a sample in voxels, so that no rounding takes a sample
  * outside: a ray's position is a float, and segment 0 begins up to one sample before the bounds. */
@@ -24,8 +24,8 @@
 #define CLIPPED_MOST 1e30
 /* The error for which stratus_table.color_slope cuts segments: a twelfth of the change of colour that it allows in a piece, 1/48. */
 #define TABLE_COLOR_ERROR (1.0 / 576.0)
-/* A ray ends where so much of the tolerance is left of its transparency: what lies behind can change no channel by more. Floats tell no
- * transparency below TERMINATION_LEAST from none. */
+/* A ray ends when its transparency is this share of the tolerance: matter behind it changes no channel by more. Below TERMINATION_LEAST a
+ * transparency does not change a float. */
 #define TERMINATION_SHARE 0.5
 #define TERMINATION_MOST 0.5
 #define TERMINATION_LEAST 0x1p-24

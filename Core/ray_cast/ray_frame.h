@@ -11,7 +11,7 @@
 /* Returns the length of a sample in voxels, along the axis where it is longest. */
 double stratus_ray_voxels_a_sample(const stratus_ray_caster* caster);
 
-/* Sets all arguments of the caster's volume but those of table and map. *empty: no ray can meet the volume. */
+/* Set all arguments of the caster's volume except table and map. *empty: no ray can meet the volume. */
 stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, const stratus_camera* camera,
   const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* arguments,
   bool* empty);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Rectilinear grids: the tables by which rays find the cell of a position. A ray is straight in mean index coordinates, those of a grid
- * with the same ends and equal spacing. Only where a value, a block or a cell's border is asked for do the tables translate. */
+ * Rectilinear grids: the tables by which rays find the cell of a position. A ray is straight in mean index coordinates, which are the index
+ * coordinates of a grid with the same ends and equal spacing. The tables translate them only for a value, a block or a cell's border. */
 #ifndef STRATUS_RAY_GRID_H
 #define STRATUS_RAY_GRID_H
 
@@ -18,7 +18,7 @@ typedef struct stratus_ray_grid {
   /* Planes of each axis in mean index coordinates, 2 * dimensions + 1 of them. plane[axis][1 + 2 i] is the position of value i, and
    * plane[axis][2 i] and plane[axis][2 i + 2] are the borders of the box about it: midway between neighbours, or the cell's borders. */
   double* plane[3];
-  int32_t* table; /* for rays, laid out as kernels/ray_cast/ray_grid.h tells; NULL: the grid has equal spacing */
+  int32_t* table; /* for rays, in the layout of kernels/ray_cast/ray_grid.h; NULL: the grid has equal spacing */
   size_t bytes;   /* of it */
   stratus_ray_grid_arguments arguments;
   uint64_t serial; /* how many tables were made */
@@ -29,7 +29,7 @@ typedef struct stratus_ray_grid {
 stratus_status stratus_ray_grid_update(stratus_context* context, const stratus_volume* volume, stratus_ray_grid* grid, bool* changed);
 void stratus_ray_grid_release(stratus_context* context, stratus_ray_grid* grid);
 
-/* Returns the mean index coordinate of an index coordinate within 0..dimensions-1, which may lie between two values. */
+/* Return the mean index coordinate of an index coordinate within 0..dimensions-1, which may be between two values. */
 double stratus_ray_grid_at(const stratus_ray_grid* grid, int axis, double index);
 /* Returns the mean index coordinate of the border below cell number `cell`; a cell is between two values, or about one if cell_centered. */
 double stratus_ray_grid_border(const stratus_ray_grid* grid, int axis, int64_t cell);

@@ -192,8 +192,8 @@ stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratu
   return STRATUS_OK;
 }
 
-/* Returns the length of the part of lo..hi within which the function changes, or of the whole where it changes at no more than one value:
- * what the error of rule cells is a fraction of. A fill value far from the function's points makes no piece coarser. */
+/* Return the length of the part of lo..hi within which the function changes, or of all of lo..hi if it changes at one value at most. The
+ * error of rule cells is a fraction of this length. A fill value far from the function's points makes no piece coarser. */
 static double changing_extent(const stratus_transfer* transfer, double lo, double hi)
 {
   const double* opacity = transfer->opacity;

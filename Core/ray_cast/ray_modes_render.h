@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Ray modes other than composite: what they change in a render. */
+ * Ray modes other than composite: their part of a render. */
 #ifndef STRATUS_RAY_MODES_RENDER_H
 #define STRATUS_RAY_MODES_RENDER_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pages of a volume's values: which of them rays need, their copy in the layout of kernels/ray_cast/ray_cast_arguments.h, and the table
- * that tells where each is. A page that holds no value of an occupied block, nor one that a sample there reads beside it, is left out: all
+ * Pages of a volume's values: the pages that rays need, their copy in the layout of kernels/ray_cast/ray_cast_arguments.h, and the table of
+ * their places. A page is left out if it holds no value of an occupied block, and none that a sample in such a block reads next to it: all
  * samples in it would add exactly zero. */
 #include "ray_pages_device.h"
 
@@ -218,7 +218,7 @@ cleanup:
 
 static stratus_status make_occupancy(stratus_ray_caster* caster)
 {
-  if (!caster->occupancy) { /* a structure was not asked for, but pages follow from the occupied blocks */
+  if (!caster->occupancy) { /* no structure was requested, but pages follow from the occupied blocks */
     TRY(stratus_ray_make_occupancy(caster));
     ++caster->occupancy_builds;
   }

@@ -33,7 +33,7 @@ static bool thins_opacity(const stratus_ray_caster* caster, const stratus_ray_ca
   return options->gradient_distance > 0.0 && caster->transfers[0].gradient_count > 0;
 }
 
-/* Rule cells knows a value's colour and opacity alone. The rules that pre-integrate take the field for linear between two values of one
+/* Rule cells uses only a value's colour and opacity. The rules that pre-integrate treat the field as linear between two values of one
  * medium. A segment of rule local may be four voxels long and belongs to the piece of its middle, so that in a piece of a larger volume it
  * would read beyond one layer of ghosts. */
 bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling)

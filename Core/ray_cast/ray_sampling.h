@@ -12,12 +12,12 @@ typedef struct stratus_ray_choice {
   double sample_distance; /* cells: a voxel, which is only their unit of length */
   double cell_error;      /* cells, local: as in stratus_ray_cast_options */
   bool provisional;       /* not measured yet: stratus_ray_probe() is to replace it */
-  /* What the probe found; NaN and true where there was none. */
+  /* The probe's results; NaN and true without a probe. */
   double expected_error;
   bool met;
 } stratus_ray_choice;
 
-/* What a choice follows from, besides values and transfer functions. */
+/* The inputs of a choice, except values and transfer functions. */
 typedef struct stratus_ray_choice_inputs {
   double sample_distance, cell_error, tolerance, voxel;
   stratus_sampling sampling;
@@ -27,12 +27,11 @@ typedef struct stratus_ray_choice_inputs {
   stratus_material materials[4];
 } stratus_ray_choice_inputs;
 
-/* Makes the choice that holds where the user sets rule and step, or where every step gives the same picture. Else the choice is
- * provisional. */
+/* Make the choice that holds if the user sets rule and step, or if every step gives the same image. Otherwise the choice is provisional. */
 void stratus_ray_choose(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_choice* choice);
 /* Returns the tolerance that governs: the default one where the user has set rule and step by hand. */
 double stratus_ray_tolerance(const stratus_ray_cast_options* options);
-/* Whether rays of a rule pass through cells, by pieces of choice.cell_error: all the way, or in rough blocks. */
+/* Whether rays of a rule pass through cells, by pieces of choice.cell_error, everywhere or in rough blocks. */
 static inline bool stratus_ray_visits_cells(stratus_sampling sampling)
 {
   return sampling == STRATUS_SAMPLING_CELLS || sampling == STRATUS_SAMPLING_LOCAL;

@@ -7,7 +7,7 @@
 
 #define OWN_ARRAYS 7 /* of each volume, in the order of the kernel's parameters */
 
-/* The type that the kernel is compiled for: what all volumes have, else any. */
+/* The type for which the kernel is compiled: the volumes' type if all have the same, otherwise any. */
 static int common_type(const stratus_several_frame* frame)
 {
   int type = frame->volumes[0].type;
@@ -34,8 +34,8 @@ static stratus_status find_kernel(stratus_context* context, const stratus_severa
   return stratus_device_kernel(context, "ray_several", defines, "ray_several", kernel);
 }
 
-/* Gives the kernel the arrays of all volumes; numbers that no volume has get those of the first, because an argument must be some buffer.
- * *next: the number of the next argument. */
+/* Pass the kernel the arrays of all volumes. Unused numbers get the first volume's arrays, because an argument must be some buffer. *next:
+ * the number of the next argument. */
 static stratus_status set_volumes(stratus_context* context, cl_kernel kernel, const stratus_several_frame* frame, unsigned* next)
 {
   for (int n = 0; n < STRATUS_SEVERAL_MAX; ++n) {

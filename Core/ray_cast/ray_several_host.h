@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the host's rays through several volumes read and write. */
+ * The input and output of the host's rays through several volumes. */
 #ifndef STRATUS_RAY_SEVERAL_HOST_H
 #define STRATUS_RAY_SEVERAL_HOST_H
 
@@ -14,19 +14,20 @@ typedef struct stratus_several_part {
   stratus_ray_caster* caster;      /* NULL: a mesh */
   const stratus_tetra_frame* mesh; /* NULL: a volume */
   int jitter, seed;                /* of a mesh's rays */
-  stratus_ray_cast_frame frame;    /* what rays write is not read */
-  const float* layers;             /* midpoint: colour times optical depth, and optical depth, of each entry over a segment; else NULL */
-  int type;                        /* of its fetch, as of stratus_ray_fetch_type() */
-  int stride;                      /* segments of the lattice to one of its samples */
-  int lit;                         /* 1: it has light or gradient opacity */
-  int media;                       /* what its samples are more than one value's colour and opacity by, as in stratus_several_arguments */
-  float segment;                   /* media: a segment's length in samples */
-  int cells;                       /* how its rays go, as in stratus_several_arguments */
-  int preintegrated;               /* 0: the midpoint rule */
+  stratus_ray_cast_frame frame;    /* its output is not used */
+  /* midpoint: colour times optical depth, and optical depth, of each entry over a segment; otherwise NULL */
+  const float* layers;
+  int type;          /* of its fetch, as of stratus_ray_fetch_type() */
+  int stride;        /* segments of the lattice to one of its samples */
+  int lit;           /* 1: it has light or gradient opacity */
+  int media;         /* as in stratus_several_arguments */
+  float segment;     /* media: a segment's length in samples */
+  int cells;         /* as in stratus_several_arguments */
+  int preintegrated; /* 0: the midpoint rule */
 } stratus_several_part;
 
 typedef struct stratus_several_frame {
-  stratus_ray_cast_frame picture; /* what rays write; the arguments are those of the first volume */
+  stratus_ray_cast_frame picture; /* output of the rays; the arguments are the first volume's */
   int count;
   double step; /* of the lattice */
   stratus_several_part volumes[STRATUS_SEVERAL_MAX];

@@ -35,7 +35,7 @@ static const several_reading* const readings[11] = { &several_reading_any, &seve
   &several_reading_int16, &several_reading_uint16, &several_reading_any, &several_reading_any, &several_reading_any, &several_reading_any,
   &several_reading_float32, &several_reading_float64 };
 
-/* What rays read of a mesh, as several_mesh.h has it. */
+/* Set the mesh arrays that several_mesh.h reads, in the host's layout. */
 static void set_mesh(const stratus_several_part* part, double step, several_mesh* m)
 {
   const stratus_tetra_frame* frame = part->mesh;

@@ -13,11 +13,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Places along a ray are numbered by ints: so many segments may lie between the volumes. */
+/* Places along a ray are numbered by ints, which limits the segments between the volumes. */
 #define SEGMENTS_MOST 1e9
 /* Most segments to a sample. */
 #define STRIDE_MOST 65536.0
-/* How finely the shortest step may be divided, what a layer of light costs in samples, and what a finer lattice must cost at most. */
+/* The largest division of the shortest step, the cost of a layer of light in samples, and the largest relative cost of a finer lattice. */
 #define PARTS_MOST 4
 #define EVENT_COST 0.3
 #define GAIN 0.95
@@ -94,7 +94,7 @@ static stratus_status update_volume(stratus_several* s, stratus_several_input* i
   if (!caster->owns_all) {
     return stratus_fail(s->context, STRATUS_UNSUPPORTED, "a volume of several has DUPLICATE ghosts: only whole volumes mix");
   }
-  /* times of a picture of several tell nothing of one volume's structure */
+  /* times of an image of several volumes say nothing about one volume's structure */
   TRY(stratus_ray_update_structures(caster, in->options.structure, false, &in->used, in->why, sizeof in->why, &in->report));
   if (in->options.structure == STRATUS_STRUCTURE_AUTO && in->used != STRATUS_STRUCTURE_NONE) {
     snprintf(in->why, sizeof in->why, "%s: several volumes are not timed apart", stratus_structure_name(in->used));
@@ -125,10 +125,10 @@ static int stride_of(const stratus_ray_caster* caster, double step)
   return (int)fmax(1.0, fmin(floor(caster->choice.sample_distance / step * (1.0 + 1e-9)), STRIDE_MOST));
 }
 
-/* Chooses the lattice: segments of the shortest step that a volume has, or of a half, a third or a quarter of it where other volumes'
- * steps, whole numbers of segments, then come so much nearer to what they may be that fewer samples are taken. Volumes whose samples fall
- * together share a layer of light, which counts EVENT_COST of a sample. Where rays go from cell to cell, segments are no longer than the
- * voxels, so that floats tell places in a cell apart. */
+/* Choose the lattice. Its segments are the shortest step that a volume has, or a half, a third or a quarter of it. A finer lattice is
+ * chosen if other volumes' steps, which are whole numbers of segments, then come so much nearer to their limits that fewer samples are
+ * needed. Volumes whose samples coincide share a layer of light, which counts EVENT_COST of a sample. If rays pass from cell to cell,
+ * segments are at most as long as the voxels, so that floats distinguish places in a cell. */
 stratus_status stratus_several_choose_step(stratus_several* s)
 {
   double least = INFINITY, shortest = INFINITY, walked = INFINITY, longest = 0.0;
@@ -263,7 +263,7 @@ static stratus_status set_volume(
     in->part = number;
     a->values.has_hidden = caster->hides;
     stratus_ray_modes_arguments(caster, &in->options, a);
-    a->lattice.jitter = in->options.jitter != 0; /* the places on a ray by cells are those of the lattice, too */
+    a->lattice.jitter = in->options.jitter != 0; /* places on a ray by cells are places of the lattice, too */
     stratus_ray_shading_arguments(caster, in->of->volume, s->camera, &in->options, a);
     stratus_ray_frame_structures(
       &caster->grid, caster->made.table, stratus_ray_tolerance(&in->options), caster->occupancy, with_map ? caster->map : NULL, a);

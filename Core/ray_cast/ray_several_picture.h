@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A picture of several volumes on its way: what ray_several.c draws, ray_several_check.c refuses, and ray_several_parts.c makes ready. */
+ * State of an image of several volumes: ray_several.c draws it, ray_several_check.c refuses unsupported input, ray_several_parts.c prepares
+ * it. */
 #ifndef STRATUS_RAY_SEVERAL_PICTURE_H
 #define STRATUS_RAY_SEVERAL_PICTURE_H
 
@@ -7,13 +8,13 @@
 #include "ray_several_host.h"
 #include "tetra_caster.h"
 
-/* What is made of one input for this picture. */
+/* The data derived from one input for this image. */
 typedef struct stratus_several_input {
   const stratus_ray_cast_input* of;
-  const stratus_transfer* transfer; /* of a volume: the input's, or what a function of two variables shows of its values */
+  const stratus_transfer* transfer; /* of a volume: the input's function, or the one derived from its function of two variables */
   stratus_ray_cast_options options; /* with the tolerance of a picture of several, and what all take from the first */
   stratus_ray_cast_report report;
-  stratus_tetra_options tetra_options; /* of a mesh, likewise */
+  stratus_tetra_options tetra_options; /* of a mesh: the input's options */
   stratus_tetra_frame frame;           /* of a mesh that shows */
   bool shows;
   stratus_structure used;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What rays through several volumes ask of one type of values. The including file defines STRATUS_TYPE and RAY_NAME. */
+ * The functions of one type of values that rays through several volumes call. The including file defines STRATUS_TYPE and RAY_NAME. */
 #define STRATUS_RAY_MODE STRATUS_RAY_SHADING
 #define STRATUS_PREINTEGRATED 0
 #define RAY_WITH_FUNCTIONS_2D 1

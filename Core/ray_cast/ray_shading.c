@@ -50,7 +50,7 @@ bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_tran
   return options->mode == STRATUS_MODE_COMPOSITE && more && !options->transfer_2d;
 }
 
-/* Samples in the way of gradient_distance, at most: products with the optical depth of opacity 1, 1e30, stay floats. */
+/* Largest number of samples in gradient_distance: products with the optical depth of opacity 1, 1e30, stay floats. */
 #define REACH_MOST 1e7
 
 static void set_tables(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)

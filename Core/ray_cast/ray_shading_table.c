@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* Rays store entry numbers as floats, which are exact up to 2^24. The margin is for the tables before those of the labels. */
+/* Rays store entry numbers as floats, which are exact up to 2^24. The margin is for the tables before the labels' tables. */
 #define LABEL_ENTRIES_MOST 16000000
 
 int stratus_volume_components(const stratus_volume* volume)
@@ -33,7 +33,7 @@ int stratus_ray_shading_media(const stratus_volume* volume, const stratus_ray_ca
 
 /* ---- checks */
 
-/* Sampling by cells knows a value's colour and opacity alone. */
+/* Sampling by cells uses only a value's colour and opacity. */
 static stratus_status check_cells(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
@@ -156,7 +156,7 @@ static void thicken(const stratus_table* table, float* out)
   }
 }
 
-/* entries: at least as many as the tolerance asks for. */
+/* entries: at least as many as the tolerance needs. */
 static stratus_status create_table(stratus_ray_caster* caster, const stratus_transfer* transfer, int c, int entries, stratus_table** table)
 {
   const stratus_table_values values =
@@ -165,8 +165,8 @@ static stratus_status create_table(stratus_ray_caster* caster, const stratus_tra
     caster->context, transfer, &values, STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, entries, table);
 }
 
-/* Returns the entries that each label's table gets: those of the caster's table, which follow the tolerance, unless so many labels have no
- * room for them. Then a half of the room is left for narrow features. */
+/* Return the number of entries of each label's table: as many as the caster's table, which follow the tolerance, unless there is no room
+ * for them with this number of labels. Then half of the room is left for narrow features. */
 static int entries_of_labels(const stratus_ray_caster* caster)
 {
   const int least = stratus_table_entries_for(STRATUS_SAMPLING_MIDPOINT, stratus_ray_cast_options_default().tolerance);
@@ -253,7 +253,7 @@ static size_t rounded_to_four(size_t at)
   return (at + 3) / 4 * 4;
 }
 
-/* Appends a gradient opacity, unless out is NULL, and tells where it begins, -1 if there is none. Returns the end. */
+/* Append a gradient opacity, unless out is NULL, and set *first to its beginning, -1 if there is none. Returns the end. */
 static size_t lay_out_factors(const stratus_transfer* transfer, bool has, size_t at, float* out, int* first, float* scale)
 {
   *first = has ? (int)at : -1;

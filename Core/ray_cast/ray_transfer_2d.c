@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Functions of two variables, the value and the gradient's magnitude or a second value. Everything but the rays goes by a function of the
- * value alone, which has for each value the largest opacity of its rows: where that is 0 nothing shows, whatever the second variable. */
+ * Functions of two variables, the value and the gradient's magnitude or a second value. Everything but the rays uses a function of only the
+ * value, which has for each value the largest opacity of its rows: where that is 0 nothing shows, whatever the second variable. */
 #include "ray_transfer_2d_host.h"
 
 #include "ray_caster.h"

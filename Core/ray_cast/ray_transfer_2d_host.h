@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Functions of two variables: the caster's copy, and the function of the value alone that tells which values can show. */
+ * Functions of two variables: the caster's copy, and the function of only the value that determines which values can show. */
 #ifndef STRATUS_RAY_TRANSFER_2D_HOST_H
 #define STRATUS_RAY_TRANSFER_2D_HOST_H
 
@@ -9,7 +9,7 @@
 
 typedef struct stratus_ray_transfer_2d {
   bool on;                /* this render has one */
-  stratus_transfer_2d of; /* as given; the entries are only told by their address and revision */
+  stratus_transfer_2d of; /* as given; changed entries are recognised only by address and revision */
   float* table;           /* entries, and the columns' largest opacities, as rays read them; NULL: none yet */
   size_t bytes;           /* of the table */
   int columns, rows;      /* of the table, which has 2 at least */

@@ -61,7 +61,7 @@ stratus_status stratus_ray_tree_serves_first_hits(
 
 bool stratus_ray_tree_is_offered(const stratus_ray_caster* caster)
 {
-  /* only here does one table's opacity alone decide which cells matter */
+  /* only here does just one table's opacity decide which cells matter */
   return caster->tree_serves != 0 && offered_tree(caster, true) && caster->shown.mode == STRATUS_MODE_COMPOSITE &&
     !stratus_ray_shading_several(caster);
 }

@@ -5,7 +5,7 @@
 
 #include "ray_caster.h"
 
-/* Whether a tree was offered that may serve: what its check would tell is not known yet, or it does. */
+/* Whether a tree was offered that may serve: it passed its check, or was not checked yet. */
 bool stratus_ray_tree_is_offered(const stratus_ray_caster* caster);
 /* Whether the offered tree covers all cells of this very volume that the transfer function shows. */
 stratus_status stratus_ray_tree_serves(stratus_ray_caster* caster, bool* serves);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Converts a tree to a map for the march: the nodes' boxes in blocks, and for each leaf a distance map of its own blocks. The layout is
- * that of kernels/ray_cast/tree_map.h. */
+ * Converts a tree to a map for the march: the nodes' boxes in blocks, and for each leaf a distance map of its own blocks. See
+ * kernels/ray_cast/tree_map.h for the layout. */
 #include "tree_map_build.h"
 
 #include <string.h>

@@ -9,7 +9,7 @@
  * 2^31 bytes. */
 stratus_status stratus_tree_map_create(stratus_context* context, const stratus_tree* tree, int block_size, stratus_distance_map** map);
 
-/* Returns the number of blocks in the tree's leaves: what its map holds. */
+/* Return the number of blocks in the tree's leaves, which is the size of its map. */
 size_t stratus_tree_map_blocks(const stratus_tree* tree);
 
 /* Builds a hybrid tree of the occupied blocks. Each block is a brick of 4^3 voxels, whatever its size in cells. */

@@ -84,7 +84,7 @@ void stratus_tetra_parts_drop(stratus_tetra_caster* caster)
   caster->part_values = 0;
 }
 
-/* Fetches component c's values in the order of the mesh's own, and finds the range of those of cells with a volume. */
+/* Fetch component c's values in the order of the mesh's own, and find the range over the cells with a volume. */
 static stratus_status fetch_part(const stratus_tetra_caster* caster, const stratus_mesh* mesh, int c, stratus_tetra_part* part)
 {
   const stratus_tetra_cells cells = stratus_tetra_cells_of(caster->mesh, mesh);

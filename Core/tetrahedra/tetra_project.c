@@ -175,8 +175,8 @@ static uint64_t deal_cells(
   return count;
 }
 
-/* Fills the bins in parallel. Each thread counts its part of the order. Running sums over tiles, and over parts within a tile, then place
- * each part's cells behind those of earlier parts. */
+/* Fill the bins in parallel. Each thread counts its part of the order. Running sums over tiles, and over parts within a tile, then place
+ * each part's cells after the cells of earlier parts. */
 static stratus_status bin_cells(
   stratus_tetra_projector* projector, stratus_tetra_projection* projection, const uint32_t* cells, uint64_t* pairs)
 {

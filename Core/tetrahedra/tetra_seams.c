@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Seams of several lattices: points at their borders that lie in one place, and have one value, are one point to gradients. */
+ * Seams of several lattices: points at their borders that are in one place, and have one value, are one point to gradients. */
 #include "tetra_gradient.h"
 
 #include "mesh.h"

@@ -8,14 +8,14 @@
 #define TABLE_SLOPE 48.0
 /* A stretch of optical depth d, over which a colour changes by c, in n pieces of averaged colour, is wrong by at most c d min(d, 1) / 12 n
  * n: the integral of (s - 1/2) c d exp(-d s) over a piece, summed over pieces behind one another. With n n = c d / 12 e that is e min(d,
- * 1), at most 1.6 e (1 - exp(-d)). What a ray's cells have of its alpha adds up to 1 at most, so that 1.6 e bounds the error of the ray, of
- * however many cells. e is this share of the tolerance: 1.6 times it, and the transparency left where the ray ends, stay below the
- * tolerance. */
+ * 1), at most 1.6 e (1 - exp(-d)). The shares of a ray's cells in its alpha add up to 1 at most. Therefore 1.6 e bounds the error of the
+ * ray, however many cells it has. e is this share of the tolerance: 1.6 times it, and the transparency left where the ray ends, stay below
+ * the tolerance. */
 #define PIECES_SHARE 0.4
 #define TERMINATION_SHARE 0.1
 /* Tolerances below count as this one: floats and the table's entries leave more. */
 #define TOLERANCE_LEAST 1e-6
-/* Floats tell no transparency below from none, beside 1. */
+/* Below this a transparency does not change 1 as a float. */
 #define TERMINATION_LEAST 0x1p-24
 #define TERMINATION_MOST 0.5
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a view has to draw, estimated from a sample of the cells. */
+ * Counts of a view's cells, pixels and segments, estimated from a sample of the cells. */
 #include "tetra_costs.h"
 
 #include "mesh.h"
