@@ -181,8 +181,8 @@ static void merge_few(stratus_box* boxes, uint32_t count, stratus_bvh_pair* pair
   }
 }
 
-/* Finds the ranges that a node splits into: single items if there are few, else its clusters. A node splits into halves if it has only one
- * cluster or lies at the depth's bound. */
+/* Find the ranges that a node splits into: single items if there are few, otherwise its clusters. A node splits into halves if it has only
+ * one cluster or is at the depth's bound. */
 static uint32_t find_ranges(const k_means* k, uint32_t begin, uint32_t end, int depth, uint32_t start[CLUSTERS + 1])
 {
   uint32_t ranges = 0;

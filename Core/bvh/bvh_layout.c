@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Layout: a builder's binary tree over single boxes becomes an array of nodes. A bottom-up pass computes tight boxes and turns subtrees
- * into leaves where that costs less. Subtrees below the depth's bound are split anew at the median. A top-down pass gives each subtree its
+ * into leaves where that costs less. Subtrees below the depth's bound are split again at the median. A top-down pass gives each subtree its
  * own stretch of the nodes and of the order: siblings are neighbours, the rest is depth-first. Threads share the work by subtree, and every
- * index follows from the tree alone. A device lays trees out whose depth needs no bound. */
+ * index follows from only the tree. A device lays out trees whose depth needs no bound. */
 #include "bvh_build.h"
 
 #include "device.h"

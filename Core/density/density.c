@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The density by which a tree splits a set of bricks (Guo et al. 2025, eq. 5): one number for each voxel or for each brick, and its peak.
  *
- * Over bricks, the voxels of a brick count as if they were spread evenly over its 64 places, and the density is that at a brick's middle.
- * This is exact for full bricks. Otherwise the density errs by at most the sum over the bricks in reach of count * min(1, 4.72 /
- * bandwidth), in units of what a voxel adds at its own place: the kernel falls by at most 8 / (3 sqrt 3) = 1.54 per bandwidth, and 3.065
- * voxels is the mean distance to a brick's 64 places from its corner voxel, the worst case. density_cells.c sums bandwidths beyond 30
+ * Over bricks, the voxels of a brick count as if they were spread evenly over its 64 places, and the density is computed at a brick's
+ * middle. This is exact for full bricks. Otherwise the density errs by at most the sum over the bricks in reach of count * min(1, 4.72 /
+ * bandwidth). The unit is a voxel's contribution at its own place: the kernel falls by at most 8 / (3 sqrt 3) = 1.54 per bandwidth, and
+ * 3.065 voxels is the mean distance to a brick's 64 places from its corner voxel, the worst case. density_cells.c sums bandwidths beyond 30
  * voxels. */
 #include "density.h"
 #include "volume_device.h"

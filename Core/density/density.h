@@ -36,8 +36,8 @@ typedef struct stratus_density_borders {
   int32_t position[3][2];
   double fall[3][2];
 } stratus_density_borders;
-/* What the derivatives at a plane on a line through the peak are made of: sums over the voxels within the bandwidth of the plane's point. D
- * is twice the offset along the line, q the squared distance across it. All are whole numbers. */
+/* The sums from which the derivatives at a plane on a line through the peak are made. They are over the voxels within the bandwidth of the
+ * plane's point. D is twice the offset along the line, q the squared distance across it. All are whole numbers. */
 typedef struct stratus_density_line {
   double count;       /* voxels */
   double curvature;   /* sum of 3 D^2 + 4 q */
@@ -45,7 +45,7 @@ typedef struct stratus_density_line {
   double slope_cubic; /* sum of D (D^2 + 4 q) */
 } stratus_density_line;
 
-/* Returns the index of the first plane of `axis` among the lines of a box: planes lo[0]..hi[0], then those of y and z. axis 3: their
+/* Return the index of the first plane of `axis` among the lines of a box: planes lo[0]..hi[0], then the planes of y and z. axis 3: their
  * number. */
 size_t stratus_density_line_start(const int32_t lo[3], const int32_t hi[3], int axis);
 /* Returns whether the sums take a brick's voxels as one mass at its middle. */

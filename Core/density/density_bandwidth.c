@@ -40,8 +40,8 @@ static int64_t find_mean(const stratus_brick* bricks, int64_t count, double mean
   return voxels;
 }
 
-/* Computes the standard deviation of the distances to `mean` (eq. 4), and the largest squared distance. Distances are taken relative to one
- * voxel's: those of a shell differ by little, which the squares of whole distances would lose. */
+/* Compute the standard deviation of the distances to `mean` (eq. 4), and the largest squared distance. Distances are relative to one
+ * voxel's distance: distances in a shell differ by little, which the squares of whole distances would lose. */
 static double find_deviation(
   stratus_context* context, const stratus_brick* bricks, int64_t count, int64_t voxels, const double mean[3], double* largest)
 {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Sums of weights for bandwidths that reach over many bricks. Points are sorted into cells no smaller than the bandwidth, so that a point's
- * neighbours lie in 27 cells, three to a row.
+ * neighbours are in 27 cells, three to a row.
  *
  * If the density is exact, a point is a voxel. Over bricks, the bricks of a bin are one point in the bin's middle, weighted by their
  * voxels. A bin's edge is a quarter to an eighth of the bandwidth. Each of its bricks gets the density at the bin's middle, at most .87
- * edges from its own. Each voxel in reach then errs by at most min(1, 1.54 * .87 * edge / bandwidth), in units of what a voxel adds at its
- * own position. */
+ * edges from its own. Each voxel in reach then errs by at most min(1, 1.54 * .87 * edge / bandwidth). The unit is a voxel's contribution at
+ * its own position. */
 #include "density_plan.h"
 
 #include <stdlib.h>

@@ -2,8 +2,8 @@
  * Interface of the methods that sum a density over bricks: weights in fixed point, and the search for neighbouring bricks.
  *
  * A weight of the kernel is rounded once, to 28 bits behind the point, and sums of weights are integers. Any order of summation, any number
- * of threads and any device therefore give the same bits. For each voxel in reach, rounding changes a density by at most 2^-29 of what one
- * voxel adds at its own position. */
+ * of threads and any device therefore give the same bits. For each voxel in reach, rounding changes a density by at most 2^-29 of a voxel's
+ * contribution at its own position. */
 #ifndef STRATUS_DENSITY_PLAN_H
 #define STRATUS_DENSITY_PLAN_H
 

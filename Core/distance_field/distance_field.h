@@ -42,8 +42,8 @@ int stratus_field_is_wide(const int64_t n[3]);
 stratus_status stratus_field_exact(stratus_context* context, const stratus_voxels* voxels, const stratus_bits* set, stratus_field* field);
 /* distance_field_device.c: does the same on the device, with 4 or 8 bytes for each value. */
 stratus_status stratus_device_field_exact(stratus_context* context, const stratus_bits* set, stratus_field* field);
-/* distance_field_nearest.c: writes each voxel's nearest voxel of an exact field to the first three of four floats. Of several equally near
- * ones it is that of the smallest index. */
+/* distance_field_nearest.c: write each voxel's nearest voxel of an exact field to the first three of four floats. Of several equally near
+ * voxels it is the one of the smallest index. */
 stratus_status stratus_field_nearest(stratus_context* context, const stratus_bits* set, int is_signed, float* rgba);
 
 #endif

@@ -78,7 +78,7 @@ static FIELD_TARGET void NAME(clear_lines)(const field_work* w, const room* r)
 
 /* ---- along y and x: a plane */
 
-/* One step of signed distances along y. before: those of the last row; inside: mask of this row's effective voxels. */
+/* One step of signed distances along y. before: distances of the last row; inside: mask of this row's effective voxels. */
 FIELD_INLINE vector NAME(step)(vector before, vector inside, int is_signed)
 {
   const vector cap = NAME(all)((VALUE)FAR_LINE);
@@ -152,7 +152,7 @@ static FIELD_TARGET void NAME(row)(const field_work* w, const room* r, const fie
   }
 }
 
-/* Squares a row on the way down, when its distances along y from both sides are known. r->line gets the signed squares, r->plus and
+/* Square a row in the downward pass, when its distances along y from both sides are known. r->line gets the signed squares, r->plus and
  * r->minus the two halves that searches read. */
 static FIELD_TARGET void NAME(square_row)(const field_work* w, const room* r, int first)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The nearest voxel of each voxel of an exact field, for the paper's layout. A field keeps distances only. Positions come from the same
- * three axes, y, x, z, which carry a position along in the layout's own floats: that of the nearest target in the column, then in the
- * plane, then in the grid. The targets of a voxel are the voxels of the other kind, and each of these stands for itself. Among equally near
- * ones the smallest index (z first, then y, then x) wins at each axis, and therefore in the end. */
+ * three axes, y, x, z, which carry a position along in the layout's own floats: the nearest target in the column, then in the plane, then
+ * in the grid. The targets of a voxel are the voxels of the other kind, and each of these has its own position. Among equally near targets
+ * the smallest index (z first, then y, then x) wins at each axis, and therefore in the end. */
 #include "distance_field.h"
 
 #include <omp.h>

@@ -213,7 +213,7 @@ static void set_transfer(scene_storage* storage, const recipe* recipe)
 static void split_plume(const recipe* recipe, uint8_t* values)
 {
   const int64_t count = (int64_t)recipe->n[0] * recipe->n[1] * recipe->n[2];
-  for (int64_t q = count - 1; q >= 0; --q) { /* backwards, since a value written lies behind the values still to be read */
+  for (int64_t q = count - 1; q >= 0; --q) { /* backwards: each value is written at an index above the values still to be read */
     const int along = (int)(q % recipe->n[0]), way = along > 8 ? along - 8 : 0, all = recipe->n[0] - 8;
     const int value = values[q];
     values[2 * q] = (uint8_t)((value * (all - way) + all / 2) / all);

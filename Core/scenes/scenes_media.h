@@ -41,7 +41,7 @@ static float media_least(float a, float b)
 
 /* ---------------------------------------------------------------- bone and skin: a head of computed tomography
  *
- * Values are those of a 12-bit scanner: air 0, water 1000, soft tissue about 1040, bone 1300 to 2400. y is up, z points to the face. */
+ * Values are a 12-bit scanner's: air 0, water 1000, soft tissue about 1040, bone 1300 to 2400. y is up, z points to the face. */
 
 #define CT_BLUR 3.0f
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The meshes of record that are generated, not read. The first is water in layers over the bed of an estuary, wedges of three tetrahedra
- * each. The second is a lattice of tetrahedra, whose planes and edges lie in line with one another. The third is a plate full of holes,
+ * each. The second is a lattice of tetrahedra, whose planes and edges are in line with one another. The third is a plate full of holes,
  * whose surface a mesher fills: a visibility order has to see across its many gaps. Tests and benchmarks share them. A scene is never
  * changed. */
 #include "stratus/scenes.h"
@@ -48,7 +48,7 @@ static double wavelet_value(const double point[3])
   return 150.0 * exp(-2.0 * square) + 20.0 * sin(12.0 * p[0]) + 36.0 * sin(6.0 * p[1]) + 10.0 * cos(16.0 * p[2]);
 }
 
-/* Returns the speed of a plane flow along x around cylinders, each as if it stood alone, times a wave along z. */
+/* Return the speed of a plane flow along x around cylinders, each as if there were no other, times a wave along z. */
 static double holes_value(const double point[3])
 {
   double along = 1.0, across = 0.0;
@@ -191,7 +191,7 @@ static void around_square(int s, int at[2])
 typedef struct plate {
   double* points;
   int32_t* quads;
-  int32_t layer; /* points of one face; those of the upper face follow them */
+  int32_t layer; /* points of one face; the upper face's points follow them */
   int64_t quad_count;
   int32_t corner[ACROSS_Y][ACROSS_X]; /* points on the squares' edges; -1 inside squares */
 } plate;
@@ -211,7 +211,7 @@ static void add_quad(plate* p, int32_t a, int32_t b, int32_t c, int32_t d)
   memcpy(p->quads + 4 * p->quad_count++, quad, sizeof quad);
 }
 
-/* Adds both faces around a hole, the hole's wall, and the plate's wall where the square lies at its border. All quads are counterclockwise
+/* Add both faces around a hole, the hole's wall, and the plate's wall where the square is at its border. All quads are counterclockwise
  * seen from outside. */
 static void add_square(plate* p, int column, int row, const int32_t* circle, int32_t top)
 {

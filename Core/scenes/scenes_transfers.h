@@ -18,7 +18,7 @@ typedef struct scene_functions {
   double second_color[2][4];
 } scene_functions;
 
-/* Copies a table of points, and tells their number. */
+/* Copy a table of points, and set their number. */
 #define SET_POINTS(to, count, from) (memcpy((to), (from), sizeof(from)), *(count) = sizeof(from) / sizeof *(from))
 
 static void set_ramps(scene_functions* functions, double top, double most, stratus_transfer* transfer, stratus_transfer* edit)
@@ -45,7 +45,7 @@ static void set_colors(scene_functions* functions, double top, stratus_transfer*
   SET_POINTS(functions->edited_color, &edit->color_count, edited);
 }
 
-/* Tissue is thin over a broad range of values; bone rises steeply. Edited: bone alone. */
+/* Tissue is thin over a broad range of values; bone rises steeply. Edited: only bone. */
 static void set_bone(scene_functions* functions, stratus_transfer* transfer, stratus_transfer* edit)
 {
   static const double opacity[][2] = { { 0, 0 }, { 700, 0 }, { 1000, .006 }, { 1180, .008 }, { 1260, .02 }, { 1500, .35 }, { 4095, .6 } };
@@ -58,7 +58,7 @@ static void set_bone(scene_functions* functions, stratus_transfer* transfer, str
   SET_POINTS(functions->edited_color, &edit->color_count, edited_color);
 }
 
-/* A narrow window between two vertical steps on the way from air to tissue. Edited: a wider one, further in. */
+/* A narrow window between two vertical steps, between air and tissue. Edited: a wider one, further in. */
 static void set_skin(scene_functions* functions, stratus_transfer* transfer, stratus_transfer* edit)
 {
   static const double opacity[][2] = { { 0, 0 }, { 480, 0 }, { 480, .85 }, { 600, .85 }, { 600, 0 }, { 4095, 0 } };

@@ -56,7 +56,7 @@ static size_t words_of(const int n[3])
   return ((size_t)n[0] * (size_t)n[1] * (size_t)n[2] + 63) / 64;
 }
 
-/* Sets a voxel. Returns 1 if it lies in the box and was not set. */
+/* Set a voxel. Returns 1 if it is in the box and was not set. */
 static int set_voxel(bit_set* set, int x, int y, int z)
 {
   if (x < 0 || y < 0 || z < 0 || x >= set->n[0] || y >= set->n[1] || z >= set->n[2]) {

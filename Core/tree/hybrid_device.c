@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Sums of the hybrid tree's builder on the context's OpenCL device: those of hybrid_host.c, one launch for all nodes of a batch. Bricks and
- * their order stay on the device while the tree grows; what comes back are the sums. */
+ * Sums of the hybrid tree's builder on the context's OpenCL device: the sums of hybrid_host.c, one launch for all nodes of a batch. Bricks
+ * and their order stay on the device while the tree grows. Only the sums are copied back. */
 #include "device_frame.h"
 #include "hybrid_tree.h"
 

@@ -339,7 +339,8 @@ static stratus_status grow_tree(hybrid_build* build)
   return grow_from(build, &root);
 }
 
-/* Numbers the nodes anew in the order of a walk that finishes the lower child first: what a ray visits together lies together. */
+/* Renumber the nodes in the order of a walk that finishes the lower child first, so that nodes that a ray visits together are near each
+ * other in memory. */
 static stratus_status number_by_depth(hybrid_build* build)
 {
   stratus_tree_shape* shape = build->shape;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Shared by the files of the hybrid tree's builder. hybrid_tree.c builds level by level and makes all decisions, from sums over a node's
- * bricks. The sums are whole numbers, made by the host or by the device (hybrid_sums), so that both build the same tree. Planes lie between
+ * bricks. The sums are whole numbers, made by the host or by the device (hybrid_sums), so that both build the same tree. Planes are between
  * bricks, so that they cut none. */
 #ifndef STRATUS_HYBRID_TREE_H
 #define STRATUS_HYBRID_TREE_H
@@ -34,7 +34,7 @@ typedef struct hybrid_bin {
 
 static const hybrid_bin hybrid_no_bricks = { 0, { INT32_MAX, INT32_MAX, INT32_MAX }, { 0, 0, 0 } };
 
-/* What is found out about a node that is split, in the order in which it is found. */
+/* The results for a node that is split, in the order in which they are found. */
 typedef struct hybrid_work {
   hybrid_node node;
   int32_t lo[3], hi[3]; /* tight box of its voxels */
@@ -60,7 +60,7 @@ typedef struct hybrid_build hybrid_build;
 
 /* Makes sums for `count` nodes at once. */
 typedef struct hybrid_sums {
-  /* Fills peak, squares and voxels. own: the density is of the node's bricks alone, in their order. */
+  /* Fill peak, squares and voxels. own: the density is of only the node's bricks, in their order. */
   stratus_status (*peaks)(hybrid_build* build, hybrid_work* const* works, uint32_t count, bool own);
   /* Fills the lines through the peaks from lines[work->at] on. */
   stratus_status (*lines)(hybrid_build* build, hybrid_work* const* works, uint32_t count, stratus_density_line* lines, size_t size);

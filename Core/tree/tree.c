@@ -9,7 +9,7 @@
 
 /* Most bricks of a field in the paper's trees, whose fields have an entry per voxel: 256^3 entries. */
 #define PAPER_FIELD_BRICKS ((int64_t)1 << 18)
-/* What a core's own cache holds. */
+/* Bytes that fit a core's own cache. */
 #define CACHED_BYTES 1e6
 
 static const char* const method_names[STRATUS_TREE_METHODS] = { "hybrid", "hybrid-paper", "distance", "octant", "sah", "sweep", "lbvh",

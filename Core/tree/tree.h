@@ -19,7 +19,7 @@ typedef struct stratus_tree_shape {
 stratus_status stratus_hybrid_tree_shape(stratus_context* context, const stratus_voxels* voxels, const stratus_tree_options* options,
   stratus_tree_shape* shape, stratus_tree_statistics* statistics);
 
-/* ---- tree_fields.c: leaves of distance fields. An entry tells how far a ray may leap from a cell, for each octant of directions (bit a of
+/* ---- tree_fields.c: leaves of distance fields. An entry holds how far a ray may leap from a cell, for each octant of directions (bit a of
  * an octant is set: the ray moves towards + on axis a). A cell is a brick or, in the paper's trees, a voxel. A field knows nothing beyond
  * its own cells.
  *
@@ -76,10 +76,10 @@ stratus_status stratus_tree_count_up(stratus_context* context, stratus_tree* tre
 size_t stratus_tree_memory(const stratus_tree* tree);
 /* tree_arrays_check.c: checks that nodes, bricks, fields and masks refer only to each other. The header must have been checked before. */
 stratus_status stratus_tree_check_arrays(stratus_context* context, const stratus_tree* tree);
-/* tree_bytes.c: writes size and checksum into the header of a saved tree of more than 24 bytes, whatever else it says: fuzzers mend by it
- * what they have changed. */
+/* tree_bytes.c: write size and checksum into the header of a saved tree of more than 24 bytes, whatever its other contents. Fuzzers repair
+ * changed bytes with it. */
 void stratus_tree_seal(void* bytes, size_t size);
-/* tree_bytes.c: returns whether the tree's dimensions are those of a tree of this volume. */
+/* tree_bytes.c: return whether the tree has the dimensions of a tree of this volume. */
 bool stratus_tree_fits(const stratus_tree* tree, const stratus_volume* volume);
 
 /* ---- tree_check.c */

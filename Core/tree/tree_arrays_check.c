@@ -17,7 +17,7 @@ static bool box_inside(const stratus_tree_node* node, const int32_t lo[3], const
   return true;
 }
 
-/* Returns whether a leaf's bricks lie in its box, voxel by voxel, and belong to no other leaf. */
+/* Return whether a leaf's bricks are in its box, voxel by voxel, and belong to no other leaf. */
 static bool bricks_fit(const stratus_tree* tree, const stratus_tree_node* node, uint8_t* taken)
 {
   for (uint32_t b = node->first; b < node->first + stratus_tree_node_count(node); ++b) {
@@ -39,7 +39,7 @@ static bool bricks_fit(const stratus_tree* tree, const stratus_tree_node* node, 
   return true;
 }
 
-/* Returns whether a plane across an axis lies between the children of a node. First hits in hybrid trees rely on it. */
+/* Return whether a plane across an axis is between the children of a node. First hits in hybrid trees rely on it. */
 static bool plane_between(const stratus_tree_node child[2])
 {
   bool between = false;

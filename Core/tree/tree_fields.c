@@ -190,7 +190,7 @@ static stratus_status cut_out(stratus_context* context, const stratus_voxels* vo
 static unsigned leap_within(float distance, unsigned longest)
 {
   unsigned leap = 1;
-  /* Cells within the Chebyshev distance `leap` lie in the sphere if 3 leap^2 < d^2. One more step leaves them. */
+  /* Cells within the Chebyshev distance `leap` are in the sphere if 3 leap^2 < d^2. One more step leaves them. */
   while (leap < longest && 3.0f * (float)(leap * leap) < distance * distance) {
     ++leap;
   }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Builds wide hierarchies, level by level. A range of bricks in Morton order becomes a node. A node opens the child whose codes differ in
- * the highest bit, until it has 16 children or all of them have at most 16 bricks. So nodes above bricks are full, and memory is that of
- * the bricks and some 14 bytes a brick more. */
+ * the highest bit, until it has 16 children or all of them have at most 16 bricks. So nodes above bricks are full, and the memory is the
+ * bricks' own and about 14 bytes more for each brick. */
 #include "wide_tree.h"
 
 #include "bvh_build.h"
@@ -16,7 +16,7 @@ typedef struct cuts {
   uint32_t count, inner;
 } cuts;
 
-/* A node without boxes: its sorted bricks first .. end - 1, and what stratus_wide_node tells of its children. */
+/* A node without boxes: its sorted bricks first .. end - 1, and the fields of stratus_wide_node about its children. */
 typedef struct stem {
   uint32_t first, end, node, brick;
   uint8_t count, inner;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Wide hierarchies over bricks: nodes of up to 16 children, whose boxes fit two cache lines as bytes (compressed wide hierarchies: Ylitie
- * et al. 2017). The shape is that of a linear hierarchy over Morton codes, so that siblings never overlap. */
+ * et al. 2017). The shape is a linear hierarchy over Morton codes, so that siblings never overlap. */
 #ifndef STRATUS_WIDE_TREE_H
 #define STRATUS_WIDE_TREE_H
 
@@ -33,8 +33,8 @@ typedef struct stratus_wide {
   void* memory;
 } stratus_wide;
 
-/* Makes a hierarchy over `count` >= 1 bricks, and brings them into the order of its leaves: *bricks is replaced. STRATUS_INVALID_ARGUMENT
- * if two bricks are at the same place. The result depends on the set alone, not on the bricks' order. On failure nothing is changed. */
+/* Make a hierarchy over `count` >= 1 bricks, and bring them into the order of its leaves: *bricks is replaced. STRATUS_INVALID_ARGUMENT if
+ * two bricks are at the same place. The result depends only on the set, not on the bricks' order. On failure nothing is changed. */
 stratus_status stratus_wide_create(stratus_context* context, stratus_brick** bricks, uint32_t count, stratus_wide* wide);
 /* The box of child c, [lo, hi) in voxels. */
 stratus_box stratus_wide_box(const stratus_wide_node* node, int c);

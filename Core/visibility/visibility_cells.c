@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/* Cells lie scattered if neighbours' numbers differ in the mean by more than 1/SCATTERED of a leaf; points, if those of one cell do by more
- * than 1/SCATTERED of all points. */
+/* Cells are scattered if neighbours' numbers differ in the mean by more than 1/SCATTERED of a leaf. Points are scattered if the numbers of
+ * one cell's points differ in the mean by more than 1/SCATTERED of all points. */
 #define SCATTERED 16
 #define FEW_POINTS 4096 /* so many fit a cache in any order */
 #define AXIS_BITS 10
@@ -29,7 +29,7 @@ static bool cells_are_scattered(const stratus_visibility_order* order, const int
   return cells > STRATUS_MORTON_FEW_CELLS && distance * SCATTERED > (double)pairs * cells;
 }
 
-/* What place_cell() needs to place a cell on the curve. */
+/* The inputs of place_cell(), which places a cell on the curve. */
 typedef struct cell_places {
   const stratus_visibility_order* order;
   const int32_t* leaf;

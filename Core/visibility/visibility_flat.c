@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Cells without volume lie on no side of their faces, yet cells before and behind them hide one another through them. Each flat cell gets
+ * Cells without volume are on no side of their faces, yet cells before and behind them hide one another through them. Each flat cell gets
  * the side that it would have if it were inflated a little: one that agrees with a neighbour's side, passed on from cell to cell. */
 #include "visibility_order.h"
 
-/* The neighbour's face with the same points as face f of the cell; -1: none. The signs are those of stratus_face_points(). */
+/* The neighbour's face with the same points as face f of the cell; -1: none. The signs are as in stratus_face_points(). */
 static int find_face(const stratus_visibility_order* order, int64_t cell, int f, int64_t neighbour, int* sign, int* neighbour_sign)
 {
   int32_t points[3], other[3];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Gap faces: border faces through which a ray may leave a leaf and come back, as more of the leaf lies beyond the face's plane. Cells on
- * both sides of a gap share no face, so relations through faces do not order them. Every other border face lies on the leaf's convex hull,
+ * Gap faces: border faces through which a ray may leave a leaf and come back, because more of the leaf is beyond the face's plane. Cells on
+ * both sides of a gap share no face, so relations through faces do not order them. Every other border face is on the leaf's convex hull,
  * and no ray comes back through it. */
 #include "visibility_order.h"
 
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#define SLACK 1e-13 /* of the mesh's size: what looks like a narrower gap is a rounding error */
+#define SLACK 1e-13 /* of the mesh's size: a narrower gap is a rounding error */
 
 /* A leaf's border faces, and a tree of boxes: each covers STRATUS_GATE_CHILDREN consecutive faces, or as many boxes of the level before. */
 typedef struct gap_search {

@@ -6,7 +6,7 @@
 
 #define CORNERS_MAX 6    /* corners of two triangles' intersection */
 #define LEAST_SHARE 1e-6 /* of a face: faces that share less of the view only touch, but for rounding */
-#define LEAST_DEPTH 1e-9 /* from the other's plane, in lengths of the other's edges: what is nearer lies on the plane */
+#define LEAST_DEPTH 1e-9 /* from the other's plane, in lengths of the other's edges: a nearer point is on the plane */
 
 /* The size of a triangle in the view, signed by which way round its points come: an area, or in perspective a determinant. */
 static double turn_of(const stratus_gates* gates, const stratus_view_point* a, const stratus_view_point* b, const stratus_view_point* c)
@@ -42,7 +42,7 @@ static stratus_view_point minus(const stratus_view_point* p, const stratus_view_
   return (stratus_view_point){ p->x - q->x, p->y - q->y, p->z - q->z };
 }
 
-/* Whether p lies on a face's plane or on the eye's side of it. *nearness: the plane's distance along the ray through p, over p's. */
+/* Whether p is on a face's plane or on the eye's side of it. *nearness: the plane's distance along the ray through p, over p's. */
 static bool is_before(const stratus_gates* gates, const stratus_view_point* p, const stratus_view_point face[3], double* nearness)
 {
   const stratus_view_point u = minus(face + 1, face), v = minus(face + 2, face), from = minus(p, face);

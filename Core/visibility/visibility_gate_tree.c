@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A tree over ways out, searched for one that hides a way in. Each node covers consecutive gates, which lie near one another, by a box in
- * the view. A view of parallel rays has one side, a plane; a perspective view has six, the sides of a cube around the eye. */
+ * A tree over exit gates, searched for one that hides an entry gate. Each node covers consecutive gates, which are near one another, by a
+ * box in the view. A view of parallel rays has one side, a plane; a perspective view has six, the sides of a cube around the eye. */
 #include "visibility_order.h"
 
 /* A point's coordinates relative to a side of the cube: two along the side, and one towards it. */
@@ -48,7 +48,7 @@ static int only_side(const stratus_view_point points[3])
   return side;
 }
 
-/* Boxes hold for one side: what several sides see has none. */
+/* Boxes hold for one side: a gate that several sides see has none. */
 static bool has_box(unsigned sides)
 {
   return (sides & (sides - 1)) == 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Order across gaps. A ray may leave a cell into a gap and enter another cell behind it: the first cell's face then hides the second's. A
- * cell with a way in waits for every cell of its leaf that has a way out which hides that way in. */
+ * cell with an entry gate waits for every cell of its leaf that has an exit gate which hides this entry. */
 #include "visibility_order.h"
 
 #define DEPTH_SLACK 1e-12 /* exceeds rounding errors of depths near 0, as `seen` is scaled to 1 */
@@ -92,7 +92,7 @@ static int64_t first_gate(const stratus_gates* gates, uint32_t cell)
   return gate;
 }
 
-/* The cell that a way in waits for; STRATUS_NO_CELL: none. */
+/* Return the cell for which an entry waits; STRATUS_NO_CELL: none. */
 static uint32_t cell_before(stratus_gates* gates, int64_t way_in)
 {
   const int64_t way_out = gates->gates[way_in].facing < 0 ? stratus_gates_search(gates, way_in) : -1;

@@ -353,7 +353,7 @@ stratus_status stratus_visibility_order_sort(stratus_visibility_order* order, co
   if (leaves_changed || !sorted || order->relations_changed || gaps || order->result.forced > 0) {
     TRY(peel_leaves(order, peeling, &found));
     stratus_stage_end(context, &peel_stage, "visibility peeling", (size_t)order->cell_count * sizeof *order->cells);
-  } else { /* all relations are those of the last view, and there are no gaps, where relations are not compared */
+  } else { /* all relations are as in the last view, and there are no gaps, where relations are not compared */
     found.reused = 1;
     found.layers = order->result.layers;
   }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What both methods of peeling share: stratus_order_cut() drops a relation of a ring, and seeds give the order of cells that no relation
- * decides. */
+ * Common parts of both methods of peeling: stratus_order_cut() drops a relation of a ring, and seeds give the order of cells that no
+ * relation decides. */
 #include "visibility_order.h"
 
 void stratus_order_cut(stratus_visibility_order* order, uint32_t cell, int face)

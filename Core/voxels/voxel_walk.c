@@ -15,7 +15,7 @@
 typedef struct walk {
   const stratus_voxels* voxels;
   const stratus_voxel_borders* borders; /* may be NULL */
-  double origin[3], direction[3];       /* in the frame where voxel (i,j,k) fills [i,i+1], or what lies between its borders */
+  double origin[3], direction[3];       /* in the frame where voxel (i,j,k) fills [i,i+1], or the space between its borders */
   double t_min, t_max;
 } walk;
 

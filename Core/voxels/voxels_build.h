@@ -17,7 +17,7 @@ typedef struct stratus_bounds {
   stratus_bound lo, hi;
 } stratus_bounds;
 
-/* What makes a value effective: to lie in one of the intervals, and not to be hidden. */
+/* A value is effective if it is in one of the intervals and is not hidden. */
 typedef struct stratus_scan {
   const stratus_volume* volume;
   const stratus_bounds* intervals;

@@ -72,7 +72,7 @@ static void mark_bricks(const stratus_voxels* voxels, const voxel_list* list, in
     uint64_t before;
 #pragma omp atomic read
     before = field->bits[brick >> 6];
-    if (!(before & bit)) { /* most voxels lie in a brick that another one has marked */
+    if (!(before & bit)) { /* most voxels are in a brick that another voxel has marked */
       set_bit(&field->bits[brick >> 6], bit, threads > 1);
     }
   }
@@ -162,7 +162,7 @@ cleanup:
 
 /* ---------------------------------------------------------------- by sorting */
 
-#define VOXEL_SHIFT 58 /* a key's highest 6 bits tell the voxel in its brick */
+#define VOXEL_SHIFT 58 /* a key's highest 6 bits are the voxel's number in its brick */
 
 /* Bits of numbers 0 .. count - 1. */
 static int bits_of(int64_t count)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Marks the values of a row that lie in one of several intervals, for one type of values. voxels_scan.c includes this file once for each
+ * Marks the values of a row that are in one of several intervals, for one type of values. voxels_scan.c includes this file once for each
  * type and defines
  *   TYPE     the type of the values
  *   AS       the type in which they are compared

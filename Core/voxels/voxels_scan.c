@@ -8,7 +8,7 @@
 #include <omp.h>
 #include <string.h>
 
-#define WORD 64 /* flags in a word: those of 16 bricks' rows of four */
+#define WORD 64 /* flags in a word: 16 bricks' rows of four */
 
 #define TYPE int8_t
 #define AS int8_t
@@ -197,7 +197,7 @@ static stratus_status scan_rows(
   return STRATUS_OK;
 }
 
-/* Takes the criterion's intervals that some value of the type can lie in. */
+/* Get the criterion's intervals that some value of the type can be in. */
 static stratus_status take_intervals(
   stratus_context* context, const stratus_criterion* criterion, stratus_scan* s, stratus_origin* origin, void** out)
 {

@@ -7,8 +7,8 @@
 
 #include "gather.h"
 
-/* Sides of the picture, in pixels, and of the volume, in values; samples of a ray; entries of the table, four floats each. The work is
- * that of a small volume in an ordinary window, and so is the share that the picture's transfer has. */
+/* Sides of the image, in pixels, and of the volume, in values; samples of a ray; entries of the table, four floats each. The work, and the
+ * share of it that copying the image has, are as for a small volume in an ordinary window. */
 #define CALIBRATION_PIXELS 512
 #define CALIBRATION_VALUES 64
 #define CALIBRATION_SAMPLES 48
@@ -53,8 +53,8 @@ INLINE void calibration_cell(GLOBAL const float* values, vint index, vmask mask,
 #endif
 }
 
-/* Marches the rays of pixels (x, y). pixel: red, green, blue, opacity. The rays are parallel, oblique to all axes, and stay inside the
- * volume, whose values lie between 0 and 1. */
+/* March the rays of pixels (x, y). pixel: red, green, blue, opacity. The rays are parallel, oblique to all axes, and stay inside the
+ * volume, whose values are between 0 and 1. */
 INLINE void calibration_march(GLOBAL const float* values, GLOBAL const float* table, vfloat x, vfloat y, vfloat pixel[4])
 {
   const vmask all = vi_ge(vi_set(0), vi_set(0));

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Gathers beside those of packet.h: each lane loads from an index of its own. A lane outside the mask reads nothing and gets 0. */
+ * More gathers than packet.h has: each lane loads from an index of its own. A lane outside the mask reads nothing and gets 0. */
 #ifndef STRATUS_GATHER_H
 #define STRATUS_GATHER_H
 
 #include "packet.h"
 
-/* v_gather_bytes loads four bytes at base + at[lane], which need not be aligned; v_gather_ints loads base[at[lane]]. vi_outside tells the
- * lanes whose a is not in 0..n-1, vi_zero those whose a is 0. */
+/* v_gather_bytes loads four bytes at base + at[lane], which need not be aligned; v_gather_ints loads base[at[lane]]. vi_outside returns the
+ * lanes whose a is not in 0..n-1, vi_zero the lanes whose a is 0. */
 #if STRATUS_WIDTH == 1
 #ifdef STRATUS_DEVICE
 INLINE vint v_gather_bytes(GLOBAL const uchar* base, vint at, vmask mask)

@@ -76,8 +76,8 @@ INLINE vfloat depth_of_opacity(vfloat opacity, vfloat passes)
   return v_select(v_lt(opacity, v_set(0.125f)), thin * opacity, v_set(0.0f) - v_logarithm(v_clamp(passes, 1e-35f, 1.0f)));
 }
 
-/* What multiplies an optical depth where `factor`, 0..1, multiplies the opacity of a way on which the depth is `way`. 1 - F A lets pass
- * what a depth of -ln(1 - F A) does. */
+/* Return the factor of an optical depth, if `factor`, 0..1, multiplies the opacity A of a segment on which the depth is `way`. The
+ * transparency 1 - F A has the optical depth -ln(1 - F A). */
 INLINE vfloat factor_of_way(vfloat factor, vfloat way)
 {
   const vfloat one = v_set(1.0f), opacity = v_absorbed(way);
@@ -102,7 +102,8 @@ INLINE vfloat factor_of_gradient(GLOBAL const int* factors, vint first, vfloat s
   return v_lerp(low, high, place - v_from_int(entry));
 }
 
-/* What reaches a place from light i, of 1: `way`, in units of `place`, and `light`, its direction, lead from the place to the light. */
+/* Return the fraction of light i that reaches a place. `way`, in units of `place`, and `light`, its direction, lead from the place to the
+ * light. */
 INLINE vfloat lamp_reaching(CONSTANT stratus_light_arguments* a, int i, const vfloat way[3], const vfloat light[3])
 {
   CONSTANT float *far = a->attenuation[i], *cone = a->cone[i];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a frame tells of its lights: scalars of four bytes only, the same bytes on host and device. Places are coordinates of the renderer's
- * own, which `place` takes to the world. */
+ * A frame's lights: scalars of four bytes only, the same bytes on host and device. Places are coordinates of the renderer's own, which
+ * `place` transforms to the world. */
 #ifndef STRATUS_LIGHT_ARGUMENTS_H
 #define STRATUS_LIGHT_ARGUMENTS_H
 

@@ -52,8 +52,8 @@ MORTON_INLINE int morton_shared(MORTON_GLOBAL const MORTON_ULONG* codes, MORTON_
   return codes[i] != codes[j] ? MORTON_ZEROS_64(codes[i] ^ codes[j]) : 64 + MORTON_ZEROS_32((MORTON_UINT)i ^ (MORTON_UINT)j);
 }
 
-/* The two children of inner node i, 0 <= i < count - 1. A node covers a run of sorted codes, and code i stands at one end of node i's run.
- * Node 0 is the root. */
+/* The two children of inner node i, 0 <= i < count - 1. A node covers a run of sorted codes, and code i is one end of node i's run. Node 0
+ * is the root. */
 MORTON_INLINE void morton_children(
   MORTON_GLOBAL const MORTON_ULONG* codes, MORTON_LONG count, MORTON_LONG i, MORTON_UINT* left, MORTON_UINT* right)
 {

@@ -17,8 +17,8 @@
 #ifndef STRATUS_WIDTH
 #define STRATUS_WIDTH 1
 #endif
-/* A work item that holds a packet fills the vectors already. The hint tells compilers that would spread a kernel over many work items a
- * vector, such as Intel's for CPUs: 16 items of 16 lanes each would take them ten times as long. */
+/* A work item that holds a packet fills the vectors already. Some compilers, such as Intel's for CPUs, would spread a kernel over many work
+ * items a vector. The hint prevents this: 16 items of 16 lanes each would need ten times as long. */
 #if STRATUS_WIDTH == 16
 #define PACKET_KERNEL __kernel __attribute__((vec_type_hint(float16)))
 #else

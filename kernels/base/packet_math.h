@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Reciprocal, inverse square root and exponential, from + - * fma and operations on bits alone. They give the same bits in every dialect,
+ * Reciprocal, inverse square root and exponential, from only + - * fma and operations on bits. They give the same bits in every dialect,
  * which a device's own division and exponential do not. */
 #ifndef STRATUS_PACKET_MATH_H
 #define STRATUS_PACKET_MATH_H

@@ -164,7 +164,7 @@ static void place_child(const target* t, uint child, const subtree* s, uint4 pla
   }
 }
 
-/* Nodes and order of levels first to last. places: that of the root is there. */
+/* Nodes and order of levels first to last. places: the root's place is already there. */
 __kernel void place(__global const uint* sorted, __global const uint* begin, uint first, uint last, uint count, uint chunk,
   __global const uint2* pairs, __global const int* boxes, __global const subtree* subtrees, __global const uint* number,
   __global uint4* places, __global int* nodes, __global uint* order)

@@ -62,7 +62,7 @@ static void find_nearest(const clusters* c, uint i, uint count, __global uint* n
   STORE(own ^ best, nearest + i);
 }
 
-/* Bit 0: cluster i remains, alone or with another. Bit 16: it merges with another. */
+/* Bit 0: cluster i remains, by itself or with another. Bit 16: it merges with another. */
 static uint remains(__global const uint* nearest, uint i)
 {
   const uint j = nearest[i];

@@ -22,7 +22,7 @@ typedef int value;
 #endif
 #define FAR (FAR_LINE * FAR_LINE)
 
-/* Distance along y to the last voxel of the opposite kind, with the sign of this one. before: that of the voxel before. */
+/* Distance along y to the last voxel of the opposite kind, with the sign of this one. before: the distance of the voxel before. */
 static value step_on(value before, int inside, int is_signed)
 {
   const value same = inside ? -before : before;

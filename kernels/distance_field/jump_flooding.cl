@@ -122,7 +122,8 @@ static uint sum_of_16(uint16 a)
   return c.x + c.y + c.z + c.w;
 }
 
-/* Does the same as the kernel `flood`. One item a row of voxels; its sums are those of as many groups as the row has there. */
+/* Does the same as the kernel `flood`. One item for each row of voxels; its sums replace the sums of as many groups as the row has
+ * there. */
 __kernel void flood_rows(
   __global const uint* from, long nx, long ny, long nz, int step, int shift_y, int shift_z, __global uint* to, __global uint* sums)
 {

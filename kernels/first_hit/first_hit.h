@@ -22,7 +22,7 @@ typedef struct stratus_hit_tables {
   GLOBAL const int *nodes, *fields, *bricks; /* records of 8, 8 and 4 ints: the structs of bvh.h, tree.h and voxels.h */
 } stratus_hit_tables;
 
-/* What a packet walks: one field that all lanes share, or a leaf of its own in each lane. */
+/* The field of a packet: one field that all lanes share, or a leaf of its own in each lane. */
 #define STRATUS_HIT_FIELD 0
 #define STRATUS_HIT_LEAVES 1
 
@@ -140,7 +140,7 @@ INLINE vmask hit_doubts(CONSTANT stratus_hit_arguments* a, const stratus_hit_tab
 }
 
 /* One step of every live ray. A ray whose cell is an occupied voxel is hit; any other moves on. Where it leaves the field it ends, or seeks
- * its next leaf. The last four parameters repeat what the arguments tell, so that the compiler sees them as constants. */
+ * its next leaf. The last four parameters repeat values of the arguments, so that the compiler sees them as constants. */
 INLINE void hit_step(CONSTANT stratus_hit_arguments* a, const stratus_hit_tables* tables, stratus_hit_packet* k, const int kind,
   const int octants, const int entry_bytes, const int cell_log2)
 {

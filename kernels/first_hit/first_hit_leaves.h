@@ -2,9 +2,9 @@
  * Leads rays to the leaves of a tree: each lane of a packet descends by itself, with a stack of its own, and walks its leaf by hit_step()
  * of first_hit.h. A leaf of bricks is walked brick by brick, each as a field of one cell.
  *
- * A plane across an axis lies between the boxes of two siblings, and a ray meets all that is before the plane first: the sign of its
- * direction tells the order without rounding. So do bricks of a list come in the order of the sum of their coordinates along the ray's
- * octant. A box is met if the ray meets it grown by the slack. So no leaf is missed, and the first voxel that is found, if the ray is
+ * A plane across an axis is between the boxes of two siblings, and a ray meets the sibling before the plane first. The sign of its
+ * direction therefore gives the order without rounding. So do bricks of a list come in the order of the sum of their coordinates along the
+ * ray's octant. A box is met if the ray meets it grown by the slack. So no leaf is missed, and the first voxel that is found, if the ray is
  * certain of it, is the first of the whole tree. */
 #ifndef STRATUS_FIRST_HIT_LEAVES_H
 #define STRATUS_FIRST_HIT_LEAVES_H

@@ -2,10 +2,10 @@
  * Walks a ray among voxels of any widths, through the distance field of their bricks, up to the first effective voxel. One ray, in double;
  * host and device run the same source.
  *
- * A crossing of a plane between voxels is known by its t and its axis, t = (plane - origin) / direction, and crossings are ordered by t,
- * and at equal t by the axis. The voxel that a ray is in after a crossing follows from that order alone: of each axis, the planes behind
- * the crossing are counted by bisection. So a leap over empty bricks ends in the voxel in which the walk from voxel to voxel would be, to
- * the bit (voxel_walk.c). */
+ * A crossing of a plane between voxels is known by its t and its axis, t = (plane - origin) / direction. Crossings are ordered by t, and at
+ * equal t by the axis. The voxel that a ray is in after a crossing follows from only that order: of each axis, the planes behind the
+ * crossing are counted by bisection. So a leap over empty bricks ends in the voxel in which the walk from voxel to voxel would be, to the
+ * bit (voxel_walk.c). */
 #ifndef STRATUS_FIRST_HIT_STRETCHED_H
 #define STRATUS_FIRST_HIT_STRETCHED_H
 

@@ -21,7 +21,7 @@ typedef char stratus_arguments_agree[sizeof(stratus_hit_arguments) == STRATUS_AR
 #endif
 
 #define WIDE 16
-#define WIDE_STACK 226         /* as STRATUS_WIDE_STACK of wide_tree.h, which tells why */
+#define WIDE_STACK 226         /* as STRATUS_WIDE_STACK of wide_tree.h, which explains the number */
 #define WIDE_BRICK 0x80000000u /* set in a brick's number on the stack */
 
 /* The struct of wide_tree.h. */
@@ -38,7 +38,7 @@ typedef struct wide_ray {
   float inverse[3];
   float early[3], late[3]; /* the origin, off by the slack: planes are met at (p - early) * inverse at the earliest, and so on */
   int up[3];
-  float end; /* what the ray enters behind it cannot be its hit */
+  float end; /* voxels that the ray enters behind it cannot be its hit */
   int top, visited;
   /* The voxel that was taken: from where to where it may begin. And where any other voxel that the ray may meet may begin. */
   int voxel[3];
@@ -46,7 +46,7 @@ typedef struct wide_ray {
   ulong stack[WIDE_STACK]; /* bits of a float >= 0, which are ordered as the float is, above the number of a node or brick */
 } wide_ray;
 
-/* Puts an entry on the stack, below those of the same node that the ray enters earlier. */
+/* Put an entry on the stack, below the entries of the same node that the ray enters earlier. */
 INLINE void wide_push(wide_ray* r, int least, float enter, uint number)
 {
   const ulong entry = (ulong)as_uint(enter) << 32 | number;

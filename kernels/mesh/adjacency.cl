@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Neighbours through faces: keys of faces, and runs of equal ones. Faces are sorted by their third point, and then, stably, by the first
- * two, so that those of the same points follow one another. */
+ * Neighbours through faces: keys of faces, and runs of equal keys. Faces are sorted by their third point, and then, stably, by the first
+ * two, so that faces of the same points follow one another. */
 #include "face_points.h"
 
 #define COUNTERS_BROKEN 0

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The trilinear field along a ray through one cell is a cubic. It is cut where it turns, and its roots are found piece by piece.
  *
- * The cut into monotone pieces is that of Marmitt, Kleer, Wald, Friedrich & Slusallek 2004. Their bracketing is kept. Their search is
- * replaced by bisection, which needs no division and ends after the same number of steps in every lane. Where a ray passes from a cell to
- * the next, both cells compute the very same bits, so that a root there is found in exactly one of them. */
+ * The cut into monotone pieces follows Marmitt, Kleer, Wald, Friedrich & Slusallek 2004. Their bracketing is kept. Their search is replaced
+ * by bisection, which needs no division and ends after the same number of steps in every lane. Where a ray passes from a cell to the next,
+ * both cells compute the very same bits, so that a root there is found in exactly one of them. */
 #ifndef STRATUS_CELL_CUBIC_H
 #define STRATUS_CELL_CUBIC_H
 
@@ -44,7 +44,7 @@ INLINE vfloat v_signed_reciprocal(vfloat a)
   return v_select(v_lt(a, v_set(0.0f)), v_set(0.0f) - size, size);
 }
 
-/* Coefficients of the cubic on the way from the fractions e to the fractions e + d. */
+/* Coefficients of the cubic on the segment from the fractions e to the fractions e + d. */
 INLINE void cubic_coefficients(const vfloat v[8], const vfloat e[3], const vfloat d[3], vfloat k[4])
 {
   vfloat q[2][3];
@@ -81,7 +81,7 @@ INLINE void cubic_turns(const vfloat k[4], vfloat* first, vfloat* second)
   *second = v_max(one_turn, other_turn);
 }
 
-/* The cubic of a cell with corners v, on the way from the fractions e to the fractions f. */
+/* The cubic of a cell with corners v, on the segment from the fractions e to the fractions f. */
 INLINE void cubic_of_cell(const vfloat v[8], const vfloat e[3], const vfloat f[3], stratus_cubic* c)
 {
   const vfloat d[3] = { f[0] - e[0], f[1] - e[1], f[2] - e[2] }, zero = v_set(0.0f), one = v_set(1.0f);

@@ -36,7 +36,7 @@ INLINE vfloat plane_met(CONSTANT stratus_ray_cast_arguments* a, const stratus_pa
   return (walk_plane(a, k, w, axis, plane) - k->p[axis]) * k->inverse[axis];
 }
 
-/* The cell at a position, but for what is rounded of it. */
+/* The cell at a position, up to rounding. */
 INLINE vint walk_cell(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const cell_walk* w, int axis, vfloat at)
 {
   vint cell = v_to_int(at + v_set(1.0f)) - vi_set(1); /* never below -1 */
@@ -79,8 +79,8 @@ INLINE int cell_begin(stratus_packet* k, int halves, int boxes, cell_walk* w)
   return m_any(k->live);
 }
 
-/* Where a ray at s goes on that leaves what it is in at `leave`. A ray always advances, even where two planes are too near for floats to
- * tell apart. */
+/* The place where a ray at s continues that leaves its cell or block at `leave`. A ray always advances, even if floats cannot distinguish
+ * two planes. */
 INLINE vfloat beyond_plane(vfloat s, vfloat leave) { return v_select(v_lt(s, leave), leave, v_fma(s, v_set(1e-6f), s + v_set(1e-6f))); }
 
 /* Moves the rays of `mask` into the cells behind theirs. Only the planes that a ray has met are taken anew; they are met at the numbers

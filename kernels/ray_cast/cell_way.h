@@ -21,7 +21,7 @@ typedef struct cell_way {
 /* The field at w. */
 INLINE vfloat cell_way_at(const cell_way* c, vfloat w) { return v_fma(v_fma(v_fma(c->k[3], w, c->k[2]), w, c->k[1]), w, c->k[0]); }
 
-/* A value kept within the cell's values, because a structure tells what shows from these. */
+/* A value limited to the cell's values, because a structure decides by these whether anything shows. */
 INLINE vfloat cell_within(const cell_way* c, vfloat value) { return v_min(v_max(value, c->lo), c->hi); }
 
 /* Lanes whose cell is not hidden. */
@@ -34,7 +34,7 @@ INLINE vmask cell_not_hidden(CONSTANT stratus_ray_cast_arguments* a, GLOBAL cons
   return mask;
 }
 
-/* The cubic on the way of each ray through its cell, whose corners are v. */
+/* The cubic on the path of each ray through its cell, whose corners are v. */
 INLINE void cell_cubic(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const cell_walk* w, const vint inside[3],
   const vfloat v[8], cell_way* way)
 {
@@ -46,9 +46,9 @@ INLINE void cell_cubic(CONSTANT stratus_ray_cast_arguments* a, const stratus_pac
   cubic_coefficients(v, e, d, way->k);
 }
 
-/* Narrows the way to the part from..to beyond which nothing shows. At w the cubic departs from its chord by -w (1 - w) (k[2] + k[3] (1 +
- * w)), so that it lies between two parallels to the chord, and these meet the table's first and last cell that show at the part's ends.
- * Places in the table are taken with a margin for all that rounding may do to them. */
+/* Narrow the path to the part from..to beyond which nothing shows. At w the cubic departs from its chord by -w (1 - w) (k[2] + k[3] (1 +
+ * w)), so that it is between two parallels to the chord. These meet the table's first and last cell that show at the part's ends. Places in
+ * the table have a margin for all roundings. */
 INLINE void cell_part_that_shows(CONSTANT stratus_ray_cast_arguments* a, const cell_way* way, vfloat* from, vfloat* to)
 {
   const vfloat zero = v_set(0.0f), scale = v_set(a->table.scale), quarter = v_set(0.25f * a->table.scale);
@@ -89,7 +89,7 @@ INLINE void cell_cut(CONSTANT stratus_ray_cast_arguments* a, cell_way* way, vflo
   }
 }
 
-/* Takes the lanes of `mask` whose cell, with corners v, shows something, and gives them the way through it. Returns these lanes. */
+/* Return the lanes of `mask` whose cell, with corners v, shows something, and set their paths through it. */
 INLINE vmask cell_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, const stratus_packet* k, const cell_walk* w,
   const vint inside[3], const vfloat v[8], vmask mask, cell_way* ways)
 {
@@ -128,8 +128,8 @@ INLINE vmask cell_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const ucha
   return mask;
 }
 
-/* The next piece of a way: the cubic's values at its ends, which are at way->from and at `to`, are way->front and `value`. The piece is
- * taken as straight from `front` to `back`. */
+/* The next piece of a path: the cubic's values at its ends, which are at way->from and at `to`, are way->front and `value`. The piece
+ * counts as straight from `front` to `back`. */
 typedef struct cell_piece {
   vfloat to, value, front, back;
 } cell_piece;

@@ -10,8 +10,8 @@
 #define OUTLINE static __attribute__((noinline))
 #endif
 
-/* What a sample's label shows: the entry in the table of its label, the layer of that over a whole sample, how far behind entries their
- * optical depths are, and how light and gradient change it. */
+/* The contribution of a sample's label: the entry in the table of its label, the layer of that over a whole sample, how far behind entries
+ * their optical depths are, and how light and gradient change it. */
 typedef struct stratus_label_sample {
   vfloat layer[4];
   vint entry, depths;

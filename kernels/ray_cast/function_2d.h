@@ -2,8 +2,8 @@
  * Colour and opacity by a function of two variables: the value, and the gradient's magnitude or the value of a second component. Included
  * by ray_cast.h once for each STRATUS_TYPE.
  *
- * The function is bilinear between its entries. A structure knows of a block's values alone: where all entries of the columns about them
- * are transparent, so is what is interpolated between them, exactly. */
+ * The function is bilinear between its entries. A structure knows only a block's values: where all entries of the columns about them are
+ * transparent, then every interpolation between them is transparent, too, exactly. */
 #ifndef STRATUS_FUNCTION_2D_H
 #define STRATUS_FUNCTION_2D_H
 
@@ -71,8 +71,8 @@ INLINE vfloat depth_of_entry(vfloat entry)
 }
 #endif
 
-/* What samples show whose values are at `across` behind a column: `shown` has colour and, last, opacity over the length that opacities are
- * of. lighting: set where there is light. Returns the rays of the mask on which anything shows. */
+/* Compute the colour and opacity of samples whose values are at `across` behind a column: `shown` has colour and, last, opacity over the
+ * length to which opacities refer. lighting: set if there is light. Returns the rays of the mask on which anything shows. */
 OUTLINE vmask RAY_NAME(two_at)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, const stratus_packet* k,
   const stratus_sample* sample, vint column, vfloat across, vmask mask, vfloat shown[4], stratus_lit_sample* lighting)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the gradient at a sample, and the light that falls on it, make of its entry. */
+ * How the gradient at a sample, and the light that falls on it, change its entry. */
 #ifndef STRATUS_LIGHTING_H
 #define STRATUS_LIGHTING_H
 

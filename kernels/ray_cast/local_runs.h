@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Where rays are in rough blocks, which a map of blocks of its own tells that no structure decides. A ray is a sequence of runs, the
- * longest parts of it whose blocks are all smooth or all rough. One run ends and the next begins where a cell does, at a plane's number
- * (cell_walk.h). */
+ * Places where rays are in rough blocks. A map of blocks of its own holds the rough blocks, independent of the structure. A ray is a
+ * sequence of runs, the longest parts of it whose blocks are all smooth or all rough. One run ends and the next begins where a cell does,
+ * at a plane's number (cell_walk.h). */
 #ifndef STRATUS_LOCAL_RUNS_H
 #define STRATUS_LOCAL_RUNS_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a picture of several volumes tells of each, besides its stratus_ray_cast_arguments: the same bytes on host and device. */
+ * The arguments of each volume in an image of several, in addition to its stratus_ray_cast_arguments: the same bytes on host and device. */
 #ifndef STRATUS_RAY_SEVERAL_ARGUMENTS_H
 #define STRATUS_RAY_SEVERAL_ARGUMENTS_H
 
@@ -8,7 +8,7 @@
 #define SEVERAL_BY_CELLS 1
 #define SEVERAL_LOCAL 2
 
-/* What its samples are more than one value's colour and opacity by. */
+/* Kinds of samples that are more than one value's colour and opacity. */
 #define SEVERAL_COMPONENTS 1
 #define SEVERAL_LABELS 2
 #define SEVERAL_FUNCTION_2D 3
@@ -17,9 +17,9 @@ typedef struct stratus_several_arguments {
   int stride;        /* segments of the lattice to one of its samples */
   int lit;           /* 1: it has light or gradient opacity */
   int preintegrated; /* 0: the midpoint rule */
-  int media;         /* what its samples are more than one value's colour and opacity by; 0: nothing */
-  float segment;     /* media: a segment's length in samples, of which its table is */
-  int cells;         /* how its rays go: SEVERAL_BY_SAMPLES, SEVERAL_BY_CELLS, SEVERAL_LOCAL */
+  int media;         /* SEVERAL_COMPONENTS, SEVERAL_LABELS or SEVERAL_FUNCTION_2D; 0: each sample is one value's colour and opacity */
+  float segment;     /* media: a segment's length in samples, for which its table is made */
+  int cells;         /* SEVERAL_BY_SAMPLES, SEVERAL_BY_CELLS or SEVERAL_LOCAL */
 } stratus_several_arguments;
 
 #endif

@@ -5,9 +5,9 @@
  * Light and gradient are computed only where something shows, and they only thin or colour that. So a segment that the structure leaves
  * out would have added exactly zero here, too. */
 
-/* How light and gradient, that of component c, change samples at s on their rays, in the lanes of `mask`. depth: the samples' optical depth
- * over a whole sample; read only where media.factor_reach is not 0. factor_first, factor_scale: of each lane's gradient opacity;
- * factor_first is negative where a lane has none. */
+/* How light and the gradient of component c change samples at s on their rays, in the lanes of `mask`. depth: the samples' optical depth
+ * over a whole sample; read only if media.factor_reach is not 0. factor_first, factor_scale: of each lane's gradient opacity; factor_first
+ * is negative if a lane has none. */
 OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const void* table, int c,
   const stratus_packet* k, vfloat s, vfloat depth, vint factor_first, vfloat factor_scale, vmask mask, stratus_lit_sample* lighting)
 {
@@ -43,8 +43,8 @@ INLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, v
 }
 
 #if !STRATUS_PREINTEGRATED
-/* The optical depths of the entries over a whole sample, where gradient opacity asks for them. table: of entries colour times alpha, and
- * alpha; behind these, from entry `depths` on, each one's optical depth. */
+/* The optical depths of the entries over a whole sample, if gradient opacity needs them. table: of entries colour times alpha, and alpha;
+ * behind these, from entry `depths` on, each one's optical depth. */
 INLINE vfloat RAY_NAME(entry_depth)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, vint depths, vmask mask)
 {
   vfloat depth[4] = { v_set(0.0f), v_set(0.0f), v_set(0.0f), v_set(0.0f) };
@@ -111,8 +111,8 @@ INLINE void RAY_NAME(add_dependent)(
   RAY_NAME(ray_add_medium)(a, table, last, k, sample, valid, layer, sum);
 }
 
-/* What components show at samples: `sum` has their light and, last, their optical depth, over a whole sample. Returns the rays on which
- * anything shows. */
+/* Compute the components' contributions at samples: `sum` has their light and, last, their optical depth, over a whole sample. Returns the
+ * rays on which anything shows. */
 OUTLINE vmask RAY_NAME(components_at)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, const stratus_packet* k, const stratus_sample* sample, vfloat sum[5])
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A volume among several whose rays go from cell to cell, or do so in rough blocks and from sample to sample elsewhere. They hand out one
- * stretch after the other on which the field is taken as straight and shows anything. A stretch follows from the ray, the values and the
- * function alone, not from the structure, nor from the other rays of the packet. */
+ * stretch after the other on which the field counts as straight and shows anything. A stretch follows from only the ray, the values and the
+ * function, not from the structure or from the other rays of the packet. */
 #ifndef STRATUS_SEVERAL_CELLS_H
 #define STRATUS_SEVERAL_CELLS_H
 
@@ -62,7 +62,7 @@ INLINE void several_cells_leave(const several_source* from, several_volume* v, v
   }
 }
 
-/* Visits a cell on the rays of the mask, behind what the structure tells to be transparent. */
+/* Visit a cell on the rays of the mask, behind the part that the structure marks transparent. */
 INLINE void several_cells_visit(const several_source* from, several_volume* v, vmask mask)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
@@ -105,7 +105,7 @@ INLINE void several_cells_visit(const several_source* from, several_volume* v, v
   several_cells_leave(from, v, m_andnot(mask, c->waiting));
 }
 
-/* Takes the next piece of the ways that the rays of the mask have, as the way `next`. */
+/* Set `next` to the next piece of the cell paths of the rays of the mask. */
 INLINE vmask several_cells_piece(const several_source* from, several_volume* v, vmask mask, several_way* next)
 {
   several_cells_rays* c = &v->cells;
@@ -126,7 +126,7 @@ INLINE vmask several_cells_piece(const several_source* from, several_volume* v, 
   return mask & v_lt(lo, hi);
 }
 
-/* Leaps over samples of the rays of the mask in which the structure tells the volume to be transparent. Returns the rays that stay. */
+/* Leap over samples of the rays of the mask in which the structure marks the volume transparent. Returns the rays that stay. */
 INLINE vmask several_cells_leap(const several_source* from, several_volume* v, vmask mask, vfloat middle, vfloat hi)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
@@ -158,7 +158,7 @@ INLINE vmask several_cells_leap(const several_source* from, several_volume* v, v
   return m_andnot(mask, leaps);
 }
 
-/* Takes a sample on the rays of the mask, all of them in smooth runs, as the way `next`. Returns the rays on which it may show anything. */
+/* Set `next` to a sample's path on the rays of the mask, all of them in smooth runs. Returns the rays on which it may show anything. */
 INLINE vmask several_cells_sample(const several_source* from, several_volume* v, vmask mask, several_way* next)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
@@ -269,7 +269,7 @@ INLINE void several_cells_load(const several_source* from, several_volume* v, se
     cell_enter(a, k, &c->walk);
   }
   way->lo = v_set(SEVERAL_BEYOND);
-  way->hi = v_select(k->live, v_set(-SEVERAL_BEYOND), way->lo); /* the first stretch is asked for */
+  way->hi = v_select(k->live, v_set(-SEVERAL_BEYOND), way->lo); /* request the first stretch */
   way->lo = v_select(k->live, way->hi, way->lo);
   way->rate[0] = way->rate[1] = way->rate[2] = way->rate[3] = way->front = way->rise = way->entries = zero;
   way->wall[0] = way->wall[1] = way->wall[2] = zero;

@@ -13,10 +13,10 @@
 #include "several_mesh.h"
 #endif
 
-/* Of what the rays are on, nothing changes before a volume whose way shows anything takes its next sample. So a ray composites from one
- * such change to the next. Where a way shows nothing, and whether it was sampled or skipped, makes no difference to that. */
+/* Nothing changes on the rays before a volume whose path shows anything is sampled next. So a ray composites from one such change to the
+ * next. It makes no difference where a path shows nothing, and whether it was sampled or skipped. */
 
-/* The part of the way that is between u0 and u1 segments behind the beginning of segment `since`. */
+/* The part of the path that is between u0 and u1 segments behind the beginning of segment `since`. */
 INLINE void several_part(const several_volume* v, vint since, vfloat u0, vfloat u1, vfloat* from, vfloat* to)
 {
   const several_way* way = &v->ways[v->now];
@@ -127,8 +127,8 @@ INLINE vmask several_walls(
   return stops;
 }
 
-/* Adds what the volume shows between two places: by its mean rate on the way, or, of a stretch, by the values there if that is a part of
- * it. */
+/* Add the volume's contribution between two places: by its mean rate on the path, or, in a part of a stretch, by the values at the
+ * places. */
 INLINE void several_add_way(const several_source* from, const several_volume* v, vfloat begin, vfloat end, vmask mask, vfloat sum[4])
 {
   const several_way* way = &v->ways[v->now];
@@ -241,7 +241,7 @@ INLINE void several_interval(
     until = v_select(going, until, start);
     several_stretch(from, volumes, count, since, start, until, going, k);
     mask = mask & k->live & (v_lt(until, stop) | m_andnot(mask, going));
-    /* places stay near `since`, so that floats tell them apart */
+    /* places stay near `since`, so that floats distinguish them */
     const vint whole = vi_select(mask, v_to_int(v_select(mask, until, v_set(0.0f))), vi_set(0));
     since = since + whole;
     start = until - v_from_int(whole);
@@ -250,7 +250,7 @@ INLINE void several_interval(
 #endif
 }
 
-/* Lanes on which a way shows anything. */
+/* Lanes on which a path shows anything. */
 INLINE vmask several_shown(const several_way* way, int shows)
 {
   vmask mask = m_none();

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Leaps over segments in which one of several volumes is transparent, as its structure tells.
- */
+ * Leaps over segments in which one of several volumes is transparent by its structure. */
 #ifndef STRATUS_SEVERAL_LEAP_H
 #define STRATUS_SEVERAL_LEAP_H
 
 #include "several_state.h"
 #include "tree_map.h"
 
-/* Asks the structure about the way from s0 on of the rays `inside`. Returns the segment at which the volume is to be looked at again, i
- * where it is to be sampled. */
+/* Read the structure along the rays `inside` from s0 on. Returns the segment at which the volume is to be looked at again, i if it is to be
+ * sampled. */
 INLINE int several_leap(const several_source* from, several_volume* v, int i, vfloat s0, vmask inside, vmask live)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a volume among several shows at a sample that is more than one value's colour and opacity: of several components, in the colours of
- * labels, or by a function of two variables. Included once for each STRATUS_TYPE, behind ray_cast.h with light and gradients. */
+ * The contribution of a volume among several at a sample that is more than one value's colour and opacity: of several components, in the
+ * colours of labels, or by a function of two variables. Included once for each STRATUS_TYPE, after ray_cast.h with light and gradients. */
 
 /* Gives the rate, colour times optical depth and optical depth over a segment's length, of samples on the live rays of k. */
 OUTLINE void RAY_NAME(several_media)(CONSTANT stratus_ray_cast_arguments* a, int media, float segment, GLOBAL const void* table,

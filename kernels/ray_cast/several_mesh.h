@@ -22,7 +22,7 @@ INLINE void several_mesh_places(const several_mesh* m, int x, int y, double* bas
   *scale = segments * m->per_z;
 }
 
-/* The lanes that are at an entry into the mesh before the end of what they see; z: where. */
+/* The lanes that are at an entry into the mesh before the end of their visible part; z: the entry's place. */
 INLINE vmask several_mesh_entry(const several_volume* v, vmask mask, vfloat* z)
 {
   const stratus_tetra_lanes* lanes = &v->mesh.lanes;
@@ -33,7 +33,7 @@ INLINE vmask several_mesh_entry(const several_volume* v, vmask mask, vfloat* z)
   return mask & v_lt(*z, lanes->ray.end);
 }
 
-/* Passes a cell on the rays of the mask. Returns those that see a part of it on which the table shows anything: the way `next`. */
+/* Pass a cell on the rays of the mask. Returns the rays that see a part of it on which the table shows anything, and sets `next` to it. */
 INLINE vmask several_mesh_cell(const several_source* from, several_volume* v, vmask mask, several_way* next)
 {
   const several_mesh* m = from->mesh;

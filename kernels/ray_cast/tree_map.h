@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A tree as the march reads it: what a distance map tells of a block is found through nodes and leaves. tree_map_build.c writes the
- * buffer. It begins with records of 8 ints, first those of `nodes` nodes, then those of the leaves; the leaves' bytes follow.
+ * A tree as the march reads it: the distances that a distance map holds for blocks are found through nodes and leaves. tree_map_build.c
+ * writes the buffer. It begins with records of 8 ints, first `nodes` nodes, then the leaves; the leaves' bytes follow.
  *
  *   node: first block x y z; last block x y z; first child, or leaf; 1 if that is a leaf
  *   leaf: first block x y z; blocks along x, y, z; where its bytes begin; 0
  *
- * A byte is that of a distance map: 1..127, the Chebyshev distance to the nearest occupied block of the leaf; 128 or more, occupied. */
+ * A byte has the meaning of a distance map's: 1..127, the Chebyshev distance to the nearest occupied block of the leaf; 128 or more,
+ * occupied. */
 #ifndef STRATUS_TREE_MAP_H
 #define STRATUS_TREE_MAP_H
 
@@ -23,7 +24,7 @@ INLINE vint tree_distance(GLOBAL const int* node, const vint block[3])
   return away;
 }
 
-/* What a leaf tells of each lane's block: its byte in the leaf's box, else the distance to that. */
+/* A leaf's byte for each lane's block: the byte in the leaf's box, or outside it the distance to the box. */
 INLINE vint tree_leaf_bytes(GLOBAL const uchar* map, GLOBAL const int* leaf, const vint block[3], vint away, vmask mask)
 {
   const vmask inside = mask & vi_lt(away, vi_set(1));
@@ -32,8 +33,8 @@ INLINE vint tree_leaf_bytes(GLOBAL const uchar* map, GLOBAL const int* leaf, con
   return vi_select(inside, gather_map(map, index, inside), vi_min(away, vi_set(127)));
 }
 
-/* The bytes of the packet's blocks: the nearest of what all leaves tell. Boxes of bricks do not overlap, so that at most one leaf holds a
- * block itself. The lanes descend together, to the nodes that are nearer to one of them than what it knows. */
+/* The bytes of the packet's blocks: the nearest distance over all leaves. Boxes of bricks do not overlap, so that at most one leaf holds a
+ * block itself. The lanes descend together, to the nodes that are nearer to one of them than the distance that it knows. */
 INLINE vint tree_bytes(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, const vint block[3], vmask mask)
 {
   GLOBAL const int* records = (GLOBAL const int*)map;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What kernels are told of the nodes of a hybrid tree's level. */
+ * The kernels' arguments for the nodes of a hybrid tree's level. */
 #ifndef STRATUS_HYBRID_ARGUMENTS_H
 #define STRATUS_HYBRID_ARGUMENTS_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Sums over the bricks of a hybrid tree's nodes, all nodes of a level at once: those of Core/tree/hybrid_host.c. They are whole numbers, so
- * that their order does not matter and the results are the host's to the bit. A work-group takes a chunk of one node's bricks, gathers its
- * sums in local memory, and adds them to the node's. On a processor a group has one item, which needs no atomic operations for that. */
+ * Sums over the bricks of a hybrid tree's nodes, all nodes of a level at once, as in Core/tree/hybrid_host.c. They are whole numbers, so
+ * that their order does not matter and the results are the host's to the bit. A work-group sums a chunk of one node's bricks in local
+ * memory, and adds the sums to the node's. On a processor a group has one item, which needs no atomic operations for that. */
 #include "hybrid_arguments.h"
 
 #ifndef GROUP
@@ -88,7 +88,8 @@ __kernel void peaks(__global const brick* bricks, __global const uint* order, __
   const int item = (int)get_local_id(0);
   const stratus_hybrid_chunk c = chunks[get_group_id(0)];
   __global uint* const node = peaks + 4 * c.slot;
-  const uint peak[4] = { axis < 3 ? node[0] : 0, 0, axis < 1 ? node[2] : 0, axis < 2 ? node[3] : 0 }; /* what others do not write now */
+  /* the components that other items do not write now */
+  const uint peak[4] = { axis < 3 ? node[0] : 0, 0, axis < 1 ? node[2] : 0, axis < 2 ? node[3] : 0 };
   const uint none = axis == 3 ? 0 : UINT_MAX;
   if (item == 0) {
     best = none;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What kernels are told of a distance field that is a leaf of a tree. */
+ * The kernels' arguments for a distance field that is a leaf of a tree. */
 #ifndef STRATUS_TREE_ARGUMENTS_H
 #define STRATUS_TREE_ARGUMENTS_H
 

@@ -38,7 +38,7 @@ static inline void face_determinants(face_point p0, face_point p1, face_point p2
   det[3] = m01 * z2 - m02 * z1 + m12 * z0;
 }
 
-/* The sign of a determinant, or 0 where rounding may have changed it and exact arithmetic has to tell. */
+/* The sign of a determinant, or 0 if rounding may have changed it and exact arithmetic has to decide. */
 static inline int face_sign(double det) { return (det > FACE_SIGNS_ERROR_BOUND) - (det < -FACE_SIGNS_ERROR_BOUND); }
 
 #endif

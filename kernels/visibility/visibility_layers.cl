@@ -48,7 +48,7 @@ __kernel void clear(__global uint* positions, uint cells)
   }
 }
 
-/* first: all cells are looked at, and those that none hides are ready. flags: for each entry of the layer, what it releases. */
+/* first: all cells are examined, and cells that no cell hides are ready. flags: for each entry of the layer, the cells that it releases. */
 __kernel void count(__global const int* neighbours, __global const uchar* sides, __global const uchar* state, uint cells, int first,
   int parity, __global const uint* bounds, __global const uint* list, __global const uint* positions, __global uchar* flags,
   __global uint* counts)

@@ -82,7 +82,8 @@ __kernel void value_ranges(int stage, __global const VALUE* values, bias_type bi
 }
 
 /* ---- occupancy
- * One work item a block: what stratus_occupancy_build() in Core/volume/occupancy.c does on the host. */
+ *
+ * One work item for each block. stratus_occupancy_build() in Core/volume/occupancy.c does the same on the host. */
 
 __kernel void occupancy(__global const float* lo, __global const float* hi, __global const uchar* gaps, __global const float* intervals,
   int interval_count, int gaps_show, ulong count, __global uchar* occupied)
@@ -106,10 +107,11 @@ __kernel void occupancy(__global const float* lo, __global const float* hi, __gl
 }
 
 /* ---- distance maps
+ *
  * Distance maps on a device that has thousands of work items to feed. The host's sweeps would leave most of them idle, so every block
- * searches for itself here. Running sums of the occupancy along all axes (Crow 1984) tell from eight reads how many blocks of a box are
- * occupied. A block's distance is the half-width of the smallest box about it that holds an occupied block, and a binary search finds it.
- * All octants share the sums.
+ * searches for itself here. Running sums of the occupancy along all axes (Crow 1984) give the number of occupied blocks in a box by eight
+ * reads. A block's distance is the half-width of the smallest box about it that holds an occupied block, and a binary search finds it. All
+ * octants share the sums.
  *
  * The paper's transform (Deakin & Knackstedt 2019) is below, as the baseline. */
 #define DISTANCE_MAX 127
@@ -363,7 +365,7 @@ static void join_rows(const sweep* s, long row, __global uchar* bytes)
   if (k >= s->nz) {
     return;
   }
-  /* Else no block of the row is occupied, or all of the grid are. */
+  /* Otherwise no block of the row is occupied, or all blocks of the grid are. */
   const int in_box = j >= s->y0 && j < s->y1 && k >= s->z0 && k < s->z1;
   for (long x = 0; x < s->nx; x += 16) {
     uchar16 inside = (uchar16)(DISTANCE_MAX);

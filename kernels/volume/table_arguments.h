@@ -15,7 +15,7 @@ typedef struct stratus_table_arguments {
   float tau_scale;                 /* optical depth of one unit of the running sums */
   float color_slope, color_most;   /* the most that a colour changes per entry (or width), and in all, over the error allowed */
   int cut;                         /* 1: values lie beyond the table, and are transparent there */
-  int has_opaque;                  /* 1: an entry has opacity 1, and rows behind the sums tell where: opaque_on_the_way() */
+  int has_opaque;                  /* 1: an entry has opacity 1, and rows behind the sums say where: opaque_on_the_way() */
 } stratus_table_arguments;
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The transfer function's table: which entry a value has, and what lies between two entries. */
+ * The transfer function's table: the entry of a value, and the sums between two entries. */
 #ifndef STRATUS_TRANSFER_TABLE_H
 #define STRATUS_TRANSFER_TABLE_H
 
@@ -57,13 +57,13 @@ INLINE void sums_between(GLOBAL const int* sums, vint low, vint beyond, vmask ma
   }
 }
 
-/* The last of these sums alone. */
+/* Only the last of these sums. */
 INLINE vfloat tau_between(GLOBAL const int* sums, vint low, vint beyond, vmask mask)
 {
   return v_from_int(gather_int32(sums + 3, beyond << vi_set(2), mask) - gather_int32(sums + 3, low << vi_set(2), mask));
 }
 
-/* What the sums over entries low..beyond-1 are divided by to get a mean: the number of entries, or their widths. */
+/* The divisor by which the sums over entries low..beyond-1 become a mean: the number of entries, or their widths. */
 INLINE vfloat width_between(CONSTANT stratus_table_arguments* t, GLOBAL const int* sums, vint low, vint beyond, vmask mask)
 {
   vint width = beyond - low;
@@ -74,8 +74,8 @@ INLINE vfloat width_between(CONSTANT stratus_table_arguments* t, GLOBAL const in
   return v_from_int(width);
 }
 
-/* Where a way through values begins or ends: the running sums before the value's entry, the entry's own addends, and the part of it that
- * lies before the value; the same of widths. */
+/* The beginning or end of a range of values: the running sums before the value's entry, the entry's own addends, and the part of the entry
+ * before the value; the same for widths. */
 typedef struct table_end {
   vint before[4], begin;
   vfloat own[4], width, part;
@@ -106,13 +106,13 @@ INLINE void table_end_at(CONSTANT stratus_table_arguments* t, GLOBAL const int* 
   end->part = v_clamp(part, 0.0f, 1.0f);
 }
 
-/* The sums from one value to another, where of the entries at both ends only the parts on the way count. Returns the width that they are
- * over. Where the function jumps, whole entries would count too much of one side. */
+/* The sums from one value to another. Of the entries at both ends only the parts between the values count. Returns the width of the range.
+ * Where the function jumps, whole entries would count too much of one side. */
 INLINE vfloat sums_from_to(CONSTANT stratus_table_arguments* t, const table_end* from, const table_end* to, vfloat out[4])
 {
   const vfloat zero = v_set(0.0f), least = v_set(0x1p-6f * (float)t->unit), between = v_from_int(to->begin - from->begin);
   const vfloat width = v_abs(v_fma(to->part, to->width, between) - from->part * from->width);
-  /* floats cannot tell such parts of one entry, or of two neighbours, apart */
+  /* floats cannot distinguish such parts of one entry, or of two neighbours */
   const vmask own = v_lt(width, least) & v_le(between, from->width) & v_le(zero - between, to->width);
   for (int c = 0; c < 4; ++c) {
     const vfloat sum = v_fma(to->part, to->own[c], v_from_int(to->before[c] - from->before[c])) - from->part * from->own[c];

@@ -21,7 +21,7 @@ typedef struct brick {
   ushort x, y, z, count;
 } brick;
 
-/* Returns 1 if the value lies in an interval and no flag hides it. */
+/* Return 1 if the value is in an interval and no flag hides it. */
 static int shows(
   __global const VALUE* values, long at, long stride, __global const uchar* ghosts, uint hidden, __global const END* intervals, int count)
 {
