@@ -86,10 +86,10 @@ bool FindBox(vtkOverlappingAMR* amr, unsigned int level, unsigned int id, vtkStr
   return true;
 }
 
-// What is drawn of a box.
+// The drawn data of a box.
 struct Source {
   vtkDataArray* Values = nullptr;
-  vtkUnsignedCharArray* Flags = nullptr; // of what the values are of
+  vtkUnsignedCharArray* Flags = nullptr; // of the points or cells that have the values
   Box Where;
 };
 
@@ -105,13 +105,13 @@ bool FindSource(vtkStratusAMRGrid* grid, const std::string& name, bool cells, So
   return vtkStratusFindGhosts(data, count, cells ? "cells of a box" : "points of a box", source.Flags, error);
 }
 
-// How a level's values become those of grids.
+// How a level's values are converted to a grid's values.
 struct Kind {
   int Type;
-  double Least; // values nearer to 0 become 0: a grid that had no others could not be told from an even one by floats
+  double Least; // values nearer to 0 become 0: in floats, a grid of only such values would be indistinguishable from a constant one
 };
 
-// Takes doubles where floats would lose digits that tell values apart: those of values that lie close together, far from 0.
+// Chooses doubles if floats could not distinguish the values, as for close values far from 0.
 Kind ChooseKind(const vtkStratusAMRField& field, int type, bool nearest)
 {
   double range[2];

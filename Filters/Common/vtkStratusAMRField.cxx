@@ -310,7 +310,7 @@ void vtkStratusAMRField::Evaluate(const Place& at, Cache& cache, double* sums) c
   }
 }
 
-// Gives the field at a corner of a part of a cell, from what is kept of the part if it is the last one.
+// Returns the field at a corner of a part of a cell. The cache holds the last part.
 const double* vtkStratusAMRField::EvaluateCorner(int level, const Place& part, size_t corner, const Place& node, Cache& cache) const
 {
   const auto components = static_cast<size_t>(this->Components);

@@ -4,11 +4,11 @@
 // Places are counted in whole numbers of *units* along each axis, half a cell of the finest level, so that cells, their centres and their
 // corners are whole on all levels, and whatever two levels share is the same number.
 //
-// Values of cells stand at cells' centres. A cell that finer ones cover has their field's value at its centre: the mean of the finer cells
-// around it. Each cell that shows is divided in eight at its centre. A corner of these parts that touches cells of one level, finer ones
-// included, has the mean of the cells of that level around it, as linear interpolation between centres has. A corner that touches a coarser
-// cell that shows has the value that the coarser side has there. Within a part the field is trilinear. So two levels have the same values
-// where they meet, whatever their ratio: there is no crack. Values of points are alike, with whole cells in place of parts.
+// Cell values are at cells' centres. A cell that finer cells cover has their field's value at its centre: the mean of the finer cells
+// around it. Each visible cell is divided in eight at its centre. A corner of these parts that touches cells of one level, finer ones
+// included, has the mean of the cells of that level around it, as in linear interpolation between centres. A corner that touches a coarser
+// visible cell has the coarser side's value there. Within a part the field is trilinear. Two levels therefore have equal values where they
+// meet, whatever their ratio: there is no crack. Point values work alike, with whole cells in place of parts.
 #ifndef vtkStratusAMRField_h
 #define vtkStratusAMRField_h
 
@@ -39,17 +39,17 @@ public:
   // Adds a box of the values value(i): of its cells or its points, x fastest. hidden(i): whether it shows nothing; it gets the value NaN.
   // Returns false, with the reason, where another box of the level has one of its cells. Boxes of a level are numbered as they come.
   template <class Value, class Hidden> bool Add(const Box& box, const Value& value, const Hidden& hidden, std::string& error);
-  // Must follow the last Add(). Returns false, with the reason, where a box does not lie on whole cells of the next coarser level.
+  // Must follow the last Add(). Returns false, with the reason, if a box does not cover whole cells of the next coarser level.
   bool End(std::string& error);
 
-  // What is kept between two places of one thread.
+  // Results that one thread keeps from one place to the next.
   struct Cache;
 
   int GetNumberOfLevels() const { return static_cast<int>(this->Levels.size()); }
   int GetNumberOfComponents() const { return this->Components; }
   bool IsOfCells() const { return this->Cells; }
   const std::vector<Box>& GetBoxes() const { return this->Boxes; }
-  // Gives the range of what shows, without values beyond 1e30, which stand for none. Returns false where there is nothing.
+  // Gets the range of the visible values, without values beyond 1e30, which mean "no value". Returns false if there are none.
   bool GetRange(double range[2]) const;
   // Units along a cell of a level.
   int64_t GetCell(int level, int axis) const { return this->Levels[static_cast<size_t>(level)].Cell[static_cast<size_t>(axis)]; }
@@ -124,7 +124,7 @@ bool vtkStratusAMRField::Add(const Box& box, const Value& value, const Hidden& h
         if (is_cell) {
           tile.State[index] |= EXISTS;
         }
-        if (tile.State[index] & HAS_VALUE) { // a point that boxes share: that of the first
+        if (tile.State[index] & HAS_VALUE) { // a point that boxes share: the first box has set its value
           continue;
         }
         tile.State[index] |= HAS_VALUE;

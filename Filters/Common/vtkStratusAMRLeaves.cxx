@@ -293,7 +293,7 @@ bool vtkStratusAMRLeaves::FindPlane(const std::vector<Box>& near, const std::vec
       Place below = hi, above = lo;
       below[axis] = above[axis] = planes[(i + 1) * planes.size() / (count + 1)];
       bool unused;
-      // Of parts that cost the same, those of one size: the more they are halved, the fewer steps lead to parts of one level.
+      // Among cuts of equal cost, prefer parts of equal size: the more the parts are halved, the fewer steps lead to parts of one level.
       const double cost = this->CostOf(this->Describe(near, lo, below, unused)) + this->CostOf(this->Describe(near, above, hi, unused)) +
         GridCost * std::fabs(Volume(lo, below) - Volume(above, hi)) / Volume(lo, hi);
       if (cost < best) {

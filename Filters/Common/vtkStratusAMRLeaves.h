@@ -3,8 +3,8 @@
 // modules.
 //
 // A part may hold cells of several levels: the lattice of the finest holds the coarser cells' field exactly. Planes along the boxes' sides
-// cut a part in two where that saves values, each grid counted as some thousands of values for what it costs to draw. So there are no more
-// values than 27 a cell, and these thousands for each part of one level.
+// cut a part in two if that saves values. The cost of drawing a grid counts as some thousands of values. The number of values is therefore
+// at most 27 a cell, plus these thousands for each part of one level.
 #ifndef vtkStratusAMRLeaves_h
 #define vtkStratusAMRLeaves_h
 
@@ -23,8 +23,8 @@ struct VTK_STRATUS_PRIVATE vtkStratusAMRLeaf {
 class VTK_STRATUS_PRIVATE vtkStratusAMRLeaves
 {
 public:
-  // nearest: cells' values are taken as they are, and a leaf's lattice is that of its cells. piece of pieces: the part of the space that is
-  // divided.
+  // nearest: cell values are not interpolated, and a leaf's lattice equals its cells' lattice. piece of pieces: the part of the space that
+  // is divided.
   vtkStratusAMRLeaves(const vtkStratusAMRField& field, bool nearest, int piece = 0, int pieces = 1);
   const std::vector<vtkStratusAMRLeaf>& GetLeaves() const { return this->Leaves; }
   // The planes of a leaf's lattice along an axis.
@@ -35,9 +35,9 @@ public:
     int Level;
     Place Lo, Hi; // in units
   };
-  // Makes lo..hi, the bounds of all boxes, those of one piece: planes across the longest side halve the pieces, so that each half has its
-  // share of all boxes' values. They lie between cells of level 0, which are `cell` wide. Returns false where nothing is left for the
-  // piece.
+  // Shrinks lo..hi, the bounds of all boxes, to one piece's bounds: planes across the longest side halve the pieces, so that each half has
+  // its share of all boxes' values. The planes are between cells of level 0, which are `cell` wide. Returns false if nothing is left for
+  // the piece.
   static bool FindPiece(
     const std::vector<Box>& boxes, const Place& cell, const std::vector<double>& values, int piece, int pieces, Place& lo, Place& hi);
 

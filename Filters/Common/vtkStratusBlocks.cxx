@@ -80,7 +80,8 @@ public:
     this->Other.resize(this->Tuple.size());
   }
 
-  // Returns the number of the point at `x` whose scalars are those of point `from` of `scalars`. Scalars of cells join none apart.
+  // Returns the number of the point at `x` whose scalars equal the scalars of point `from` in `scalars`. Cell scalars do not keep points
+  // apart.
   vtkIdType Add(const double x[3], vtkDataArray* scalars, vtkIdType from)
   {
     const double place[3] = { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 }; // of -0 and 0 make 0
@@ -104,7 +105,7 @@ public:
       }
     }
   }
-  // The same of a place alone.
+  // Like the function above, by the place only.
   vtkIdType Add(const double x[3]) { return this->Add(x, nullptr, 0); }
   vtkPoints* Get() { return this->Places; }
 
@@ -168,7 +169,7 @@ struct BorderFace {
 };
 
 // Calls function(a, b, c, d) with the numbers of the corners of each face at the border; a and d are the ends of the diagonal by which the
-// core divides it: those of the lowest and the highest number.
+// core divides it: the corners of the lowest and the highest number.
 template <typename Function> void VisitBorder(const int n[3], Function&& function)
 {
   const vtkIdType step[3] = { 1, n[0], static_cast<vtkIdType>(n[0]) * n[1] };
@@ -339,7 +340,7 @@ bool vtkStratusBlocks::Join(std::string& error)
   return true;
 }
 
-// Adds a flag for each cell of a block. Hidden points hide the cells at them, of their own block alone.
+// Adds a flag for each cell of a block. Hidden points hide the cells at them, but only in their own block.
 bool vtkStratusBlocks::Append(const Block& block, vtkUnsignedCharArray* hidden, std::string& error) const
 {
   vtkUnsignedCharArray* points = nullptr;

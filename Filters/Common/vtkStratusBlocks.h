@@ -26,11 +26,11 @@ public:
   // Finds a block's scalars, nullptr where it has none; *cells is 1 where they belong to cells.
   using Find = std::function<vtkDataArray*(vtkDataSet* block, int& cells)>;
 
-  // Takes the blocks at any depth that have cells and scalars, points or cells as the first such block has. One block is taken as it is.
-  // With `lattices`, several structured grids stay as they are, if their scalars are of one type and all faces that two of them share have
-  // one diagonal: see GetLattices(). Else they become one unstructured grid: points that have the same coordinates, and of point scalars
-  // the same values, become one, so that blocks meet in whole faces. Blocks are unstructured, structured or rectilinear grids, or images.
-  // Nothing is done where no block has changed. Returns false, with the reason in `error`, where a block cannot be read.
+  // Takes the blocks at any depth that have cells and scalars, of points or cells like the first such block. A single block is taken as it
+  // is. With `lattices`, several structured grids are kept without conversion, if their scalars have one type and all faces that two of
+  // them share have one diagonal: see GetLattices(). Otherwise they become one unstructured grid: points of equal coordinates and, for
+  // point scalars, equal values are merged, so that blocks meet in whole faces. Blocks are unstructured, structured or rectilinear grids,
+  // or images. Nothing is done if no block has changed. Returns false, with the reason in `error`, if a block cannot be read.
   bool Set(vtkCompositeDataSet* whole, const Find& find, std::string& error, bool lattices);
   vtkDataSet* GetGrid() const { return this->Grid; } // nullptr: no block has cells, or they are lattices
   vtkDataArray* GetScalars() const { return this->Scalars; }

@@ -28,7 +28,7 @@ public:
   bool SetDevice(const char* device, int threads, std::string& error);
   // Writes the context's report to the table: "Stage", "Where", "Milliseconds", "Bytes", "Kernels".
   void GetBuildReport(vtkTable* table) const;
-  // Does so unless the report is empty, so that the table tells of the last picture that built anything.
+  // Fills the table unless the report is empty, so that the table describes the last frame that built anything.
   void KeepBuildReport(vtkTable* table) const;
   stratus_context* Get() const { return this->Context; }
   const std::string& GetDevice() const { return this->Device; }

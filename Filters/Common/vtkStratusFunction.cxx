@@ -16,11 +16,11 @@
 #include <limits>
 
 namespace {
-// The bounds on the difference when a bent piece is divided, at the places that are looked at, and when points on a line are dropped. Their
-// sum is below vtkStratusFunction::Error by what the difference can be between those places.
+// The bounds on the difference when a bent piece is divided, at the places that are examined, and when points on a line are dropped. Their
+// sum is below vtkStratusFunction::Error by the largest possible difference between those places.
 constexpr double NearEnough = 4e-6;
 constexpr double OnALine = 2e-6;
-// Opacities above are 1: VTK's tables of floats tell no difference either.
+// Opacities above are 1: VTK's tables of floats do not distinguish them either.
 constexpr double Opaque = 1.0 - 1e-9;
 // The halvings after which the place where an opacity becomes 1 is known well enough, and after which a piece is no longer divided.
 constexpr int OpaqueDepth = 24;
@@ -109,7 +109,7 @@ public:
     }
   }
 
-  // Adds a function between the last point and b, which lies on it. `breaks` are places between, rising, at which to divide it first.
+  // Adds a function between the last point and b, which is on it. `breaks` are places between, ascending, at which to divide it first.
   void AddBent(const Function& function, const std::vector<double>& breaks, double b)
   {
     const size_t start = this->List.size() - 1;
@@ -124,7 +124,7 @@ public:
     this->Straighten(start);
   }
 
-  // Drops points from `start` on that lie on a line between their neighbours. The cone of slopes from the last point kept holds all lines
+  // Drops points from `start` on that are on a line between their neighbours. The cone of slopes from the last point kept holds all lines
   // that pass near every point since.
   void Straighten(size_t start)
   {
@@ -208,8 +208,8 @@ private:
   }
 };
 
-// What a function is translated by. The value between two nodes depends on these two only. A function of two nodes is asked for it, because
-// VTK looks through all nodes of a function each time.
+// The data that a function is translated from. The value between two nodes depends only on these two. It is evaluated by a function of two
+// nodes, because VTK searches all nodes of a function each time.
 struct Source {
   std::vector<Node> Nodes;
   bool Straight = true; // linear between nodes of midpoint .5 and sharpness 0

@@ -65,8 +65,8 @@ class VTK_STRATUS_PRIVATE vtkStratusTransferView
 public:
   // Reads the functions of the property's component `index`.
   bool Set(vtkVolumeProperty* property, int index, std::string& error);
-  // Reads the functions of a label. Those of `component0` replace one that the property lacks for the label; it must outlive the use of
-  // this view. A label without a gradient opacity of its own has none here, which the core takes for that of component 0.
+  // Reads the functions of a label. If the property lacks one for the label, the function of `component0` replaces it; `component0` must
+  // outlive this view. A label without a gradient opacity of its own has none here: the core then uses the gradient opacity of component 0.
   bool SetLabel(vtkVolumeProperty* property, int label, const vtkStratusTransferView& component0, std::string& error);
   bool Set(vtkVolumeProperty* property, std::string& error) { return this->Set(property, 0, error); }
   const stratus_transfer& GetTransfer() const { return this->Transfer; }
@@ -84,8 +84,8 @@ private:
 
 // Lists the image's arrays, for the message that the wanted one is missing.
 VTK_STRATUS_PRIVATE std::string vtkStratusArrayNames(vtkDataSet* image);
-// Returns the position along the grid's axis of an index, which may lie between two values, less the origin. Half a cell lies beyond the
-// values of cells.
+// Returns the position along the grid's axis of an index, minus the origin. The index may be between two values. Cell values begin and end
+// half a cell inside the grid.
 VTK_STRATUS_PRIVATE double vtkStratusPosition(const stratus_volume& volume, int axis, double index);
 // Returns the data set where it is one that vtkStratusImageView takes, an image or a rectilinear grid, else nullptr.
 VTK_STRATUS_PRIVATE vtkDataSet* vtkStratusAsImage(vtkDataObject* object);

@@ -37,7 +37,7 @@ public:
   // The same of several structured grids side by side, as one mesh of lattices.
   using Grids = std::vector<std::pair<vtkStructuredGrid*, vtkDataArray*>>;
   bool SetSeveral(const Grids& grids, bool cells, vtkMatrix4x4* matrix, std::string& error, int mostComponents = 1);
-  // Reads a grid's points and cells alone; bounds are known after that. Returns false where the core cannot take them.
+  // Reads only a grid's points and cells; bounds are known after that. Returns false if the core does not support them.
   bool SetGeometry(vtkDataSet* grid, std::string& error);
   const double* GetBounds() const { return this->Bounds; }
   const stratus_mesh& GetMesh() const { return this->Mesh; }

@@ -5,7 +5,7 @@
 #include <fstream>
 
 namespace {
-// Numbers of a file in the order of bytes that its first two letters tell.
+// Numbers of a file, in the byte order that its first two letters specify.
 class Numbers
 {
 public:

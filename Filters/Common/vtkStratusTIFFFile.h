@@ -7,8 +7,8 @@
 
 #include <string>
 
-// Returns where the first row and column lie, as the file's first page says: 1..8, the numbers of TIFF's tag Orientation (1: at the top
-// and the left, where nothing is said; 4: at the bottom and the left); 0 for what is no file of TIFF.
+// Returns the position of the first row and column by the file's first page: 1..8, the values of TIFF's tag Orientation (1, also without
+// the tag: top left; 4: bottom left); 0 if the file is not TIFF.
 VTK_STRATUS_PRIVATE int vtkStratusTIFFOrientation(const std::string& path);
 
 #endif

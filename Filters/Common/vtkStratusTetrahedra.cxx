@@ -146,8 +146,8 @@ void vtkStratusTetrahedra::AddPiece(vtkIdType a, vtkIdType b, vtkIdType c, vtkId
   this->Cells.push_back(cell);
 }
 
-// Divides a cell into a fan of tetrahedra around its lowest point number. That point is also the lowest of each face that it lies on, so
-// that the neighbour divides these faces alike.
+// Divides a cell into a fan of tetrahedra around its lowest point number. That point is also the lowest of each of its faces, so that the
+// neighbour divides these faces alike.
 void vtkStratusTetrahedra::AddLinear(const std::vector<Face>& faces, vtkIdType cell)
 {
   vtkIdType apex = VTK_ID_MAX;

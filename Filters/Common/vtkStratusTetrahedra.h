@@ -16,8 +16,8 @@ class vtkAbstractArray;
 class vtkUnstructuredGrid;
 
 struct VTK_STRATUS_PRIVATE vtkStratusTetrahedra {
-  // All points of the grid, those of nodes that only steer Bezier cells in their places, then the centres of quadratic cells that have no
-  // node there.
+  // All points of the grid, with nodes that only steer Bezier cells moved to their points of the cell, then the centres of quadratic cells
+  // that have no node there.
   std::vector<double> Points;
   std::vector<int32_t> Vertices; // four per tetrahedron
   std::vector<vtkIdType> Cells;  // the grid's cell of each tetrahedron, ascending

@@ -16,7 +16,7 @@ namespace {
 // One polyline along all twelve edges, so that a box is one cell. It draws three edges twice.
 const vtkIdType Stroke[16] = { 0, 1, 3, 2, 0, 4, 5, 1, 5, 7, 3, 7, 6, 2, 6, 4 };
 
-// Finds the part of a box that lies in the volume, in index coordinates. The last blocks of cells may extend beyond the volume.
+// Finds the part of a box that is inside the volume, in index coordinates. The last blocks of cells may extend beyond the volume.
 void Extent(const stratus_node_box& box, const stratus_volume& volume, bool cells, double extent[6])
 {
   for (int a = 0; a < 3; ++a) {

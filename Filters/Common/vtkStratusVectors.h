@@ -26,7 +26,7 @@ public:
   static vtkSmartPointer<vtkDataArray> Make(vtkDataArray* array, int component);
   // The same, kept until the array's own time or `time` changes.
   vtkDataArray* Get(vtkDataArray* array, int component, vtkMTimeType time);
-  // Drops what was not asked for since the last call.
+  // Drops results that were not used since the last call.
   void Sweep();
 
 private:

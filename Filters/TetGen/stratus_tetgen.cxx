@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-tetgen runs TetGen for vtkStratusTetGenFilter in a process of its own, so that a crash or an endless run does not harm the
+// stratus-tetgen runs TetGen for vtkStratusTetGenFilter in a separate process, so that a crash or an infinite run does not harm the
 // application. This source is under the licence above. The program built from it links TetGen and so falls under the AGPL as a whole
 // (README.md).
 #include "tetgen_exchange.h"

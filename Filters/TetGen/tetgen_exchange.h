@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The files that vtkStratusTetGenFilter and its program stratus-tetgen exchange: a request on descriptor 0 and an answer on descriptor 3.
-// Both programs run on one machine and come from one build, so the files hold the structs as they lie in memory. Private to the module.
+// Both programs run on one machine and come from one build, so the files hold the structs in their memory layout. Private to the module.
 #ifndef tetgen_exchange_h
 #define tetgen_exchange_h
 
@@ -24,7 +24,7 @@ struct Request {
 };
 static_assert(sizeof(Request) == 88, "no holes in it");
 
-// Header of an answer. Arrays follow it in this order: coordinates (3 doubles per point, those of the request first and in its order),
+// Header of an answer. Arrays follow it in this order: coordinates (3 doubles per point; the request's points come first, in its order),
 // attributes of regions (a double per tetrahedron, if there are regions), tetrahedra (4 int32 each), triangles of the boundary (3 int32
 // each) and their markers (int32). The header is written last, so that a valid header means a complete answer.
 struct Answer {

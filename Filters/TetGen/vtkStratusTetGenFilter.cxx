@@ -73,7 +73,7 @@ void vtkStratusTetGenFilter::Internals::Mesh(
   surface.Write(options, request);
   filter->UpdateProgress(0.1);
   vtkStratusTetGenRun(program, filter->TimeLimit, request, answer, [filter](double seconds) {
-    filter->UpdateProgress(0.1 + 0.8 * std::min(1.0, seconds / filter->TimeLimit)); // TetGen reports no progress, so time stands in for it
+    filter->UpdateProgress(0.1 + 0.8 * std::min(1.0, seconds / filter->TimeLimit)); // TetGen reports no progress, so the time replaces it
     return filter->GetAbortExecute() != 0;
   });
   vtkStratusTetGenReadAnswer(answer, surface, mesh, boundary);

@@ -101,7 +101,7 @@ bool Child::Poll()
 {
   if (!this->Ended) {
     const pid_t ended = waitpid(this->Process, &this->Status, WNOHANG);
-    // An application that ignores SIGCHLD, or waits for all children, leaves no status. The answer then tells whether the run succeeded.
+    // An application that ignores SIGCHLD, or waits for all children, leaves no status. The answer then shows whether the run succeeded.
     this->Known = !(ended < 0 && errno == ECHILD);
     this->Ended = ended == this->Process || !this->Known;
   }

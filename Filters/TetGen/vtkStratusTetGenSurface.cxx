@@ -227,7 +227,7 @@ vtkSmartPointer<vtkIdTypeArray> ReadIds(vtkStratusTetGenSpool& answer, std::int6
   return ids;
 }
 
-// Drops the points that no tetrahedron uses, most of which lie in holes, and renumbers the rest. Returns the points kept, in order.
+// Drops the points that no tetrahedron uses, most of which are inside holes, and renumbers the rest. Returns the points kept, in order.
 std::vector<vtkIdType> LeaveOut(vtkIdType points, vtkIdTypeArray* mesh, vtkIdTypeArray* boundary)
 {
   std::vector<vtkIdType> number(static_cast<size_t>(points), -1), left;

@@ -19,7 +19,7 @@
 #include <cmath>
 
 namespace {
-// How far a place is moved along the ray, in lengths of a cell: what is told of a ray lies at a cell's border, to rounding.
+// How far a place is moved along the ray, in cell lengths: the reported place is on a cell's border, up to rounding.
 constexpr double NUDGE = 1e-3;
 
 double Outside(const double bounds[6], const double place[3])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds which cell or point of a mapper's input lies where a ray first shows something. Private to the modules.
+// Finds the cell or point of a mapper's input at the place where a ray first shows something. Private to the modules.
 #ifndef vtkStratusCellFinder_h
 #define vtkStratusCellFinder_h
 

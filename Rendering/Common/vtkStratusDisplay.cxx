@@ -176,9 +176,9 @@ bool vtkStratusDisplay::IsSoftware()
   return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos || name.find("SWR") != std::string::npos;
 }
 
-// Writes to the frame buffer's texture without drawing. Software OpenGL takes about as long to draw the picture as the core takes to cast
-// the rays of a small scene; a copy costs a tenth. Where nothing is behind the picture, its bytes are copied. Else the pixels behind are
-// read, blended here and copied back, in software OpenGL only. Returns false where it copied nothing.
+// Writes to the frame buffer's texture without drawing. Software OpenGL needs about as long to draw the frame as the core needs to cast the
+// rays of a small scene; a copy costs a tenth. If nothing is behind the frame, its bytes are copied. Otherwise, in software OpenGL only,
+// the pixels behind are read, blended here and copied back. Returns false if it copied nothing.
 bool vtkStratusDisplay::WriteInPlace(
   vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const vtkStratusPicture& picture, const Pixels& pixels, const Part& part)
 {
@@ -221,9 +221,9 @@ bool vtkStratusDisplay::WriteInPlace(
   return true;
 }
 
-// Copies what is behind the picture, so that the shader can blend and round once. Software OpenGL rounds three times when it blends, which
-// costs up to 1.3 of 255. Returns false where multisampling or a render pass lies between the picture and the frame buffer; the frame
-// buffer then blends.
+// Copies the pixels behind the frame, so that the shader can blend and round once. Software OpenGL rounds three times when it blends, which
+// costs up to 1.3 of 255. Returns false if multisampling or a render pass separates the frame from the frame buffer; the frame buffer then
+// blends.
 bool vtkStratusDisplay::CopyBehind(vtkRenderer* renderer, vtkOpenGLRenderWindow* window, const Part& part)
 {
   if (renderer->GetPass() || window->GetRenderFramebuffer()->GetMultiSamples() > 0) {
@@ -577,7 +577,7 @@ bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& pic
     this->ChooseSelected(renderer, picture, pixels);
   }
   this->WindowDepth.clear();
-  if (pixels.WritesDepth || this->Stage == vtkStratusPeels::FIRST) { // peels are told apart by depth
+  if (pixels.WritesDepth || this->Stage == vtkStratusPeels::FIRST) { // peels are distinguished by depth
     picture.ToWindowDepth(*pixels.Depth, this->WindowDepth);
   }
   const bool drawn = this->DrawPixels(renderer, picture, pixels);

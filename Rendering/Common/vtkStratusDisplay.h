@@ -40,7 +40,7 @@ public:
     std::function<bool(const float* depths, std::vector<float>& rgba)> Cast;
     bool WritesDepth = false;               // into the window's depth buffer, where alpha is not 0
     bool Alone = false;                     // nothing was drawn before, so that the bytes may replace the frame buffer's
-    vtkStratusCellFinder* Finder = nullptr; // tells cells and points while the renderer picks; without one there are none
+    vtkStratusCellFinder* Finder = nullptr; // finds cells and points while the renderer picks; nullptr: none are reported
   };
 
   // Chooses how a picture is displayed with the final colour's window and level. `bytes`: of the picture, to be filled in if Pixels.Bytes
@@ -53,9 +53,8 @@ public:
   vtkStratusDisplay(const vtkStratusDisplay&) = delete;
   void operator=(const vtkStratusDisplay&) = delete;
 
-  // Must be called before each draw. Returns false where the draw is complete already: a renderer that peels asks for several draws a
-  // frame, and the later ones draw the first one's picture between other peels. Then `error` is lastError, with which the frame's first
-  // draw ended.
+  // Must be called before each draw. Returns false if the draw is complete already: a renderer that peels draws several times a frame, and
+  // the later draws place the first one's frame between other peels. Then `error` is lastError, the result of the frame's first draw.
   bool Begin(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper, const std::string& lastError, std::string& error);
   // Ends a draw for which Begin() returned true. While the renderer picks props it draws the prop's selection colour, or the number of the
   // cell or point that each ray shows first, and their depth, where more than 3 of 255 show, as VTK's mappers do. Returns false, with the
@@ -82,7 +81,7 @@ private:
   struct QuadKind {
     bool WritesDepth = false;
     bool Fetches = false; // one texel a pixel, without a filter
-    bool Blends = false;  // over a copy of what is behind; else the frame buffer blends
+    bool Blends = false;  // over a copy of the pixels behind; otherwise the frame buffer blends
   };
 
   vtkStratusPeels::Draw ChooseStage(vtkRenderer* renderer, vtkProp* prop, vtkAbstractMapper* mapper);

@@ -17,7 +17,7 @@ void SetLight(vtkLight* light, stratus_light& result)
   light->GetTransformedFocalPoint(focal);
   result.positional = light->GetPositional() ? 1 : 0;
   const double* attenuation = light->GetAttenuationValues();
-  // An angle of 0 has light on the axis alone; the core's 0 is no cone.
+  // A light of angle 0 shines only along its axis; the core's 0 means no cone.
   result.cone_angle = light->GetConeAngle() >= 90.0 ? 0.0 : std::max(light->GetConeAngle(), 1e-6);
   result.cone_exponent = light->GetExponent();
   result.separate_specular = 1;

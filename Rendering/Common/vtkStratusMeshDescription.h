@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a mapper of tetrahedra has to draw, for a picture of several volumes that another module makes. Private to the modules.
+// Data and settings of a mapper of tetrahedra, for a frame of several volumes that another module draws. Private to the modules.
 #ifndef vtkStratusMeshDescription_h
 #define vtkStratusMeshDescription_h
 

@@ -194,7 +194,7 @@ vtkOpenGLQuadHelper* vtkStratusPeels::PrepareQuad(vtkOpenGLRenderWindow* window,
   return ready ? quad.get() : nullptr;
 }
 
-// Lets the pass's code tell between which depths it would cast rays, into a frame buffer of its own.
+// Makes the pass's code write the depths between which it would cast rays, into a separate frame buffer.
 bool vtkStratusPeels::FindDepths(vtkOpenGLRenderWindow* window, const Picture& picture)
 {
   const unsigned int width = static_cast<unsigned int>(picture.Viewport[0]), height = static_cast<unsigned int>(picture.Viewport[1]);

@@ -5,10 +5,10 @@
 // of them, in front of all of them, then from the outside in. It adds code to a volume's shader that finds the depths of two surfaces and
 // calls castRay() for the space between them, once or twice.
 //
-// Where rays can be cut, the shader runs once to tell the depths: castRay() keeps them. Rays are then cast up to each of these, and what
-// lies between two is a difference: color = (last - first) / (1 - first's alpha). The shader runs again, and castRay() returns that.
-// Elsewhere (of a maximum, say, no part of a ray has a colour) castRay() returns the whole picture's colour where the picture's depth lies
-// between the two, and nothing elsewhere, so that each pixel is drawn once a frame.
+// If rays can be cut, the shader runs once to find the depths: castRay() keeps them. Rays are then cast up to each depth, and the colour
+// between two depths is a difference: color = (last - first) / (1 - first's alpha). The shader runs again, and castRay() returns this
+// colour. If rays cannot be cut (no part of a ray of a maximum has a colour), castRay() returns the whole frame's colour if the frame's
+// depth is between the two, and nothing otherwise, so that each pixel is drawn once a frame.
 #ifndef vtkStratusPeels_h
 #define vtkStratusPeels_h
 
@@ -43,7 +43,8 @@ public:
     int Size[2] = { 0, 0 };
     int Viewport[2] = { 0, 0 }; // size of the viewport
     float Scale = 1.0f, Bias = 0.0f;
-    // Casts rays up to window depths, one a ray, and sets premultiplied colours. Empty: rays can't be cut. Else the textures are not read.
+    // Casts rays up to window depths, one per ray, and sets premultiplied colours. Empty: rays can't be cut. The textures are then not
+    // read.
     std::function<bool(const float* depths, std::vector<float>& rgba)> Cast;
     int Rays[2] = { 0, 0 };
   };

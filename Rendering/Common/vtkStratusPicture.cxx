@@ -26,8 +26,8 @@
 #include <limits>
 
 namespace {
-// The rays of a camera's whole window in view coordinates. They are computed from the projection alone, whose numbers are small, and only
-// then moved to the world. Inverting the composite matrix would cost digits far from the origin.
+// The rays of a camera's whole window in view coordinates. They are computed only from the projection, whose numbers are small, and then
+// moved to the world. Inverting the composite matrix would cost digits far from the origin.
 struct ViewRays {
   double Eye[3], Forward[3], Right[3], Up[3], Near, Far;
 };
@@ -226,8 +226,8 @@ bool vtkStratusPicture::Set(vtkRenderer* renderer, const std::vector<Box>& boxes
 
 // ---------------------------------------------------------------- values per ray
 
-// Adds the pixels to a part that a prop may write depth to. An axes actor's own bounds are those of axes that also point backwards from the
-// origin, wherever it is, so its parts are asked.
+// Adds the pixels to a part that a prop may write depth to. An axes actor's bounds also include axes that point backwards from the origin,
+// wherever it is. Its parts are therefore queried instead.
 void vtkStratusPicture::FindPart(vtkProp* prop, int part[4]) const
 {
   int found[4] = { 0, this->Viewport[2], 0, this->Viewport[3] };

@@ -40,20 +40,20 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   };
   bool Set(vtkRenderer* renderer, const std::vector<Box>& boxes, double coarseness, bool solid = false);
 
-  // What else the renderer draws. Geometry: something may have written depth before. Any: another prop is visible.
+  // Other drawn props of the renderer. Geometry: something may have written depth before. Any: another prop is visible.
   struct Others {
     bool Geometry = false;
     bool Any = false;
     int Part[4] = { 0, 0, 0, 0 }; // of the viewport, in which depth may have been written: x0, x1, y0, y1
   };
-  // Must follow Set(). endsNoRay() tells whether another prop writes no depth.
+  // Must follow Set(). endsNoRay() returns whether another prop writes no depth.
   Others FindOthers(vtkRenderer* renderer, vtkProp* prop, const std::function<bool(vtkProp*)>& endsNoRay) const;
   // Returns the opaque depth at each ray, valid until the next call; nullptr where nothing can have been drawn before. Reading it costs as
   // much as a simple scene, so only the part of the others is read.
   const float* ReadOpaqueDepth(vtkRenderer* renderer, const Others& others);
   // Whether rays that end at these window depths, one a ray, make the picture of those that end where ReadOpaqueDepth() said last.
   bool IsWhole(const float* depths) const;
-  // Makes room for a picture of these rays, and tells the core where it is. The last two may be nullptr.
+  // Allocates a frame of these rays, and returns it as the core's view. The last two may be nullptr.
   stratus_image MakeRoom(std::vector<float>& rgba, std::vector<float>& depth, const float* opaqueDepth,
     std::vector<uint32_t>* samples = nullptr, std::vector<unsigned char>* bytes = nullptr) const;
   // Converts distances along the rays to window depths, 0..1; 1 where nothing is.

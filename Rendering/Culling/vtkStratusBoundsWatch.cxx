@@ -75,7 +75,7 @@ bool vtkStratusBoundsWatch::Changed(vtkProp* prop, State& state)
     return true;
   }
   this->Read(*state.Mapper);
-  // Between looks that ask for nothing, times are compared for equality, because the object with the newest time may go.
+  // Between looks that query nothing, times are compared for equality, because the object with the newest time may be removed.
   const vtkMTimeType newest = std::max(state.Mapper->Newest, state.Mapper->Data);
   const bool same = state.Newest == 0 || state.Newest == newest;
   state.Newest = newest;

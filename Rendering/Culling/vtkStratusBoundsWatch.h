@@ -33,20 +33,20 @@ public:
     std::vector<Producer*> Inputs;
   };
 
-  // State of one prop: when its bounds were asked for, and from where they come. A source has not changed since if it is no newer
-  // than Before; asking may execute the pipeline, so that data may be as new as After.
+  // State of one prop: when its bounds were queried, and their source. A source has not changed since then if it is no newer than Before. A
+  // query may execute the pipeline, so that data may be as new as After.
   struct State {
     vtkMTimeType Before = 0, After = 0;
-    vtkMTimeType Newest = 0;    // of all sources at the last look; 0 after bounds were asked for
+    vtkMTimeType Newest = 0;    // of all sources at the last look; 0 after a query of bounds
     Producer* Mapper = nullptr; // NULL until a look needs it after the prop was modified
   };
 
   // Starts a look, one pass over the props that reads all times anew.
   void NextLook();
-  // Notes that the prop's bounds have been asked for. It looks at nothing, so that a look visits a prop or its sources, not both.
+  // Notes that the prop's bounds have been queried. It looks at nothing, so that a look visits a prop or its sources, not both.
   void Asked(State& state) const;
   bool IsAsked(const State& state) const { return state.Before == this->Start; } // in this look
-  // Returns whether the bounds may have changed since they were asked for: true, too, where the sources are not known.
+  // Returns whether the bounds may have changed since they were queried: also true if the sources are not known.
   bool Changed(vtkProp* prop, State& state);
 
 private:

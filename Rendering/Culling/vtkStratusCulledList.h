@@ -29,8 +29,8 @@ public:
 
   // All of these return a status of the core. After a failure the list is empty and ready for the next call.
   stratus_status Open(stratus_context* context, const stratus_octree_options& options);
-  // Makes the octree hold these props with their present bounds. The bounds of new props are always asked for. `ask`: also the bounds that
-  // the watch calls changed. `askAll`: all bounds. `initialized`: render times that earlier cullers have set count.
+  // Makes the octree hold these props with their present bounds. The bounds of new props are always queried. `ask`: also query the bounds
+  // that the watch calls changed. `askAll`: query all bounds. `initialized`: render times that earlier cullers have set count.
   stratus_status Look(vtkProp** props, int count, vtkStratusBoundsWatch& watch, bool ask, bool askAll, bool initialized);
   // Moves the visible props of the last look to the front. `seen` gets their number, `total` the sum of their render times.
   stratus_status Cull(const stratus_frustum& frustum, const Policy& policy, vtkProp** props, int& seen, double& total);
@@ -39,7 +39,7 @@ public:
 
   bool IsOpen() const { return this->View != nullptr; }
   void Close();
-  // Props whose bounds the last look asked for.
+  // Number of props whose bounds the last look queried.
   size_t GetNumberOfPropsAsked() const { return this->Asked; }
   stratus_octree_statistics GetStatistics() const;
 
@@ -48,7 +48,7 @@ private:
     vtkWeakPointer<vtkProp> Prop;
     vtkStratusBoundsWatch::State Watched;
     uint32_t Id = 0;     // of the octree
-    float Share = -1.0f; // of render time, for props without usable bounds; -1: coverage tells it
+    float Share = -1.0f; // of render time, for props without usable bounds; -1: set by coverage
   };
   struct Entry {
     vtkProp* Prop;

@@ -26,9 +26,9 @@ double Milliseconds()
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Gets the planes of the view frustum, widened by `margin` pixels. In clip coordinates x, y and z lie in -w..w; the margin widens x and y.
-// Normals have unit length, because coverage measures distances. The camera's composite matrix, and so GetFrustumPlanes(), leaves stereo
-// out, so the matrices that an eye is drawn with are multiplied here.
+// Gets the planes of the view frustum, widened by `margin` pixels. In clip coordinates x, y and z are in -w..w; the margin widens x and y.
+// Normals have unit length, because coverage measures distances. The camera's composite matrix, and so GetFrustumPlanes(), ignores stereo,
+// so the matrices that an eye is drawn with are multiplied here.
 void GetFrustum(vtkRenderer* renderer, double margin, stratus_frustum& frustum)
 {
   vtkCamera* camera = renderer->GetActiveCamera();
@@ -86,7 +86,7 @@ class vtkStratusOctreeCuller::Internals
 {
 public:
   struct Served {
-    vtkWeakPointer<vtkRenderer> Renderer; // tells whether the address belongs to another renderer by now
+    vtkWeakPointer<vtkRenderer> Renderer; // shows whether the address belongs to another renderer by now
     vtkStratusCulledList List;
     stratus_octree_options Options;
     vtkMTimeType Asked = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkProjectedTetrahedraMapper for programs that do not know Stratus: a mapper of VTK that draws by vtkStratusTetrahedraMapper where that
-// supports what is asked for.
+// vtkProjectedTetrahedraMapper for programs that do not know Stratus: a mapper of VTK that draws by vtkStratusTetrahedraMapper if that
+// supports the settings.
 #ifndef vtkStratusFactoryTetrahedraMapper_h
 #define vtkStratusFactoryTetrahedraMapper_h
 

@@ -15,7 +15,7 @@ vtkStandardNewMacro(vtkStratusFactoryVolumeMapper);
 
 vtkStratusFactoryVolumeMapper::vtkStratusFactoryVolumeMapper()
 {
-  // What these two mean to VTK's mappers, since the program was written for them.
+  // VTK's definitions of these two settings, since the program was written for VTK's mappers.
   this->Own->SetGradientOpacityDistance(-1.0);
   this->Own->SetComponentMixingToMean();
   vtkStratusKeepQuiet(this->Own);
@@ -23,7 +23,7 @@ vtkStratusFactoryVolumeMapper::vtkStratusFactoryVolumeMapper()
 
 vtkStratusFactoryVolumeMapper::~vtkStratusFactoryVolumeMapper() = default;
 
-// Finds what vtkStratusVolumeMapper is not told of and so cannot refuse. Returns "" if there is nothing.
+// Finds settings that vtkStratusVolumeMapper does not receive and so cannot refuse. Returns "" if there are none.
 std::string vtkStratusFactoryVolumeMapper::FindHindrance(vtkVolume* volume)
 {
   if (this->GetInputCount() > 1 || this->GetNumberOfInputConnections(0) != 1) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkGPUVolumeRayCastMapper for programs that do not know Stratus: a mapper of VTK that draws by vtkStratusVolumeMapper where that supports
-// what is asked for.
+// vtkGPUVolumeRayCastMapper for programs that do not know Stratus: a mapper of VTK that draws by vtkStratusVolumeMapper if that supports
+// the settings.
 #ifndef vtkStratusFactoryVolumeMapper_h
 #define vtkStratusFactoryVolumeMapper_h
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rays through images and rectilinear grids. Along each axis a place is a number that grows with the index: the index itself of images, the
-// coordinate of rectilinear grids (negated where they decrease). Values lie at `At`, cells between `Walls`.
+// Rays through images and rectilinear grids. Along each axis a place is a number that grows with the index: the index itself for images,
+// the coordinate for rectilinear grids (negated where they decrease). Values are at `At`, cells between `Walls`.
 #include "vtkStratusPickRay.h"
 
 #include "vtkDataArray.h"

@@ -169,7 +169,7 @@ bool vtkStratusPickTetrahedra(
   return found;
 }
 
-// Hexahedra are six tetrahedra each, along the ways from the first corner to the last, as the mapper divides them.
+// A hexahedron is six tetrahedra, one for each path along edges from the first corner to the last, as the mapper divides it.
 bool vtkStratusPickStructured(const vtkStratusPickRay& whole, vtkStructuredGrid* grid, vtkStratusPickHit& hit)
 {
   constexpr int ways[6][2] = { { 1, 2 }, { 1, 4 }, { 2, 1 }, { 2, 4 }, { 4, 1 }, { 4, 2 } }; // axes as bits: the first step, the second

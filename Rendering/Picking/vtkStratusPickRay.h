@@ -16,7 +16,7 @@ class vtkPiecewiseFunction;
 class vtkStructuredGrid;
 struct vtkStratusTetrahedra;
 
-// What is looked for along the line p1 + t (p2 - p1), t within begin..end, in the data set's coordinates.
+// A search along the line p1 + t (p2 - p1), t within begin..end, in the data set's coordinates.
 struct VTK_STRATUS_PRIVATE vtkStratusPickRay {
   double P1[3], P2[3], Begin, End;
   vtkPiecewiseFunction* Opacity;

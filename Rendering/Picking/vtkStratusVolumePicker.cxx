@@ -144,7 +144,7 @@ int vtkStratusVolumePicker::Pick3DInternal(vtkRenderer* renderer, double p1[4], 
   return picked;
 }
 
-// The volumes lie in the world by their own matrices.
+// Each volume has its own matrix to world coordinates.
 bool vtkStratusVolumePicker::PickSeveral(vtkStratusMultiVolume* several, const double p1[4], const double p2[4])
 {
   bool picked = false;

@@ -243,7 +243,7 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& 
   }
   const bool blocks = vtkDataObjectTree::SafeDownCast(this->Mapper->GetDataObjectInput()) != nullptr;
   const std::string left = blocks ? this->Blocks.TellLeftOut() : std::string();
-  if (!left.empty() && left != this->LastLeftOut) { // told once, not with every picture
+  if (!left.empty() && left != this->LastLeftOut) { // warned of once, not with every frame
     vtkWarningWithObjectMacro(this->Mapper, << left << (left.find(" blocks ") == std::string::npos ? " is" : " are") << " not drawn");
   }
   this->LastLeftOut = left;

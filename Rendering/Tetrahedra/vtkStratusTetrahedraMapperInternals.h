@@ -57,7 +57,7 @@ private:
   bool OnProgress(double fraction);
   bool CheckMapper(std::string& error) const;
   void NoteLeftOut(vtkVolumeProperty* property);
-  // What of the input is drawn, and its scalars: a grid, or several structured ones.
+  // The drawn part of the input, and its scalars: a grid, or several structured ones.
   struct Drawn {
     vtkDataSet* Grid;
     vtkDataArray* Scalars;
@@ -83,9 +83,9 @@ private:
   vtkStratusPicture Picture;
   bool HasPicture = false;
   vtkStratusVectors Vectors;
-  vtkWeakPointer<vtkVolumeProperty> Property; // whose colour function tells which of several components is drawn
+  vtkWeakPointer<vtkVolumeProperty> Property; // its colour function selects the component that is drawn
   vtkStratusBlocks Blocks;
-  std::string LastLeftOut;   // blocks, told already
+  std::string LastLeftOut;   // blocks that a warning has named
   vtkStratusLeftOut LeftOut; // settings that the last picture did not use
   double Box[6] = { 0, 0, 0, 0, 0, 0 };
   std::vector<float> Rgba, Depth, PartDepth;

@@ -25,7 +25,7 @@ bool vtkStratusJointPicture::EndsNoRay(vtkProp* other)
   return mapper && mapper->GetRenderMode() == vtkStratusVolumeMapper::COMPOSITE_MODE;
 }
 
-// Returns the pixels between rays: fewer rays while the window asks for more pictures a second than exact ones allow.
+// Returns the pixels between rays: fewer rays while the window's desired update rate is too high for exact frames.
 double vtkStratusJointPicture::ChooseCoarseness(const Scene& scene) const
 {
   vtkStratusVolumeMapper* mapper = scene.Settings;

@@ -25,7 +25,7 @@ class VTK_STRATUS_PRIVATE vtkStratusJointPicture
 public:
   using CastRays = std::function<bool(const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error)>;
 
-  // What is drawn: boxes are the grids that may show.
+  // The drawn scene. Boxes are the grids that may show.
   struct Scene {
     vtkRenderer* Renderer = nullptr;
     vtkProp3D* Prop = nullptr;
@@ -35,7 +35,7 @@ public:
     // or where an abort ends it. Valid in this frame, even when the scene is gone.
     CastRays Cast;
     vtkStratusCellFinder* Finder = nullptr; // for Display, while the renderer picks
-    // What Cast() tells of the whole picture.
+    // Results of Cast() for the whole frame.
     double Milliseconds = 0.0;
     int Window[4] = { 0, 0, 0, 0 };
   };

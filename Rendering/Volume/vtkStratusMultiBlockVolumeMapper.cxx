@@ -439,7 +439,7 @@ void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* 
   }
   if (!error.empty()) {
     mappers.clear();
-  } else if (blocks.size() == 1) { // draws and tells by itself
+  } else if (blocks.size() == 1) { // draws and reports by itself
     mappers[0]->Render(renderer, volume);
     error = mappers[0]->GetLastError();
   } else if (!blocks.empty()) {

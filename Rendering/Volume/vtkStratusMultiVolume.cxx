@@ -46,7 +46,7 @@ private:
   vtkStratusContext Context;
   stratus_ray_caster* Casters[STRATUS_SEVERAL_MAX] = {};
   stratus_tetra_caster* TetraCasters[STRATUS_SEVERAL_MAX] = {};
-  // What is drawn, by the number of visible volumes so far. Options are of volumes, descriptions of meshes.
+  // The drawn volumes, indexed by the number of visible volumes so far. Options are of volumes, descriptions of meshes.
   int Count = 0;
   int Ports[STRATUS_SEVERAL_MAX];
   stratus_ray_cast_options Options[STRATUS_SEVERAL_MAX];

@@ -59,7 +59,7 @@ public:
   vtkStratusCellFinder Finder;
   vtkStratusImageView Image;
   std::vector<vtkStratusTransferView> Transfers; // at least one per independent component, or per label
-  std::vector<stratus_transfer> Functions;       // those of this picture, in the core's terms
+  std::vector<stratus_transfer> Functions;       // this frame's functions as the core's structs
   vtkStratusDisplay Display;
   std::string LastError;     // of the last picture, reported already; empty: none
   vtkStratusLeftOut LeftOut; // settings that the last picture did not use

@@ -65,7 +65,7 @@ vtkDataArray* vtkStratusVolumeMapper::Internals::Pair(vtkDataArray* array, int c
   return this->Pairs;
 }
 
-// Sets the function of this picture. Columns cover the range of the values, as VTK's mapper has it; rows that of the second array, or
+// Sets the function of this frame. Columns cover the range of the values, as in VTK's mapper. Rows cover the range of the second array, or
 // magnitudes from 0 to a quarter of the range of values.
 bool vtkStratusVolumeMapper::Internals::SetTransfer2D(
   vtkVolumeProperty* property, vtkDataArray* array, int component, vtkDataArray* second, std::string& error)

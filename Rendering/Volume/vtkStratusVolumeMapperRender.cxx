@@ -95,7 +95,7 @@ bool vtkStratusVolumeMapper::Internals::Cast(
   return status == STRATUS_OK;
 }
 
-// Casts the rays of the last picture up to window depths, in place of the opaque ones. Reports stay those of the picture.
+// Casts the rays of the last frame up to window depths, in place of the opaque ones. The frame's reports are kept.
 bool vtkStratusVolumeMapper::Internals::CastTo(const stratus_ray_cast_options& options, const float* depths, std::vector<float>& rgba)
 {
   if (this->Picture.IsWhole(depths)) {
@@ -129,7 +129,7 @@ bool vtkStratusVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume
   return this->Describe(renderer, prop, options, error) && this->PrepareContext(error) && this->Probe(this->Caster, options, choice);
 }
 
-// What is chosen hangs on no camera, so that a picture of one ray tells it.
+// The choice does not depend on the camera, so that a frame of one ray is enough.
 bool vtkStratusVolumeMapper::Internals::Probe(stratus_ray_caster* caster, stratus_ray_cast_options options, double choice[3])
 {
   float rgba[4];

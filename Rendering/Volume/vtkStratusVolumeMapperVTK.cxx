@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkStratusVolumeMapper has for programs that were written for VTK's own mappers: vectors, pictures as images, VTK's meaning of
-// gradient opacity and a word where it matters.
+// Features of vtkStratusVolumeMapper for programs that were written for VTK's own mappers: vectors, frames as images, VTK's definition of
+// gradient opacity and a warning where it matters.
 #include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkCellData.h"
@@ -127,7 +127,7 @@ const double MuchOfOpacity = 0.05;
 double Spacing(const stratus_volume& volume, int axis)
 {
   const double* at = volume.coordinates[axis];
-  const int64_t last = volume.cell_centered ? volume.dimensions[axis] : volume.dimensions[axis] - 1; // coordinates are those of points
+  const int64_t last = volume.cell_centered ? volume.dimensions[axis] : volume.dimensions[axis] - 1; // coordinates are of points
   return at ? (at[last] - at[0]) / static_cast<double>(last) : volume.spacing[axis];
 }
 
@@ -149,7 +149,7 @@ double HalfMeanSpacing(const stratus_volume& volume)
   return sum / 6.0;
 }
 
-// By how much the two meanings of a gradient opacity differ in the opacity of a way as long as `units` unit distances.
+// The difference between the two definitions of gradient opacity, in the opacity of a ray segment as long as `units` unit distances.
 double Difference(double opacity, double factor, double units)
 {
   const double depth = opacity < 1.0 ? -std::log1p(-opacity) * units : 1e30;
