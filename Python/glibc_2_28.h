@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * For wheels alone, where the C library is glibc on x86-64: the compiler reads this before each file (cmake/wheel.cmake). glibc 2.29 gave
- * these functions a second version, fmod 2.38, which leaves out the error handling of System V, and a linker takes the newest that it sees.
- * The first version computes the same bits, in glibc 2.28 as in today's, so that a library which asks for it runs on both. */
+ * Only for wheels built with glibc on x86-64: the compiler reads this before each file (cmake/wheel.cmake). glibc 2.29 gave these functions
+ * a second version, fmod 2.38, which leaves out the error handling of System V, and a linker uses the newest that it sees. The first
+ * version computes the same bits, in glibc 2.28 as in today's, so that a library that uses it runs on both. */
 __asm__(".symver exp, exp@GLIBC_2.2.5");
 __asm__(".symver exp2, exp2@GLIBC_2.2.5");
 __asm__(".symver fmod, fmod@GLIBC_2.2.5");

@@ -10,7 +10,7 @@ function (stratus_common_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra $<$<BOOL:${STRATUS_WERROR}>:-Werror>)
 endfunction ()
 
-# stratus_use_common(TARGET NAME...): adds to TARGET the objects of NAME.cxx and the folders of their headers, and always those of
+# stratus_use_common(TARGET NAME...): adds to TARGET the objects of NAME.cxx and the folders of their headers, and always the objects of
 # Filters/Common. TARGET links the libraries that the objects need.
 function (stratus_use_common target)
   get_target_property(real ${target} ALIASED_TARGET)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Finds OpenVDB and NanoVDB, and sets stratus_openvdb and stratus_nanovdb: whether vtkStratusVDBReader, which is built where one of them is
-# there, reads .vdb and .nvdb. NanoVDB is headers alone; files that it compressed need zlib or Blosc.
+# Finds OpenVDB and NanoVDB, and sets stratus_openvdb and stratus_nanovdb: whether vtkStratusVDBReader, which is built if one of them is
+# found, reads .vdb and .nvdb. NanoVDB consists only of headers; its compressed files need zlib or Blosc.
 set(STRATUS_BUILD_VDB AUTO CACHE STRING "Build the reader of .vdb and .nvdb files, which needs OpenVDB or NanoVDB: ON, OFF, or AUTO (where found)")
 set_property(CACHE STRATUS_BUILD_VDB PROPERTY STRINGS AUTO ON OFF)
 set(stratus_openvdb OFF)

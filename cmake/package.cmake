@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What all Debian packages share, those of the main project and that of ParaView's plugin. What a library needs of other packages is found by
-# dpkg-shlibdeps; the loader learns of new libraries by ldconfig.
+# Settings common to all Debian packages, of the main project and of ParaView's plugin. dpkg-shlibdeps finds a library's dependencies;
+# ldconfig registers new libraries with the loader.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "Stratus")
 set(CPACK_PACKAGE_CONTACT "Stratus contributors")

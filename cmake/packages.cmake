@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# `cpack` in the build folder makes Debian packages of what is installed, one for each of these parts; cmake/make-packages builds and makes
-# them all. The parts' needs of one another are written here.
+# `cpack` in the build folder makes Debian packages of the installed files, one for each of these parts; cmake/make-packages builds and
+# makes them all. The parts' dependencies on one another are written here.
 include("${CMAKE_CURRENT_LIST_DIR}/package.cmake")
 set(CPACK_PACKAGE_NAME stratus)
 set(abi "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Most of what a C++ file here costs to compile is VTK's headers. Those that most files include are compiled once for each set of flags.
+# Most of the compile time of a C++ file here is spent in VTK's headers. Those that most files include are compiled once for each set of flags.
 # CMAKE_DISABLE_PRECOMPILE_HEADERS turns this off: the preset "all" does, so that a header that a file forgot is missed there.
 set(stratus_headers <algorithm> <array> <cmath> <cstring> <fstream> <functional> <limits> <map> <memory> <sstream> <string> <vector>
   <vtkCellArray.h> <vtkCellData.h> <vtkDataArray.h> <vtkFloatArray.h> <vtkImageData.h> <vtkInformation.h> <vtkInformationVector.h>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What differs where a Python wheel is built, by scikit-build-core, which sets SKBUILD.
+# Settings for the build of a Python wheel by scikit-build-core, which sets SKBUILD.
 
 set(stratus_library_version VERSION "${PROJECT_VERSION}" SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
 if (SKBUILD) # A wheel holds no links: each further name of a library would be a copy of it.
@@ -25,8 +25,8 @@ function (stratus_add_no_opencl folder)
 endfunction ()
 
 set(STRATUS_WHEEL_OPENMP "" CACHE STRING "Name of the OpenMP runtime that the wheel of VTK has beside it, which the core then shares")
-# stratus_share_openmp(): in a wheel, the installed core asks for the OpenMP runtime of VTK's wheel by the name that auditwheel gave it there. Under
-# its usual name it would be another one, of the system, in the same process.
+# stratus_share_openmp(): in a wheel, the installed core links the OpenMP runtime of VTK's wheel by the name that auditwheel gave it there.
+# By its usual name it would load a second, system runtime in the same process.
 function (stratus_share_openmp)
   if (NOT SKBUILD OR NOT STRATUS_WHEEL_OPENMP)
     return ()

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Draws the scene "cloud" with the core alone: cloud [OUT.ppm] */
+ * Draws the scene "cloud" with only the core: cloud [OUT.ppm] */
 #include <stratus.h>
 
 #include <stdio.h>

@@ -59,7 +59,7 @@ int main(int argc, char** argv)
   mapper->SetStructureToHybrid(); // the default takes the tree where that is faster
   volume->SetMapper(mapper);
   if (std::string(builder->GetDevice()) != device) {
-    return EXIT_FAILURE; // the error told which devices there are
+    return EXIT_FAILURE; // the error listed the devices
   }
 
   vtkNew<vtkRenderer> renderer;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plant of 9454 parts to walk through: plant [OUT.png [TREE.png]]. Key c switches the culler; the corner tells which, the parts drawn,
-// frames a second. TREE.png: the culler's octree from afar, with the camera's frustum in it.
+// A plant of 9454 parts to walk through: plant [OUT.png [TREE.png]]. Key c switches the culler; the corner shows its name, the parts drawn,
+// and frames a second. TREE.png: the culler's octree from afar, with the camera's frustum in it.
 #include <vtkStratusOctreeCuller.h>
 
 #include <vtkActor.h>
@@ -111,7 +111,7 @@ struct Plant {
     }
   }
 
-  // What the last frame took is told in the next one.
+  // Statistics of the last frame are shown in the next one.
   void Tell()
   {
     char text[200];

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # ParaView's window with the hurricane drawn by the plugin: paraview --script=window.py, where STRATUS_PLUGIN and STRATUS_DATA name
-# Stratus.so and a .vti. A file STRATUS_READY, if named, tells others that all is drawn.
+# Stratus.so and a .vti. If STRATUS_READY names a file, it is written when everything is drawn.
 import os
 from paraview import simple
 

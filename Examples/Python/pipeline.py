@@ -11,7 +11,7 @@ color.RemoveAllPoints(), color.AddRGBPoint(180, 0.2, 0.4, 0.8), color.AddRGBPoin
 volume.GetProperty().SetInterpolationTypeToLinear()
 builder.SetInputConnection(source.GetOutputPort()), builder.SetVolumeProperty(volume.GetProperty()), builder.SetDevice(device)
 mapper.SetInputConnection(builder.GetOutputPort()), mapper.SetDevice(device), mapper.SetStructureToHybrid(), volume.SetMapper(mapper)
-if builder.GetDevice() != device: sys.exit(1)  # the error told which devices there are
+if builder.GetDevice() != device: sys.exit(1)  # the error listed the devices
 renderer, window = vtk.vtkRenderer(), vtk.vtkRenderWindow()
 renderer.AddVolume(volume), window.AddRenderer(renderer), window.SetSize(480, 480)
 renderer.GetActiveCamera().SetPosition(2, 1.5, 3), renderer.ResetCamera(), window.Render()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# A plant of 9454 parts to walk through, or in a picture: plant.py [OUT.png]. Key c switches the culler; the corner tells frames a second.
+# A plant of 9454 parts to walk through, or as an image: plant.py [OUT.png]. Key c switches the culler; the corner shows frames a second.
 import sys
 import stratus, vtk
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# One plume, two pollutants: soot falls out on the way, ozone forms in it. An array of two components, each with its own looks:
+# One plume, two pollutants: soot falls out as the plume drifts, ozone forms in it. An array of two components, each with its own functions:
 # two_pollutants.py [OUT.png]
 import sys, numpy, stratus, vtk
 from vtk.util.numpy_support import numpy_to_vtk

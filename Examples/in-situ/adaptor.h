@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What the simulation asks of Catalyst, in C. Every rank calls each function. */
+ * The simulation's interface to Catalyst, in C. Every rank calls each function. */
 #ifndef STRATUS_IN_SITU_ADAPTOR_H
 #define STRATUS_IN_SITU_ADAPTOR_H
 

@@ -27,7 +27,7 @@ def show(source):
     return view
 
 
-if "STRATUS_RAW" not in os.environ:  # else another script takes show() alone
+if "STRATUS_RAW" not in os.environ:  # otherwise another script imports only show()
     options = catalyst.Options()
     plume = simple.TrivialProducer(registrationName="plume")
     simple._DisableFirstRenderCameraReset()

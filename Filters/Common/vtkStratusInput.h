@@ -84,8 +84,8 @@ private:
 
 // Lists the image's arrays, for the message that the wanted one is missing.
 VTK_STRATUS_PRIVATE std::string vtkStratusArrayNames(vtkDataSet* image);
-// Returns the position along the grid's axis of an index, minus the origin. The index may be between two values. Cell values begin and end
-// half a cell inside the grid.
+// Returns the position along the grid's axis of an index, minus the origin. The index may be between two values. Index 0 of
+// cell values is the centre of the first cell.
 VTK_STRATUS_PRIVATE double vtkStratusPosition(const stratus_volume& volume, int axis, double index);
 // Returns the data set where it is one that vtkStratusImageView takes, an image or a rectilinear grid, else nullptr.
 VTK_STRATUS_PRIVATE vtkDataSet* vtkStratusAsImage(vtkDataObject* object);

@@ -227,7 +227,7 @@ void vtkStratusCompositePass::ShareBounds()
   this->Whole->VisibilityOn();
 }
 
-// Makes the deep texture a copy of what the frame buffer shows. Returns false where the frame buffer is of another kind than ParaView's.
+// Copies the frame buffer into the deep texture. Returns false if the frame buffer is not of ParaView's kind.
 bool vtkStratusCompositePass::Prepare(vtkOpenGLRenderWindow* window)
 {
   vtkOpenGLFramebufferObject* frame = window ? window->GetRenderFramebuffer() : nullptr;
@@ -335,7 +335,7 @@ void vtkStratusCompositePass::DrawScene(const vtkRenderState* state, vtkOpenGLRe
   this->NumberOfRenderedProps = state->GetPropArrayCount();
 }
 
-// Makes room for what ranks share. Returns false where there is no memory.
+// Allocates the arrays that ranks share. Returns false if memory is short.
 bool vtkStratusCompositePass::MakeRoom()
 {
   const size_t count = static_cast<size_t>(this->Deep->GetWidth()) * this->Deep->GetHeight();
@@ -351,7 +351,7 @@ bool vtkStratusCompositePass::MakeRoom()
   return true;
 }
 
-// Lets rank 0 tell what any rank lacks. Every rank must call it. problem: of this rank, or "".
+// Lets rank 0 report shortages of any rank. Every rank must call it. problem: of this rank, or "".
 void vtkStratusCompositePass::TellProblem(const std::string& problem)
 {
   const std::string words = stratus::join_words(this->IceT->GetController(), problem, this->Told);

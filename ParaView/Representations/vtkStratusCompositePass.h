@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws a view's frames with 16 bits a channel and rounds them to bytes once. Private to the module.
 //
-// ParaView's ranks draw what they have into frame buffers of bytes, and IceT blends these, bytes again. Each rounds, so that N ranks whose
-// pieces lie behind one another differ by N of 255 from one rank. Here the frame buffer has 16 bits a channel while a view draws, and ranks
-// blend what they have drawn before it is rounded (vtkStratusRankBlend.h). Rank 0 then has the whole picture and all others an empty one,
-// which IceT joins without a change. Channels are numbers in 0..1, as those of bytes: light of surfaces beyond 1 is cut off where it is in
-// ParaView's own pictures. Layers of translucent surfaces and what volumes add between them have 16 bits, too.
+// ParaView's ranks draw their parts into frame buffers of bytes, and IceT blends these, again as bytes. Each rank rounds, so that N ranks
+// whose pieces are behind one another differ by N of 255 from one rank. Here the frame buffer has 16 bits a channel while a view draws, and
+// ranks blend their parts before rounding (vtkStratusRankBlend.h). Rank 0 then has the whole frame and all others an empty one, which IceT
+// joins without a change. Channels are numbers in 0..1, as in frame buffers of bytes: light of surfaces beyond 1 is cut off, as in
+// ParaView's own frames. Layers of translucent surfaces, and the volumes between them, have 16 bits, too.
 //
-// Each rank has surfaces of its own, but a ray's last segment in a piece may reach beyond the piece. So all ranks' opaque surfaces share
-// their depths before anything translucent is drawn.
+// Each rank has its own surfaces, but a ray's last segment in a piece may reach beyond the piece. All ranks therefore share the depths of
+// their opaque surfaces before anything translucent is drawn.
 //
-// A pass belongs to a renderer as long as a representation uses it. It puts itself around ParaView's default pass when a frame starts, for
-// ParaView makes its passes anew where settings of the view change. Other passes (ray tracing, values of surfaces), picking and tiled
-// displays are left alone.
+// A pass belongs to a renderer as long as a representation uses it. It wraps ParaView's default pass when a frame starts, because ParaView
+// recreates its passes when settings of the view change. Other passes (ray tracing, values of surfaces), picking and tiled displays are not
+// changed.
 #pragma once
 
 #include "vtkNew.h"
@@ -44,8 +44,9 @@ public:
   static vtkStratusCompositePass* New();
   vtkTypeMacro(vtkStratusCompositePass, vtkRenderPass);
 
-  // A representation that is drawn in the renderer, until it leaves. The pass works where one of them is visible. agree: called on all of
-  // several ranks before each picture, with the box of each rank's part, unless the representation is hidden. tell: the same after it.
+  // Adds a representation that is drawn in the renderer, until it leaves. The pass works if one of them is visible. agree: called on all of
+  // several ranks before each frame, with the box of each rank's part, unless the representation is hidden. tell: called in the same way
+  // after the frame.
   using Agree = std::function<void(vtkMultiProcessController*, const std::vector<vtkBoundingBox>&)>;
   using Tell = std::function<void(vtkMultiProcessController*)>;
   static void Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree, const Tell& tell);
@@ -95,8 +96,8 @@ private:
   vtkNew<vtkVolumetricPass> Volumes;
   vtkNew<vtkOverlayPass> Overlays;
   vtkNew<vtkOpenGLFXAAFilter> FXAA;
-  std::vector<std::vector<unsigned short>> Layers; // of this frame: what is translucent, and opaque surfaces
+  std::vector<std::vector<unsigned short>> Layers; // of this frame: translucent parts, and opaque surfaces
   std::vector<unsigned char> Bytes;
   std::vector<float> Depths, Least;
-  std::string Told; // of what this rank lacked
+  std::string Told; // the last message about memory that this rank lacked
 };

@@ -15,7 +15,7 @@
 
 namespace {
 
-// Bytes that a rank tells the others, in the order in which they are put.
+// Bytes that a rank sends to the others, in the order in which they are put.
 class Bytes
 {
 public:

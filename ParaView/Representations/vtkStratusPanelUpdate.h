@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps what ParaView's panel tells of the last picture up to date. Private to the module.
+// Keeps the statistics of the last frame in ParaView's panel up to date. Private to the module.
 #pragma once
 
 #include "vtkWeakPointer.h"

@@ -27,8 +27,8 @@ vtkStratusPieceDistanceMapFilter::~vtkStratusPieceDistanceMapFilter() = default;
 
 namespace {
 
-// Stretches of a piece along an axis, in values: up to the first block's begin, and from there on, so that a stretch begins with a block or
-// lies in one.
+// Intervals of a piece along an axis, in values: up to the first block's begin, and from there on, so that an interval begins with a block
+// or is inside one.
 std::vector<std::pair<int, int>> Stretches(int first, int last, int origin, int size)
 {
   const int begin = origin + (first - origin + size - 1) / size * size;
@@ -107,8 +107,8 @@ void vtkStratusPieceDistanceMapFilter::SetSettings(vtkStratusDistanceMapFilter* 
   filter->SetDevice(this->GetDevice());
 }
 
-// Sets the blocks of the whole in which this rank's piece shows something. Each stretch of the piece begins with a block, or lies in one.
-// Pieces and stretches share points, so that the values of a block's parts overlap, and it is occupied where a part of it is.
+// Sets the blocks of the whole image that this rank's piece occupies. Each interval of the piece begins with a block or is inside one.
+// Pieces and intervals share points, so that the values of a block's parts overlap, and a block is occupied if a part of it is.
 bool vtkStratusPieceDistanceMapFilter::FindOccupied(
   vtkImageData* piece, bool cells, const Lattice& lattice, std::vector<unsigned char>& occupied)
 {
@@ -262,7 +262,7 @@ int vtkStratusPieceDistanceMapFilter::RequestData(vtkInformation* request, vtkIn
   const bool any = piece && piece->GetNumberOfCells() > 0;
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   vtkDataArray* array = any ? this->GetInputArrayToProcess(0, piece, association) : nullptr;
-  // Upper ends have their sign changed. The last two tell whether the array is of cells, and of a rank's piece that there is one.
+  // Upper ends have their sign changed. The last two are flags: whether the array is of cells, and whether the rank has a piece.
   int mine[8] = { VTK_INT_MAX, VTK_INT_MAX, VTK_INT_MAX, VTK_INT_MAX, VTK_INT_MAX, VTK_INT_MAX, 0, 0 }, least[8];
   for (int a = 0; any && a < 6; ++a) {
     mine[a] = (a % 2 ? -1 : 1) * piece->GetExtent()[a];

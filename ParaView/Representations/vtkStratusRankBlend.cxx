@@ -65,7 +65,7 @@ void blend_behind(std::vector<float>& sums, int width, int first, const Rectangl
 }
 
 // ParaView blends the bytes over the background, and rounds once more. The colours are such that this gives the rounded colours of the
-// whole: alpha alone is rounded to the nearest.
+// whole. Only alpha is rounded to the nearest.
 void round_over(const std::vector<float>& sums, const float background[3], std::vector<unsigned char>& rounded)
 {
   for (size_t pixel = 0; pixel < sums.size(); pixel += 4) {

@@ -31,7 +31,8 @@ namespace {
 using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
 using Place = std::array<double, 3>;
 
-// Where points stand in the order of all ranks: the block, which has the rank where its pieces have no places in a grid, and the place.
+// Positions of points in the order of all ranks: the block (which includes the rank if its pieces have no extents in a grid), and the
+// place.
 const char* const OrderArray = "StratusOrder";
 
 void add_order(vtkDataSet* leaf, int block, int rank, vtkUnstructuredGrid* grid)
@@ -101,7 +102,7 @@ vtkUnsignedCharArray* find_flags(vtkUnsignedCharArray* flags, vtkIdType wanted, 
   return flags;
 }
 
-// Lists what a block shows of what this rank owns. Returns nullptr, and sets `problem`, where it can't be drawn.
+// Lists the visible cells of a block that this rank owns. Returns nullptr, and sets `problem`, if the block can't be drawn.
 Grid list_cells(vtkDataSet* leaf, int block, int rank, const stratus::Dealing& dealing, std::string& problem)
 {
   const auto all = Grid::New();

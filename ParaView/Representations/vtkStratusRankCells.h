@@ -24,9 +24,9 @@ struct Dealing {
   int layers = 0;                 // of further cells, each about the points of those before
 };
 
-// Returns the cells that reach into this rank's box, and layers of cells about their points. mine: what this rank has, a data set or a tree
-// of them. Cells that are hidden, or that other ranks own, are left out. Points that have equal coordinates and values become one, in an
-// order that hangs on the data alone. problem: why a block of this rank is left out, or "". Every rank of the controller must call it.
+// Returns the cells that reach into this rank's box, and layers of cells about their points. mine: this rank's data, a data set or a tree
+// of them. Cells that are hidden, or that other ranks own, are left out. Points of equal coordinates and values are merged, in an order
+// that depends only on the data. problem: why a block of this rank is left out, or "". Every rank of the controller must call it.
 vtkSmartPointer<vtkUnstructuredGrid> deal_cells(vtkMultiProcessController* controller, vtkDataObject* mine,
   const std::vector<vtkBoundingBox>& boxes, const Dealing& dealing, std::string& problem);
 } // namespace stratus

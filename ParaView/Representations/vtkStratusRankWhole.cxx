@@ -19,7 +19,7 @@ namespace {
 
 enum Kind { NONE, IMAGE, RECTILINEAR };
 
-// What ranks tell of their pieces, as numbers: a kind, an extent, and what must be the same on all ranks.
+// A rank's description of its piece, as numbers: a kind, an extent, and properties that must be equal on all ranks.
 constexpr size_t FIXED = 1 + 6 + 15;
 
 vtkDataSetAttributes* attributes_of(vtkDataSet* grid, bool cells)
@@ -75,7 +75,7 @@ struct Box {
   }
 };
 
-// Copies rows of a piece's values to where they lie in the whole.
+// Copies rows of a piece's values to their places in the whole.
 void place(const Box& part, const unsigned char* values, const Box& whole, size_t size, unsigned char* to)
 {
   const size_t row = size * static_cast<size_t>(part.to[0] - part.from[0]);

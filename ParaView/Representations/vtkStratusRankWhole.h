@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Puts the pieces of a grid that ranks have together on one of them. Private to the module.
+// Gathers the ranks' pieces of a grid on one rank. Private to the module.
 //
-// Which step a picture needs shows along whole rays: pieces alone ask for other steps than the whole, and often for finer ones.
+// The step that a frame needs depends on whole rays: for a piece of the data the automatic step differs, and is often finer.
 #pragma once
 
 #include "vtkSmartPointer.h"
@@ -15,10 +15,10 @@ class vtkMultiProcessController;
 
 namespace stratus {
 
-// Gives rank 0 the image or rectilinear grid of which each rank has a piece, with the arrays `names` of points or cells and with what is
-// hidden. piece: this rank's, or nullptr; an empty one counts as none. `gathered` tells, on all ranks alike, whether the pieces fit
-// together and their arrays have `most` bytes at most; else nothing is sent. The other ranks get nullptr. Every rank of the controller must
-// call it.
+// Gives rank 0 the whole image or rectilinear grid of which each rank has a piece, with the arrays `names` of points or cells and with
+// ghost arrays. piece: this rank's, or nullptr; an empty one counts as none. `gathered`, equal on all ranks, is true if the pieces fit
+// together and their arrays have at most `most` bytes; otherwise nothing is sent. The other ranks get nullptr. Every rank of the controller
+// must call it.
 vtkSmartPointer<vtkDataSet> gather_whole(vtkMultiProcessController* controller, vtkDataSet* piece, const std::vector<std::string>& names,
   bool cells, vtkIdType most, bool& gathered);
 } // namespace stratus

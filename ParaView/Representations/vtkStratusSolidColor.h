@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a volume shows where ParaView colours by no array: one colour, at the opacity of the array and function that were chosen last, or of
-// the data's first array by a ramp over its range. Private to the module.
+// Draws a volume if ParaView colours by no array: one colour, at the opacity of the last chosen array and function, or of the data's first
+// array by a ramp over its range. Private to the module.
 #pragma once
 
 #include "vtkNew.h"
@@ -34,7 +34,7 @@ public:
   bool IsOpen() const { return this->Solid && this->Name.empty(); }
   // Finds the data's active scalars, else their first array of points, else of cells, and its range. Returns false where there is none.
   bool FindArray(vtkDataObject* data);
-  // Makes the ramp that of all ranks, each of which must call it.
+  // Makes the ramp span the range over all ranks, each of which must call it.
   void JoinRange(vtkMultiProcessController* ranks);
 
   // Gives the property the functions that are drawn by.

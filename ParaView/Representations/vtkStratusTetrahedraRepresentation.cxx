@@ -77,7 +77,7 @@ int vtkStratusTetrahedraRepresentation::RequestData(vtkInformation* request, vtk
   vtkDataObject* data = input[0]->GetNumberOfInformationObjects() == 1 ? vtkDataObject::GetData(input[0], 0) : nullptr;
   vtkMath::UninitializeBounds(this->DataBounds);
   this->DataSize = 0;
-  // A rank without data, a client for one, shows the outline of what the others draw.
+  // A rank without data, such as a client, shows the outline of the data that the others draw.
   this->Actor->SetEnableLOD(data ? 0 : 1);
   if (data) {
     const vtkSmartPointer<vtkDataObject> before = this->Cache;
@@ -204,7 +204,7 @@ void vtkStratusTetrahedraRepresentation::Deal(vtkMultiProcessController* ranks, 
   this->Show(this->Dealt, this->DealtArray, this->DealtCells);
 }
 
-// Lets rank 0 tell which ranks left something out. Every rank must call it.
+// Lets rank 0 report which ranks left something out. Every rank must call it.
 void vtkStratusTetrahedraRepresentation::Tell(vtkMultiProcessController* ranks)
 {
   const bool drawn = this->Actor->GetVisibility() && this->Actor->GetMapper() == this->Mapper;
@@ -216,8 +216,7 @@ void vtkStratusTetrahedraRepresentation::Tell(vtkMultiProcessController* ranks)
   }
 }
 
-// Draws what lies in a rank's box. Faces of the box that are faces of all boxes together cut nothing, since cells beyond them are drawn,
-// too.
+// Clips to a rank's box. Faces of the box that are faces of the union of all boxes cut nothing, since cells beyond them are drawn, too.
 void vtkStratusTetrahedraRepresentation::ClipTo(const std::vector<vtkBoundingBox>& boxes, int rank)
 {
   vtkBoundingBox whole;

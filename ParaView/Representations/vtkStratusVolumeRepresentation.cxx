@@ -88,7 +88,7 @@ int vtkStratusVolumeRepresentation::RequestUpdateExtent(vtkInformation* request,
   return done;
 }
 
-// The superclass cuts ghost cells off, and takes composite data for its own mapper alone.
+// The superclass cuts ghost cells off, and accepts composite data only for its own mapper.
 int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
   vtkDataObject* data = input[0]->GetNumberOfInformationObjects() == 1 ? vtkDataObject::GetData(input[0], 0) : nullptr;
@@ -124,7 +124,7 @@ int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInfo
   return this->vtkVolumeRepresentation::RequestData(request, input, output);
 }
 
-// Keeps a copy of the data, or of what all ranks have of AMR.
+// Keeps a copy of the data, or, for AMR, of all ranks' data.
 void vtkStratusVolumeRepresentation::TakeData(vtkDataObject* data)
 {
   auto* refined = vtkOverlappingAMR::SafeDownCast(data);
@@ -169,7 +169,7 @@ void vtkStratusVolumeRepresentation::ShareBounds()
   }
 }
 
-// Lets rank 0 tell which ranks drew nothing, and which parts don't lie side by side. Every rank must call it.
+// Lets rank 0 report which ranks drew nothing, and which parts are not adjacent. Every rank must call it.
 void vtkStratusVolumeRepresentation::Tell(vtkMultiProcessController* ranks)
 {
   const std::string failed = this->Actor->GetVisibility() ? this->GetMapper()->GetLastError() : "";
@@ -182,8 +182,9 @@ void vtkStratusVolumeRepresentation::Tell(vtkMultiProcessController* ranks)
   }
 }
 
-// Whether segments end at the borders of ranks, between which each rank else draws whole segments, by where their middles lie. A rank knows
-// the translucent surfaces in its own part alone, and a segment that reaches beyond the part would lie before all surfaces of the next.
+// Sets whether segments end at the borders of ranks. Otherwise each rank draws whole segments, assigned by their middles. A rank knows only
+// the translucent surfaces in its own part, and a segment that reaches beyond the part would be drawn in front of all surfaces of the next
+// part.
 void vtkStratusVolumeRepresentation::EndAtBorders(bool end)
 {
   auto* piece = vtkDataSet::SafeDownCast(this->Cache);
@@ -301,8 +302,8 @@ void vtkStratusVolumeRepresentation::ShareTransfer2D(vtkMultiProcessController* 
   this->GetMapper()->SetTransfer2DRanges(all);
 }
 
-// Takes the sampling that serves all ranks: that of the whole, where rank 0 has it. Else the rule that is asked for where the field bends
-// most, and of it the shortest step and the least error. Settings of the user's own stay. Every rank must call it.
+// Chooses the sampling for all ranks: the sampling of the whole volume if rank 0 has it. Otherwise the ranks use the rule that the most
+// curved part of the field needs, with the shortest step and the least error. The user's own settings are kept. Every rank must call it.
 void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkMultiProcessController* ranks)
 {
   if (vtkOverlappingAMR::SafeDownCast(this->Cache)) { // whose grids sample as their levels need

@@ -46,7 +46,7 @@ class Partition(typing.NamedTuple):
         weights, done = self.weights.reshape(-1, *(1,) * (given.ndim - 1)), 0
         farthest = self.ends.max(axis=1) if len(self.ends) else self.ends
         while done < len(self.ends):
-            # As many as hang on points alone that are known by now.
+            # As many as depend only on points that are known by now.
             open_ends = numpy.nonzero(farthest[done:] >= old + done)[0]
             until = done + int(open_ends[0]) if len(open_ends) else len(self.ends)
             first, last = (result[self.ends[done:until, end]] for end in range(2))

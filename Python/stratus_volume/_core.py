@@ -87,7 +87,7 @@ class Context:
         options.device = _text(device, "device")
         options.threads = whole(threads, "threads", 0, 1024)
         if _forked:
-            # OpenMP's threads, and those of an OpenCL device, did not come along: whoever waits for them waits for ever.
+            # A fork does not copy the threads of OpenMP or of an OpenCL device: waiting for them would never end.
             if options.threads > 1 or str(device) not in ("auto", "host"):
                 raise ValueError(f"device is {device!r} and threads is {threads!r}, they must be 'host' and 1 in a process that was forked off one that "
                                  "had drawn; multiprocessing's method spawn starts processes without this limit")
@@ -168,7 +168,7 @@ class Progress:
 
     def __call__(self, stage, fraction):
         total = getattr(self.bar, "total", None) or 1.0
-        if fraction > self.done:  # stages begin anew: a bar goes forward alone
+        if fraction > self.done:  # stages begin anew, but a bar only moves forward
             self.bar.update((fraction - self.done) * total)
             self.done = fraction
         if hasattr(self.bar, "set_description"):

@@ -167,7 +167,7 @@ def _of_xarray(data, spacing, origin, axes):
         axes = letters if sorted(letters) == ["x", "y", "z"] else "zyx"
     for where in data.attrs, getattr(data, "encoding", {}):
         for name in "_FillValue", "missing_value":
-            if name in where and where is data.attrs:  # those of the encoding were replaced as the file was read
+            if name in where and where is data.attrs:  # values in the encoding were replaced as the file was read
                 values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | numpy.isin(values.data, where[name]), values.data)
     coordinates = None
     if spacing is None and origin is None and all(name in data.coords for name in data.dims):

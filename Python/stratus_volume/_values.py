@@ -155,7 +155,7 @@ class Spread:
         self.low, self.high = float(values.min()), float(values.max())
         self.common, self.center, self.far = self.low, self.low, 1.0
         if self.low < self.high:
-            # Differences of the largest doubles overflow, and those of the smallest have no digits.
+            # Differences of the largest doubles overflow, and differences of the smallest have no digits.
             power = power_of(max(abs(self.low), abs(self.high)))
             low, high = float(scaled(self.low, power)), float(scaled(self.high, power))
             flat = values.reshape(-1)
@@ -241,7 +241,7 @@ def color_points(color, low, high, power):
     if isinstance(color, str):
         color = _color_map(color)
     if callable(color):
-        # As many as matplotlib's colour maps have. One value alone gets the middle.
+        # As many rows as matplotlib's colour maps have. A single value gets the middle.
         places = numpy.linspace(0, 1, 256) if low < high else [0.5]
         rows = [numbers(tuple(color(float(place)))[:3], 3, "a colour of a colour map") for place in places]
         if not all(0 <= part <= 1 for row in rows for part in row):
