@@ -46,7 +46,7 @@ static void the_error_falls_with_the_option(void** state)
   static const double errors[3] = { 1.0 / 16, 1.0 / 256, 1.0 / 16384 };
   static float reference[4 * CASE_PIXELS];
   static const double wanted[2][KINDS] = { { 75, 66, 66, 66 }, { 77, 69, 70, 64 } };
-  for (int kind = 0; kind < 2 * KINDS; kind += few_run() ? 3 : 1) {
+  for (int kind = 0; kind < 2 * KINDS; kind += few_run() ? 7 : 1) {
     picture_case c;
     double db[3];
     case_create(*state, &c, STRATUS_FLOAT32, 24, 22, 26, 300u + (uint32_t)kind);

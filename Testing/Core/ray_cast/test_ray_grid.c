@@ -119,7 +119,7 @@ static void make_stretched(stratus_context* context, picture_case* c, grid_case*
 
 static void grids_stretched_a_hundredfold_draw_the_picture_of_the_reference(void** state)
 {
-  for (int axes = 1; axes < 8; ++axes) {
+  for (int axes = 1; axes < 8; axes += few_run() ? 3 : 1) {
     picture_case c;
     grid_case grid;
     make_stretched(*state, &c, &grid, axes, axes % 2);
@@ -136,7 +136,7 @@ static void grids_stretched_a_hundredfold_draw_the_picture_of_the_reference(void
 
 static void they_are_lit_and_thinned_as_the_reference_does(void** state)
 {
-  for (int axes = 1; axes < 8; axes += 3) {
+  for (int axes = 1; axes < 8; axes += few_run() ? 6 : 3) {
     const double gradient[] = { 0.0, 0.1, 0.6, 1.0 };
     picture_case c;
     grid_case grid;
@@ -258,7 +258,7 @@ static void rule_local_keeps_its_bits_too(void** state)
 {
   stratus_context* context = *state;
   int local = 0;
-  for (uint32_t seed = 0; seed < 12; ++seed) {
+  for (uint32_t seed = 0; seed < 12; seed += few_run() ? 3 : 1) {
     uint32_t random = seed;
     picture_case c;
     grid_case grid;
@@ -274,8 +274,8 @@ static void rule_local_keeps_its_bits_too(void** state)
     }
     case_destroy(&c);
   }
-  print_message("             %d of 12 by rule local\n", local);
-  assert_true(local > 4);
+  print_message("             %d by rule local\n", local);
+  assert_true(local > (few_run() ? 1 : 4));
 }
 
 /* Whole cells far from 0, as UTM coordinates are, and the same grid told from its other end. */

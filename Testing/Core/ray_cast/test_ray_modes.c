@@ -176,7 +176,7 @@ static void isosurfaces_are_where_the_field_is_the_contour(void** state)
 {
   int pixels = 0, differing = 0;
   double worst = 0.0;
-  for (uint32_t seed = 0; seed < 12; ++seed) {
+  for (uint32_t seed = 0; seed < 12; seed += few_run() ? 4 : 1) {
     picture_case c;
     const stratus_type type = (stratus_type)(seed % 10);
     case_create(*state, &c, type, 9 + seed, 17, 14, 90u + seed);
@@ -202,7 +202,7 @@ static void isosurfaces_are_where_the_field_is_the_contour(void** state)
     worst = fmax(worst, error);
     case_destroy(&c);
   }
-  assert_true(pixels > CASE_PIXELS);
+  assert_true(pixels > (few_run() ? CASE_PIXELS / 4 : CASE_PIXELS));
   assert_true(differing <= GRAZING_SHARE * pixels);
   assert_true(worst <= DEPTH_ERROR);
 }
