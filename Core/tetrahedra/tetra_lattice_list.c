@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* A lattice whose tetrahedra are listed behind those of the ones before. */
+/* A lattice whose tetrahedra are listed after the tetrahedra of the lattices before. */
 typedef struct list_build {
   stratus_tetra_list* list;
   const stratus_mesh* lattice;
@@ -12,7 +12,7 @@ typedef struct list_build {
   int64_t first_point, first_cell; /* in the list, tetrahedra from 6 first_cell on */
 } list_build;
 
-/* Copies points that are floats, or those of several lattices. Those that are not finite become 0: their hexahedra are hidden. */
+/* Copy points that are floats, or points of several lattices. Points that are not finite become 0: their hexahedra are hidden. */
 static stratus_status copy_points(stratus_tetra_list* list, const stratus_mesh* whole)
 {
   const int64_t count = 3 * whole->point_count;

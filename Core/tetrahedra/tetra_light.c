@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Light and gradient opacity of tetrahedra: what of the mesh and the transfer function they need, and the arguments of rays. */
+ * Light and gradient opacity of tetrahedra: the data of the mesh and the transfer function that they need, and the arguments of rays. */
 #include "tetra_caster.h"
 
 #include "gradient_factors.h"
@@ -97,7 +97,7 @@ void stratus_tetra_light_drop_factors(stratus_tetra_caster* caster)
   caster->factor_count = 0;
 }
 
-/* Makes the factors of `count` components anew where they are not those of these functions. */
+/* Make the factors of `count` components again if they were made for other functions. */
 static stratus_status update_factors(stratus_tetra_caster* caster, const stratus_transfer* transfers, int count, bool dependent)
 {
   const int functions = dependent ? 1 : count;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The march of a packet of rays through a volume, front to back. It leaps over what the structure tells to be transparent. Included once
- * for each STRATUS_TYPE, STRATUS_PREINTEGRATED (0 or 1) and STRATUS_RAY_MODE (none: composite). RAY_NAME(x) is the inclusion's own name of
- * the function x.
+ * The march of a packet of rays through a volume, front to back. It leaps over the parts that the structure marks transparent. Included
+ * once for each STRATUS_TYPE, STRATUS_PREINTEGRATED (0 or 1) and STRATUS_RAY_MODE (none: composite). RAY_NAME(x) is the inclusion's own
+ * name of the function x.
  *
- * Every structure meets the same samples. The structure only tells which segments need none; such a segment would have added exactly zero,
- * so that the bits of the picture do not depend on the structure. */
+ * Every structure meets the same samples. The structure only decides which segments need none; such a segment would have added exactly
+ * zero, so that the bits of the image do not depend on the structure. */
 #ifndef RAY_NAME
 #error "RAY_NAME is not set"
 #endif
@@ -132,8 +132,8 @@ INLINE void RAY_NAME(ray_skip)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
   } while (m_any(need));
 }
 
-/* Takes the next sample of every live ray. The value is fetched for all lanes that are inside the volume, those of ended rays too: whether
- * a ray has ended hangs on the colour of the last sample, and the fetch need not wait for that. */
+/* Sample every live ray at its next place. The value is fetched for all lanes that are inside the volume, also for ended rays: whether a
+ * ray has ended depends on the colour of the last sample, and the fetch need not wait for that. */
 INLINE stratus_sample RAY_NAME(ray_sample)(
   CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, const stratus_packet* k)
 {
@@ -155,7 +155,7 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
   return sample;
 }
 
-/* These stand here and not where they are used, for a device is sent each header once, in only one of the branches below. */
+/* These are included here and not where they are used, because a device is sent each header once, in only one of the branches below. */
 #if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE || STRATUS_RAY_MODE == STRATUS_RAY_TRANSFER_2D
 #include "gradient.h"
 #include "lighting.h"
@@ -237,7 +237,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
 }
 
 #if PACKETS_TOGETHER == 2
-/* Marches two packets side by side: while one waits for its values, the other computes. The bits are those of each packet alone. */
+/* March two packets side by side: while one waits for its values, the other computes. The bits equal a separate march of each packet. */
 INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* left, stratus_packet* right)
 {

@@ -130,7 +130,7 @@ INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
   }
 }
 
-/* Composites the next piece of the ways of the lanes in `mask`. Returns the lanes that have pieces left. */
+/* Composite the next piece of the cell paths of the lanes in `mask`. Returns the lanes that have pieces left. */
 INLINE vmask cell_composite(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, const cell_walk* w, cell_way* way, vmask mask)
 {

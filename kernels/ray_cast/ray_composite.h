@@ -21,7 +21,7 @@ INLINE void composite(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k,
   k->transparency = v_fma(v_set(0.0f) - k->transparency, layer[3], k->transparency);
 }
 
-/* Makes layers of whole segments those of a part of the optical depth, `weight` of it. */
+/* Shorten layers of whole segments to a part of the optical depth, `weight` of it. */
 INLINE void shorten_layer(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, vint entry, vmask mask, vfloat weight, vfloat layer[4])
 {
@@ -69,7 +69,8 @@ INLINE vmask segment_shows(
   return mask & v_lt(v_set(0.0f), tau_between(sums, vi_min(entry, front), vi_max(entry, front) + vi_set(1), mask));
 }
 
-/* Where on the way from one place in the table's grid to another lies what the table spans: the part of the way before it, and its own. */
+/* The part of a range between two places in the table's grid that is within the table's span: the fraction of the range before it, and its
+ * own fraction. */
 INLINE void part_within(CONSTANT stratus_table_arguments* t, vfloat from, vfloat to, vfloat* before, vfloat* part)
 {
   const vfloat zero = v_set(0.0f), way = to - from, size = v_reciprocal(v_max(v_abs(way), v_set(1e-30f)));
@@ -79,8 +80,8 @@ INLINE void part_within(CONSTANT stratus_table_arguments* t, vfloat from, vfloat
   *part = v_clamp(v_max(first, last), 0.0f, 1.0f) - *before;
 }
 
-/* Pre-integration: the field is taken as linear between the values at a segment's ends. sums: running sums of red, green and blue times
- * tau, and of tau, up to each entry. lighting: NULL where a sample is its value's colour and opacity alone. */
+/* Pre-integration: the field counts as linear between the values at a segment's ends. sums: running sums of red, green and blue times tau,
+ * and of tau, up to each entry. lighting: NULL if a sample has only its value's colour and opacity. */
 INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask, vfloat value,
   vfloat weight, vfloat lo, const stratus_lit_sample* lighting)
 {
@@ -96,7 +97,7 @@ INLINE void integrate_lit(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const i
   vint entry = entry_in_cell(&a->table, sums, v_to_int(place), value, mask);
   vint low = vi_min(entry, front), beyond = vi_max(entry, front) + vi_set(1);
   vfloat depth_scale = weight * v_set(a->table.tau_scale), rise = value - k->front, begin = k->front;
-  if (RAY_RARE(RAY_CUT, a->table.cut)) { /* what lies beyond the table is transparent, and has no part in the means */
+  if (RAY_RARE(RAY_CUT, a->table.cut)) { /* values beyond the table are transparent, and have no part in the means */
     const vfloat from = v_clamp(v_fma(k->front, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f),
                  to = v_clamp(v_fma(value, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f);
     const vmask beyond_table = mask & (v_lt(v_min(from, to), zero) | v_lt(v_set(a->table.last + 1.0f), v_max(from, to)));

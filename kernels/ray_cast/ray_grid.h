@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Grids whose spacing changes. Rays are straight in mean index coordinates, those of a grid with the same ends and equal spacing; tables
- * translate them, an axis at a time, to cells and fractions of cells.
+ * Grids whose spacing changes. Rays are straight in mean index coordinates, which are the index coordinates of a grid with the same ends
+ * and equal spacing. Tables translate them, an axis at a time, to cells and fractions of cells.
  *
  * Planes are numbered: plane 2 i is where value i is, plane 2 i + 1 is the border between the boxes about the values i and i + 1. Plane -1
- * is the border before value 0. Planes -2 and 2 n lie far beyond the n values. An axis's bins are equally wide. `first` of a bin is the
- * last value that lies in a bin before it, so that a bisection between a bin's `first` and the next one's finds the value at or below any
- * position: search_steps of them, 0 to 2 where spacings differ little, and never more than the logarithm of n.
+ * is the border before value 0. Planes -2 and 2 n are far beyond the n values. An axis's bins are equally wide. `first` of a bin is the
+ * last value in a bin before it, so that a bisection between a bin's `first` and the next one's finds the value at or below any position.
+ * It has search_steps steps, 0 to 2 if spacings differ little, and never more than the logarithm of n.
  *
  * Positions are compared with planes as the floats that they are. So the cell of a position is a monotone function of it, and a position
- * before the float of a plane is in a cell before it: that is what structures count on when they leap up to a plane.
+ * before the float of a plane is in a cell before it. Structures rely on this when they leap up to a plane.
  *
  * Along even axes every plane's float is half its number; most grids of levels have two. Cells and fractions need no table there, and are
  * the same ones. */
@@ -52,7 +52,7 @@ GRID_OUTLINE vfloat grid_plane_rare(CONSTANT stratus_ray_cast_arguments* a, GLOB
   return grid_plane(a, grid, axis, plane);
 }
 
-/* The cell between values at a position, that of the border beyond them. A bisection needs no bin's end: it takes no plane beyond the
+/* The cell between values at a position; beyond the border, the border's cell. A bisection needs no bin's end: it uses no plane beyond the
  * position. */
 INLINE vint grid_cell(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vfloat y)
 {

@@ -11,7 +11,7 @@
 #define SURFACE_OUTLINE static __attribute__((noinline))
 #endif
 
-/* Lanes whose cell holds a surface: its corners are finite and lie on both sides of a contour value. */
+/* Lanes whose cell holds a surface: its corners are finite and on both sides of a contour value. */
 INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloat v[8], vmask mask)
 {
   vfloat lo = v[0], hi = v[0];

@@ -52,7 +52,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
   r.begin = v_max(v_from_int(k->i), k->begin);
   r.end = v_min(v_from_int(k->last), k->end);
   vmask left = k->live & v_lt(r.begin, r.end);
-  r.begin = v_select(left, r.begin, zero); /* lanes without a way stay at a harmless place */
+  r.begin = v_select(left, r.begin, zero); /* lanes without a path stay at a harmless place */
   r.end = v_select(left, r.end, zero);
   r.to = r.end;
   r.rough = m_none();
@@ -72,7 +72,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
       k->i = v_to_int(k->begin);
       k->last = segment_behind(k->end);
       if (kind) {
-        k->run = never; /* every block on the way holds what shows */
+        k->run = never; /* every block on the path may show something */
         RAY_NAME(cell_march)(a, values, hidden, map, table, k, 0, 0);
       } else {
         k->run = a->map.structure ? k->i : never;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a ray makes of its samples where it gathers no light: the largest or smallest value, or a sum. Included by ray_cast.h with
- * STRATUS_RAY_MODE set. A segment that the structure leaves out would have changed nothing, so that skipping is as exact here as it is for
- * light. */
+ * Rays that gather no light: the largest or smallest value of their samples, or a sum. Included by ray_cast.h with STRATUS_RAY_MODE set. A
+ * segment that the structure leaves out would have changed nothing, so that skipping is as exact here as it is for light. */
 
 INLINE void RAY_NAME(ray_advance)(stratus_packet* k, vmask done)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The state of a packet on its march, and the steps that do not depend on the type of values: which lanes ask the structure, where a ray
- * leaves an empty cube, what is hidden. */
+ * The state of a packet on its march, and the steps that do not depend on the type of values: which lanes read the structure, where a ray
+ * leaves an empty cube, which values are hidden. */
 #ifndef STRATUS_RAY_SEGMENT_H
 #define STRATUS_RAY_SEGMENT_H
 
@@ -28,7 +28,7 @@ INLINE double stratus_bias(const stratus_ray_cast_arguments* a)
 typedef uint64_t stratus_index;
 #endif
 
-/* Where a volume's values lie: one behind the other, or in pages (RAY_PAGES), of which a table tells the slab and the place in it. */
+/* Where a volume's values are: one after the other, or in pages (RAY_PAGES), with a table of each page's slab and its place in the slab. */
 #if RAY_IN_PAGES
 typedef struct value_source {
   GLOBAL const void* slab[PAGE_SLABS];
@@ -190,7 +190,7 @@ INLINE vmask packet_rays(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const fl
   return vi_lt(px, vi_set(a->picture.width)) & vi_lt(py, vi_set(a->picture.height));
 }
 
-/* Makes a packet of its rays: whole segments, the part that this piece owns, and the box of what can be seen. */
+/* Make a packet of its rays: whole segments, the part that this piece owns, and the visible box. */
 INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, vmask inside, stratus_packet* k)
 {
   const vfloat zero = v_set(0.0f), most = v_set(8e6f);
@@ -212,7 +212,7 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
   }
   k->last = segment_behind(v_min(k->end, most));
   k->i = vi_set(0);
-  if (RAY_RARE(RAY_PIECE, a->crop.has_piece)) { /* segments whose middle lies in [piece_begin, piece_end) */
+  if (RAY_RARE(RAY_PIECE, a->crop.has_piece)) { /* segments whose middle is in [piece_begin, piece_end) */
     const vfloat from = v_clamp(v_load(rays->piece_begin) + v_set(0.5f), 0.0f, 8e6f),
                  to = v_clamp(v_load(rays->piece_end) + v_set(0.5f), 0.0f, 8e6f);
     const vint i0 = v_to_int(from), i1 = v_to_int(to);

@@ -52,7 +52,7 @@ INLINE void ray_clip_plane(CONSTANT stratus_pair* plane, const real* origin, con
   *end = r_select(rising, *end, r_select(falling, *end, r_select(outside, r_number(-1e30f), *end)));
 }
 
-/* How far the lattice of the ray through pixel (x, y) is moved, in 0..1 of a sample. It depends on pixel and seed alone. */
+/* How far the lattice of the ray through pixel (x, y) is moved, in 0..1 of a sample. It depends only on pixel and seed. */
 INLINE float ray_jitter(int x, int y, int seed)
 {
   uint h = (uint)x * 0x9e3779b1u ^ (uint)y * 0x85ebca77u ^ (uint)seed * 0xc2b2ae3du;

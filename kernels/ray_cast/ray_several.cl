@@ -29,7 +29,7 @@
 #endif
 
 #ifdef __clang__
-#pragma clang diagnostic ignored "-Wunused-function" /* a volume has no crop regions, and does not march alone */
+#pragma clang diagnostic ignored "-Wunused-function" /* a volume has no crop regions, and never marches without the others */
 #endif
 
 #include "ray_segment.h"
@@ -48,7 +48,7 @@
 typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRATUS_ARGUMENTS_BYTES ? 1 : -1];
 #endif
 
-/* The kernel's arguments of a volume; those of numbers that no volume has are not read. */
+/* The kernel's arguments of a volume; arguments of unused numbers are not read. */
 #define VOLUME_ARGUMENTS(n)                                                                                                                \
   __global const void *values##n, __global const uchar *hidden##n, __global const uchar *map##n, __global const uchar *rough##n,           \
     __global const int *grid##n, __global const void *table##n, __global const void *besides##n
@@ -71,8 +71,8 @@ typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRAT
     from[n].preintegrated = parts[n].preintegrated;                                                                                        \
   }
 
-/* a, parts: one for each volume; those of the first tell what is written. counts: rays, samples, skipped, lookups of each row of pixels, or
- * of each tile. */
+/* a, parts: one for each volume; the first volume's say which outputs are written. counts: rays, samples, skipped, lookups of each row of
+ * pixels, or of each tile. */
 PACKET_KERNEL void ray_several(__constant stratus_ray_cast_arguments* a, __constant stratus_several_arguments* parts, int count,
   VOLUME_ARGUMENTS(0), VOLUME_ARGUMENTS(1), VOLUME_ARGUMENTS(2), VOLUME_ARGUMENTS(3), VOLUME_ARGUMENTS(4), VOLUME_ARGUMENTS(5),
   VOLUME_ARGUMENTS(6), VOLUME_ARGUMENTS(7), __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8,

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The march of a packet of rays through several volumes at once, front to back. All have one lattice of samples, which is anchored at the
- * eye; each has its own place on it, its own bounds, structure and table, and takes a sample of every `stride` segments. Within a segment
- * optical depths add up, and colours weigh by them.
+ * eye. Each has its own place on it, its own bounds, structure and table, and is sampled every `stride` segments. Within a segment optical
+ * depths add up, and colours are weighted by them.
  *
- * The lanes of a packet go through the lattice together, so that all of them take the samples of a volume at once. What a lane gathers does
- * not depend on its neighbours: positions are relative to where its own ray enters the volume, as in ray_setup.h. A structure tells up to
- * which segment its volume is transparent on all lanes; such segments would have added exactly zero. */
+ * The lanes of a packet go through the lattice together, so that all of them sample a volume at once. A lane's result does not depend on
+ * its neighbours: positions are relative to where its own ray enters the volume, as in ray_setup.h. A structure gives the segment up to
+ * which its volume is transparent on all lanes; such segments would have added exactly zero. */
 #ifndef STRATUS_RAY_SEVERAL_H
 #define STRATUS_RAY_SEVERAL_H
 
@@ -107,7 +107,7 @@ INLINE void several_number(
   }
 }
 
-/* Makes the packet at pixel (x, y) ready, as each volume sees it. k: what the rays gather. */
+/* Prepare the packet at pixel (x, y) for each volume. k: the light that the rays gather. */
 INLINE void several_load(
   const several_source* from, int count, GLOBAL const float* opaque_depth, int x, int y, several_volume* volumes, stratus_packet* k)
 {
@@ -191,7 +191,7 @@ INLINE void several_march(const several_source* from, several_volume* volumes, i
     }
     i = next;
   }
-  if (stretches && m_any(k->live)) { /* what is behind all samples */
+  if (stretches && m_any(k->live)) { /* the part behind all samples */
     several_interval(from, volumes, count, since, SEVERAL_NEVER, k->live, stretches, k);
   }
   for (int n = 0; n < count; ++n) {

@@ -203,7 +203,7 @@ INLINE vfloat several_nearest_at(const several_source* from, const vint at[3], v
 #endif
 
 #if SEVERAL_MEDIA
-/* Fill `rate` with what samples show over a segment's length, on the live rays of k. */
+/* Fill `rate` with the colour and optical depth of samples over a segment's length, on the live rays of k. */
 INLINE void several_media_at(const several_source* from, const stratus_packet* k, const stratus_sample* sample, vfloat rate[4])
 {
 #ifdef STRATUS_DEVICE
