@@ -130,7 +130,7 @@ void vtkStratusCFGrid::FindCoordinates()
   }
 }
 
-// Coordinates of two dimensions serve where those of one are missing, or mere numbers. WRF's are also known by their names.
+// Two-dimensional coordinates are used if one-dimensional ones are missing or plain numbers. WRF's are also known by their names.
 void vtkStratusCFGrid::FindHorizontal(const std::vector<const Variable*>& others)
 {
   const auto is_number = [this](const Variable* one) {

@@ -47,7 +47,7 @@ public:
   int GetDimension(int axis) const { return this->Dimensions[static_cast<size_t>(axis)]; }
   size_t GetLength(int axis) const { return this->File.LengthOf(this->GetDimension(axis)); }
   const std::vector<double>& GetAxis(int axis) const { return this->Axes[axis]; } // ascending
-  // Returns 0, 1, 2 for a coordinate along x, y, z, and -1 where its attributes tell nothing.
+  // Returns 0, 1, 2 for a coordinate along x, y, z, and -1 if its attributes name no axis.
   int AxisOf(const Variable& coordinate) const;
   // Returns whether the variable depends on time and the three axes only, and whether on one of them.
   bool Fits(const Variable& variable) const;

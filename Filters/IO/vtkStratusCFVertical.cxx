@@ -235,8 +235,7 @@ void vtkStratusCFVertical::ReadFormula(size_t step, double* to, size_t stride) c
   }
 }
 
-// Replaces pressures by heights, layer on layer from the ground up. Where the temperature is missing, it is that of the standard
-// atmosphere.
+// Replaces pressures by heights, layer on layer from the ground up. If there is no temperature, the standard atmosphere's is used.
 void vtkStratusCFVertical::ReadColumns(size_t step, double* to, size_t stride) const
 {
   const vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(*this->Temperature, "units"));

@@ -52,7 +52,7 @@ private:
   std::string Units;                // of the source, as the file has them
   vtkStratusUnit Unit;
   bool Down = false;
-  bool Sea = false; // pressure is that of sea water
+  bool Sea = false; // pressure is of sea water
   const vtkStratusFormula* Of = nullptr;
   std::vector<const Variable*> Terms;
   std::vector<double> Factors; // of the terms

@@ -138,7 +138,7 @@ void File::CheckChannels()
   }
 }
 
-// Files that were damaged may tell of chunks that are elsewhere or larger than there is room for.
+// Damaged files may describe chunks that are elsewhere or larger than the buffer.
 void File::CheckChunk(const exr_decode_pipeline_t& pipeline, int top) const
 {
   exr_attr_box2i_t window = {};

@@ -33,7 +33,7 @@ double OceanSOld(const double* t, double) // s, eta, depth, a, b, depth_c
   return t[1] * (1.0 + s) + t[5] * s + (t[2] - t[5]) * stretching;
 }
 
-// Since CF 1.9 one of sigma and zlev is missing at each level; before, nsigma told how many levels have sigma.
+// Since CF 1.9 either sigma or zlev is missing at each level; before, nsigma was the number of levels with sigma.
 double OceanSigmaZ(const double* t, double level) // sigma, eta, depth, depth_c, zlev, nsigma
 {
   const bool has_sigma = std::isfinite(t[0]), has_height = std::isfinite(t[4]);

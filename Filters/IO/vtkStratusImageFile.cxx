@@ -34,7 +34,7 @@ bool EndsWith(const std::string& text, const char* end)
   return text.size() >= length && vtkStratusLowerCase(text).compare(text.size() - length, length, end) == 0;
 }
 
-// NIfTI's header begins with its own length and has its name behind; that of ANALYZE, which NIfTI succeeds, has the length alone.
+// NIfTI's header begins with its own length and ends with its name; the header of ANALYZE, NIfTI's predecessor, has only the length.
 bool BeginsAsNifti(const std::string& start)
 {
   for (const uint32_t length : { 348u, 540u }) {
@@ -251,7 +251,7 @@ std::string vtkStratusBeside(const std::string& header, const std::string& name)
 vtkStratusImageFormat vtkStratusFindImageFormat(std::string& path)
 {
   for (const char* end : { ".img", ".img.gz" }) {
-    if (EndsWith(path, end)) { // the values of a NIfTI file, whose header lies beside
+    if (EndsWith(path, end)) { // the values of a NIfTI file, whose header is in the same folder
       const std::string stem = path.substr(0, path.size() - std::strlen(end));
       for (const char* other : { ".hdr", ".hdr.gz" }) {
         std::error_code error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the header of an image file says, in the same words for NRRD, MetaImage and NIfTI. Private to the module.
+// The contents of an image file's header, in one form for NRRD, MetaImage and NIfTI. Private to the module.
 #ifndef vtkStratusImageFile_h
 #define vtkStratusImageFile_h
 
@@ -23,7 +23,7 @@ struct vtkStratusImageAxis {
   std::array<double, 3> Step = { 0.0, 0.0, 0.0 }; // of space: the vector from one sample to the next, in the file's coordinates
 };
 
-// A header. The functions below fill it; they throw vtkStratusReadError for what is wrong, and for what can't be read.
+// A header. The functions below fill it; they throw vtkStratusReadError for invalid and for unsupported headers.
 struct VTK_STRATUS_PRIVATE vtkStratusImageFile {
   enum Encodings { RAW, DEFLATE, TEXT }; // DEFLATE: as gzip or zlib write it
 
@@ -50,7 +50,7 @@ struct VTK_STRATUS_PRIVATE vtkStratusImageFile {
   std::vector<std::string> Files;
   int64_t HeaderBytes = 0;
   int64_t LineSkip = 0;
-  int64_t ByteSkip = 0; // -1, of RAW alone: the values are the file's last bytes
+  int64_t ByteSkip = 0; // -1, only for RAW: the values are the file's last bytes
 
   [[noreturn]] void Fail(const std::string& why) const { throw vtkStratusReadError{ this->Path + ": " + why }; }
   int64_t CountValues() const; // throws where the number is too large
@@ -59,7 +59,7 @@ struct VTK_STRATUS_PRIVATE vtkStratusImageFile {
 };
 
 enum class vtkStratusImageFormat { NONE, NRRD, META, NIFTI };
-// Finds the format by the file's first bytes. `path` becomes the header's where it is that of the values (.img).
+// Finds the format by the file's first bytes. If `path` names the file of the values (.img), it becomes the header's.
 VTK_STRATUS_PRIVATE vtkStratusImageFormat vtkStratusFindImageFormat(std::string& path);
 
 VTK_STRATUS_PRIVATE vtkStratusImageFile vtkStratusReadNrrdHeader(const std::string& path);

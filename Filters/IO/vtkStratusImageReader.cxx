@@ -22,16 +22,16 @@
 vtkStandardNewMacro(vtkStratusImageReader);
 
 namespace {
-constexpr double Flat = 1e-6;    // a volume of three axes of length 1 that is below: they lie in a plane
-constexpr double Sheared = 1e-4; // a cosine above is told of; below are headers of few digits
+constexpr double Flat = 1e-6;    // three axes of length 1 that span a smaller volume are in one plane
+constexpr double Sheared = 1e-4; // larger cosines are reported; smaller ones come from headers of few digits
 
 std::string Tell(const double* vector)
 {
   return "(" + vtkStratusTell(vector[0]) + ", " + vtkStratusTell(vector[1]) + ", " + vtkStratusTell(vector[2]) + ")";
 }
 
-// Gives axis `a`, of which the file tells nothing, the direction of length 1 that is perpendicular to the others known and nearest to
-// x, y or z.
+// Gives axis `a`, which the file does not describe, the direction of length 1 that is perpendicular to the known axes and nearest to x, y
+// or z.
 void Complete(double axes[3][3], const bool known[3], int a)
 {
   double base[3][3];

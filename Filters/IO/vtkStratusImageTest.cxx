@@ -139,7 +139,7 @@ struct vtkStratusImageTest::vtkInternals {
   vtkSmartPointer<vtkImageData> Image, Baseline; // as they were set
   vtkSmartPointer<vtkImageData> Judged, Held;    // of the last comparison
   std::string OtherArrays;                       // why no bits could be compared
-  std::string DifferentArrays;                   // names of those of which bits differ
+  std::string DifferentArrays;                   // names of arrays whose bits differ
   std::string Reason;
 };
 

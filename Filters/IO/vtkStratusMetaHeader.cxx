@@ -27,7 +27,7 @@ constexpr struct {
   { "MET_DOUBLE", VTK_DOUBLE },
 };
 
-// The names that one key has. The first one is that of Fields.
+// Synonyms of keys. The first name of each list is the one in Fields.
 const std::vector<std::vector<std::string>> Synonyms = {
   { "Offset", "Origin", "Position" },
   { "TransformMatrix", "Rotation", "Orientation" },
@@ -161,7 +161,7 @@ void Header::SetType()
   if (name.empty()) {
     this->File.Fail("the key 'ElementType' is missing");
   }
-  const std::string array = "_ARRAY"; // of values with several channels, which ElementNumberOfChannels tells
+  const std::string array = "_ARRAY"; // of values with several channels; ElementNumberOfChannels is their number
   if (name.size() > array.size() && name.compare(name.size() - array.size(), array.size(), array) == 0) {
     name.resize(name.size() - array.size());
   }
@@ -266,7 +266,7 @@ void Header::SetFiles(vtkStratusHeaderLines& lines)
     file.Files = { vtkStratusBeside(file.Path, name) };
     return;
   }
-  // Axes of each file: all but the last one, or as told ("LIST 2D").
+  // Axes of each file: all but the last one, or the number in "LIST 2D".
   int64_t within = static_cast<int64_t>(this->Dimension) - 1, wanted = 1;
   if (list && words.size() > 1) {
     std::string digits = words[1];

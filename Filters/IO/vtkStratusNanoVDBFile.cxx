@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grids of a .nvdb file, by NanoVDB. A file's grid is used as it lies in memory, pointers and all, so no node is looked at before it is
-// known to lie within the grid's bytes.
+// Grids of a .nvdb file, by NanoVDB. A file's grid is used in its memory layout, pointers and all, so no node is read before it is known to
+// be within the grid's bytes.
 #include "vtkStratusSparseGrid.h"
 
 #include <nanovdb/util/IO.h>
@@ -32,7 +32,7 @@ template <class T> struct Traits<nanovdb::Vec3<T>> {
   static const Type* Get(const nanovdb::Vec3<T>& value) { return &value[0]; }
 };
 
-// The bytes of a grid, and what lies in them.
+// The bytes of a grid, and its nodes.
 class GridBytes
 {
 public:
@@ -127,8 +127,8 @@ private:
     place[2] = first[2] + step * static_cast<int64_t>(n % side);
   }
 
-  // Calls tile(first, size, value, active) or leaf(first, leaf) for each of the cubes that the tree divides space into and that
-  // wanted(first, size) asks for, as it does for those around them.
+  // Calls tile(first, size, value, active) or leaf(first, leaf) for each of the tree's cubes for which wanted(first, size) and wanted() of
+  // all cubes around it return true.
   template <class Wanted, class OnTile, class OnLeaf> void Visit(const Wanted& wanted, const OnTile& tile, const OnLeaf& leaf) const
   {
     this->Source.template At<Root>(this->Top, 0, sizeof(Root) + this->Top->mTableSize * sizeof(typename Root::Tile));

@@ -83,7 +83,7 @@ vtkStratusNetCDFFile::vtkStratusNetCDFFile(const std::string& path, const std::s
   }
 }
 
-// Lists the dimensions and variables of a group, then those of the groups in it. `path` has a slash at its end.
+// Lists the dimensions and variables of a group, then its groups' dimensions and variables. `path` has a slash at its end.
 void vtkStratusNetCDFFile::Load(int group, const std::string& path)
 {
   char name[NC_MAX_NAME + 1] = "";
@@ -157,8 +157,8 @@ void vtkStratusNetCDFFile::Select(const std::string& selection)
   }
 }
 
-// libnetcdf takes zeros for what a file of the classic formats lacks at its end, so its least length is computed from its contents, as the
-// format's specification has it. Other formats are checked by HDF5.
+// libnetcdf reads zeros beyond the end of a truncated file of the classic formats. The file's minimum length is therefore computed from its
+// contents, by the format's specification. Other formats are checked by HDF5.
 void vtkStratusNetCDFFile::CheckLength() const
 {
   int format = 0, attributes = 0, unlimited = 0;

@@ -66,8 +66,8 @@ public:
   bool Has(const Variable& variable, const char* attribute) const;
   bool Number(const Variable& variable, const char* attribute, double& value) const;
 
-  // Reads a block of values; empty start and count: all. Values that are missing are NaN, the others are unpacked, by the rules at
-  // vtkStratusNetCDFValues. The array is float if this tells all of the variable's values apart, else double.
+  // Reads a block of values; empty start and count: all. Missing values are NaN, the others are unpacked, by the rules at
+  // vtkStratusNetCDFValues. The array is float if floats represent all of the variable's values exactly, otherwise double.
   vtkSmartPointer<vtkDataArray> Read(
     const Variable& variable, const std::vector<size_t>& start = {}, const std::vector<size_t>& count = {}) const;
   // Returns "; ..." for attributes of values that are ignored, "" if there is none.
@@ -112,7 +112,7 @@ private:
 
 // Splits at blanks.
 std::vector<std::string> vtkStratusWords(const std::string& text);
-// "12.5", as short as it can be told.
+// "12.5", the shortest text of the number.
 std::string vtkStratusNumberText(double value);
 
 #endif

@@ -62,7 +62,7 @@ void vtkStratusNetCDFLayout::LeaveThree(std::vector<int>& space, const std::func
   }
 }
 
-// By what the dimensions' coordinates tell, if that names each axis once; else x is the last.
+// By the metadata of the dimensions' coordinates, if that names each axis once; otherwise x is the last.
 void vtkStratusNetCDFLayout::Sort(const std::vector<int>& space, const std::function<int(int)>& axis_of)
 {
   this->Axes = { { space[2], space[1], space[0] } };

@@ -13,11 +13,12 @@
 class vtkStratusNetCDFLayout
 {
 public:
-  // axis_of: returns 0, 1, 2 for a dimension along x, y, z, and -1 for one that does not tell.
+  // axis_of: returns 0, 1, 2 for a dimension along x, y, z, and -1 for one without a named axis.
   //
-  // Dimensions of one value and those that the file's selection names are no axes. Of two times the last is the time. If more than three
-  // dimensions are left, the three that axis_of tells are the axes, else the last three. The outermost one of the others is the time if the
-  // variable has no other time and this dimension no coordinates. All others, and those of an ensemble, are read at index 0.
+  // Dimensions of one value and dimensions that the file's selection names are no axes. Of two times the last is the time. If more than
+  // three dimensions are left, the three for which axis_of names an axis are the axes, otherwise the last three. The outermost one of the
+  // others is the time if the variable has no other time and this dimension no coordinates. All others, including an ensemble, are read at
+  // index 0.
   vtkStratusNetCDFLayout(
     const vtkStratusNetCDFFile& file, const vtkStratusNetCDFFile::Variable& variable, const std::function<int(int dimension)>& axis_of);
 

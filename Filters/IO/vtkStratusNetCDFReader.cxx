@@ -39,7 +39,7 @@ bool IsNamedBy(const vtkStratusNetCDFFile& file, const Variable& variable, const
   });
 }
 
-// What coordinates are made of, by standard_name, by the names that models use, and by what the variable is said to be.
+// Whether coordinates are computed from the variable, by standard_name, by models' names, and by its description.
 bool IsIngredient(const vtkStratusNetCDFFile& file, const Variable& variable)
 {
   static constexpr std::array<const char*, 18> standard = { "altitude", "height", "depth", "air_pressure", "sea_water_pressure",

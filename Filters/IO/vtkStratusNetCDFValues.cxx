@@ -286,8 +286,8 @@ template <class Stored> vtkStratusNetCDFValues::Missing<Stored> vtkStratusNetCDF
   return result;
 }
 
-// Returns whether floats tell all unpacked values apart: those of 8 and 16 bits, unless the offset takes their digits; and floats as they
-// are.
+// Returns whether floats represent all unpacked values exactly: true for values of 8 and 16 bits, unless the offset uses up their digits,
+// and for floats.
 template <class Stored> bool vtkStratusNetCDFValues::IsFloatEnough() const
 {
   if (std::is_floating_point<Stored>::value || sizeof(Stored) > 2) {

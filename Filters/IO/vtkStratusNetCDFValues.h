@@ -15,7 +15,7 @@
 // - A value is missing if it equals _FillValue (or, except for bytes, its default) or any number of missing_value.
 // - A value is missing if it is outside of valid_range, or without it below valid_min or above valid_max.
 // - Attributes are taken in the variable's type: a double 0.1 is a float variable's 0.1.
-// - _FillValue alone is no limit: the guide's rule that it is one is followed by no program that writes files.
+// - _FillValue by itself is no limit: the guide's rule that it is one is followed by no program that writes files.
 class vtkStratusNetCDFValues
 {
 public:
@@ -23,8 +23,8 @@ public:
   // Throws std::string, which says what is wrong, for a scale_factor or add_offset that is not one number.
   vtkStratusNetCDFValues(int file, int variable, int type, const std::string& name);
 
-  // Reads a block. Missing values are NaN. Returns floats if these tell all of the variable's values apart, else doubles. Sets `status` to
-  // that of libnetcdf; unless it is NC_NOERR, nothing is returned.
+  // Reads a block. Missing values are NaN. Returns floats if floats represent all of the variable's values exactly, otherwise doubles. Sets
+  // `status` to libnetcdf's status; unless it is NC_NOERR, nothing is returned.
   vtkSmartPointer<vtkDataArray> Read(const std::vector<size_t>& start, const std::vector<size_t>& count, int& status) const;
 
   // Returns "; ..." for each attribute that is ignored because it is text, or a limit that the packed type does not hold. "" for none.

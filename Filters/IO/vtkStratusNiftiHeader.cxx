@@ -170,7 +170,7 @@ void Header::SetPlaceByQuaternion(std::array<vtkStratusImageAxis, 3>& axes, cons
   }
 }
 
-// By the sform, else by the qform, else by spacings alone (methods 3, 2 and 1 of the standard).
+// By the sform, otherwise by the qform, otherwise by spacings only (methods 3, 2 and 1 of the standard).
 void Header::SetPlace(std::array<vtkStratusImageAxis, 3>& axes)
 {
   double spacing[3];

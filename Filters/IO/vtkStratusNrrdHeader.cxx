@@ -383,7 +383,7 @@ void Header::SetSpace(std::vector<vtkStratusImageAxis>& axes, const std::vector<
   }
 }
 
-// Axes along x, y and z. Where the first sample lies follows from the axis' ends, if the file tells them.
+// Axes along x, y and z. The first sample's position follows from the axis' ends, if the file has them.
 void Header::SetSpacings(std::vector<vtkStratusImageAxis>& axes)
 {
   const std::vector<double> none(this->Dimension, Unknown);
@@ -397,7 +397,7 @@ void Header::SetSpacings(std::vector<vtkStratusImageAxis>& axes)
   size_t along = 0;
   for (size_t i = 0; i < this->Dimension; ++i) {
     const std::string center = vtkStratusLowerCase(centers[i]);
-    const bool node = center == "node"; // else samples lie in the middles of cells, as Teem has it where nothing is told
+    const bool node = center == "node"; // otherwise samples are in the middles of cells, Teem's default
     if (!node && center != "cell" && center != "???" && center != "none") {
       this->Wrong("centerings", "must have node, cell, ??? or none");
     }

@@ -75,7 +75,7 @@ public:
     std::vector<vtkStratusCellBox> boxes;
     const auto& tree = this->Source.constTree();
     auto tile = tree.cbeginValueOn();
-    tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1); // tiles alone: leaves come below
+    tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1); // only tiles: leaves follow below
     for (; tile; ++tile) {
       openvdb::CoordBBox place;
       tile.getBoundingBox(place);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What readers throw within the module, and tell as VTK's error. Private to the module.
+// Exception of readers within the module, which they report as VTK's error. Private to the module.
 #ifndef vtkStratusReadError_h
 #define vtkStratusReadError_h
 
 #include <string>
 
-// What is wrong with a file, as a sentence that begins with the file's name.
+// The fault of a file, as a sentence that begins with the file's name.
 struct vtkStratusReadError {
   std::string Text;
 };

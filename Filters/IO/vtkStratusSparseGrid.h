@@ -45,8 +45,8 @@ constexpr int vtkStratusTypeOf(uint8_t)
   return VTK_UNSIGNED_CHAR;
 }
 
-// The part of a grid that becomes an image: values of voxels low to high, ends included, x fastest, in memory that holds zeros. What is
-// written is cut at the box's border. A value that the memory has already is not written, so that pages of zeros stay untouched.
+// The part of a grid that becomes an image: values of voxels low to high, ends included, x fastest, in memory initialized to zeros. Writes
+// are clipped to the box. A value that the memory has already is not written, so that pages of zeros stay untouched.
 template <class T> class vtkStratusDenseBox
 {
 public:
@@ -57,7 +57,7 @@ public:
     std::copy(high, high + 3, this->High);
   }
 
-  // Whether none of the cube's voxels lies in the box.
+  // Whether none of the cube's voxels is inside the box.
   bool Misses(const int64_t first[3], int64_t size) const
   {
     bool misses = false;
@@ -131,7 +131,7 @@ inline vtkStratusCellBox vtkStratusCellsAt(const int64_t first[3], int64_t size)
   return box;
 }
 
-// What a grid is, and its values where they are asked for. All members throw vtkStratusReadError.
+// A grid's description, and its values on request. All members throw vtkStratusReadError.
 class vtkStratusSparseGrid
 {
 public:
@@ -140,7 +140,7 @@ public:
   // Writes all voxels of the box, active and inactive ones, into memory that holds zeros: values of Type, Components a voxel.
   virtual void Write(void* values, const int64_t low[3], const int64_t high[3]) const = 0;
 
-  // Lists the cells that an active voxel is a corner of: those of each leaf that has one, and those of each active tile.
+  // Lists the cells with an active voxel at a corner: the cells of each leaf that has one, and the cells of each active tile.
   virtual std::vector<vtkStratusCellBox> ListActive() const = 0;
 
   int Type = VTK_FLOAT; // of VTK's numbers

@@ -139,7 +139,7 @@ int vtkStratusTetGenReadPieces(
 {
   const char* things = corners == 3 ? "faces" : "edges";
   const int middles = corners == 3 ? 3 : 1;
-  const int owners = corners == 3 ? 2 : 1; // tetrahedra beside the face or edge, where TetGen was asked for them
+  const int owners = corners == 3 ? 2 : 1; // tetrahedra next to the face or edge, if TetGen was run with that option
   input.NeedLine("headers", 0, 1);
   const vtkIdType count = input.GetCount(corners == 3 ? "the number of faces" : "the number of edges", corners + 1);
   const bool marked = OptionalInteger(input, "the flag of markers", 0, 1, 0) == 1;

@@ -42,8 +42,8 @@ VTK_STRATUS_PRIVATE void vtkStratusTetGenReadElements(
 // Reads the neighbour opposite each corner, -1 where there is none.
 VTK_STRATUS_PRIVATE vtkSmartPointer<vtkIdTypeArray> vtkStratusTetGenReadNeighbors(
   vtkStratusTetGenInput& input, vtkIdType first, vtkIdType elements);
-// `corners`: 3 for .face, 2 for .edge. `second_order`: 1 if the file holds the midpoints of edges, 0 if not; -1 if unknown, when the number
-// of columns tells. Returns the value found.
+// `corners`: 3 for .face, 2 for .edge. `second_order`: 1 if the file holds the midpoints of edges, 0 if not; -1 if unknown: the number of
+// columns then decides. Returns the value found.
 VTK_STRATUS_PRIVATE int vtkStratusTetGenReadPieces(
   vtkStratusTetGenInput& input, const vtkStratusTetGenNodes& nodes, int corners, int second_order, vtkStratusTetGenPieces& pieces);
 

@@ -140,7 +140,7 @@ bool vtkStratusUgridLayers::FindSigma()
   return true;
 }
 
-// Returns whether a variable tells heights, depths or pressures along one dimension, which is neither time nor the mesh's.
+// Returns whether a variable holds heights, depths or pressures along one dimension, which is neither time nor the mesh's.
 bool vtkStratusUgridLayers::IsLevels(const Variable& one) const
 {
   const std::string name = this->File.Text(one, "standard_name");
@@ -335,8 +335,8 @@ std::vector<double> vtkStratusUgridLayers::Bottom(size_t step, const std::vector
   return bottom;
 }
 
-// The levels of the borders at a node, from the bottom up. Between centres they are in the middle. The outermost borders are those of
-// sigma, or as far from the outermost centre as the next border, but not beyond height 0 if all centres are on one side of it.
+// The levels of the borders at a node, from the bottom up. Between centres they are in the middle. The outermost borders are sigma's, or as
+// far from the outermost centre as the next border, but not beyond height 0 if all centres are on one side of it.
 std::vector<double> vtkStratusUgridLayers::BordersOf(const vtkStratusUgridValues& levels, size_t node) const
 {
   if (!this->Fixed.empty()) {
@@ -373,7 +373,7 @@ std::vector<double> vtkStratusUgridLayers::BordersOf(const vtkStratusUgridValues
   return borders;
 }
 
-// Heights that are missing below the lowest layer of a node are those of the lowest border that has one.
+// Missing heights below the lowest layer of a node are set to the lowest border that has a height.
 void vtkStratusUgridLayers::ReadHeights(size_t step, std::vector<double>& z) const
 {
   const vtkStratusUgridValues values = this->Mesh.Read(*this->Source, step);

@@ -12,7 +12,7 @@
 
 namespace {
 constexpr double EarthRadius = 6371000.0; // metres
-constexpr size_t MostCorners = 64;        // of a face; a shorter dimension of a connectivity is that of corners
+constexpr size_t MostCorners = 64;        // of a face; a shorter dimension of a connectivity counts corners
 } // namespace
 
 const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindTopology(const vtkStratusNetCDFFile& file)
@@ -89,7 +89,7 @@ void vtkStratusUgridMesh::ReadNodes(const Variable& x, const Variable& y)
   this->Description += "nodes at '" + x.Name + "' and '" + y.Name + "'";
 }
 
-// Fills at the end of a face are left out. `first` is the number of the first node where the file does not tell it.
+// Fill values at the end of a face are left out. `first` is the number of the first node if the file has no start_index.
 void vtkStratusUgridMesh::ReadFaces(const Variable& connectivity, int first)
 {
   if (connectivity.Dimensions.size() != 2) {

@@ -54,8 +54,8 @@ public:
   bool IsCoordinate(const Variable& variable) const { return variable.Name == this->XName || variable.Name == this->YName; }
   bool IsOnNodes(const Variable& variable) const { return this->Has(variable, this->NodeDimension); }
   bool IsOnFaces(const Variable& variable) const { return this->Has(variable, this->FaceDimension); }
-  // The one dimension besides time, nodes and faces, and those of length 1 or selected: -1 if there is none, -2 where there are several.
-  // Of several, the one that SetLayers() names.
+  // The one dimension besides time, nodes, faces and dimensions that are selected or of length 1: -1 if there is none, -2 if there are
+  // several. Of several, the one that SetLayers() names.
   int FindLayers(const Variable& variable) const;
   // dimensions: of layers and of their borders, -1: unknown. Another one of `count` or `count` + 1 values may take their place.
   void SetLayers(const std::array<int, 2>& dimensions, size_t count);

@@ -107,7 +107,7 @@ private:
     return converter != nullptr;
   }
 
-  // UDUNITS converts plain numbers to angles, too, but keeps them apart in what units are made of.
+  // UDUNITS converts plain numbers to angles, too, but distinguishes them in the parts of a unit.
   static bool IsAngle(ut_unit* unit)
   {
     char text[256];

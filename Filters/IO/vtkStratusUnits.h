@@ -7,7 +7,8 @@
 
 enum class vtkStratusQuantity { None, Length, Angle, Pressure, Temperature };
 
-// What a unit measures, and how a value becomes m, degrees, Pa or K. A geopotential is a length: it is divided by standard gravity.
+// The quantity of a unit, and the conversion of a value to m, degrees, Pa or K. A geopotential is a length: it is divided by standard
+// gravity.
 struct vtkStratusUnit {
   vtkStratusQuantity Quantity = vtkStratusQuantity::None;
   double Scale = 1.0, Offset = 0.0;

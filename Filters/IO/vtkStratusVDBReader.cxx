@@ -21,7 +21,7 @@
 vtkStandardNewMacro(vtkStratusVDBReader);
 
 namespace {
-constexpr double Orthogonal = 1e-6; // the most that the cosine of an angle between two axes may be: what a map of floats makes of a turn
+constexpr double Orthogonal = 1e-6; // largest cosine of the angle between two axes: the rounding error of a rotation in floats
 
 std::string TellBytes(double bytes)
 {

@@ -33,7 +33,7 @@ numpy_support, core, data_model = (of_package(_package, name) for name in ("util
 pipeline, drawing = (of_package(_package, name) for name in ("vtkCommonExecutionModel", "vtkRenderingCore"))
 VTKPythonAlgorithmBase = of_package(_package, "util.vtkAlgorithm").VTKPythonAlgorithmBase
 
-# pyvista from 0.48 on has components, and tells them that their plotter closes.
+# From pyvista 0.48 on, a plotter notifies its components when it closes.
 _COMPONENTS = hasattr(pyvista, "register_plotter_component")
 _BLENDINGS = ("composite", "maximum", "minimum", "average", "additive", "isosurface", "slice")
 _MAPPERS = ("fixed_point", "gpu", "open_gl", "smart", "ugrid")
@@ -138,7 +138,7 @@ class _Layer:
     def of(cls, plotter):
         """The plotter's layer for its active renderer."""
         layers = plotter.__dict__.setdefault("_stratus_layers", [])
-        getattr(plotter, "stratus", None)  # from now on, pyvista's plotter tells this component when it closes
+        getattr(plotter, "stratus", None)  # from now on, pyvista's plotter notifies this component when it closes
         for layer in layers:
             if layer.renderer is plotter.renderer:
                 return layer
@@ -189,7 +189,7 @@ class _Layer:
             return None
         try:
             rendering = render_several([(volume.drawn, volume.asked()) for volume in shown], size=size, camera=view, opaque_depth=opaque)
-        except (Unsupported, ValueError, TypeError):  # what is wrong with a volume is told as it is drawn by itself
+        except (Unsupported, ValueError, TypeError):  # a volume's fault is reported when it is drawn by itself
             return None
         for volume, counters in zip(shown, rendering.counters["items"]):
             volume.counters = counters
@@ -449,7 +449,7 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
                 for n, block in enumerate(volume) if block is not None]
     if show_scalar_bar is None:
         show_scalar_bar = plotter.theme.show_scalar_bar or bool(scalar_bar_args)
-    _matrix(user_matrix)  # what is none is refused before anything changes
+    _matrix(user_matrix)  # refuses an invalid matrix before anything changes
     place, title = dict(device=device, threads=threads), None
     if isinstance(volume, (Volume, Tetrahedra)):
         drawn, values = volume, None
@@ -457,7 +457,7 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
         spacing = None if resolution is None else numbers(resolution, 3, "resolution")
         drawn, values = Volume(volume, axes="xyz", spacing=spacing, **place), volume
     else:
-        if isinstance(volume, numpy.ndarray):  # whose scalars are told apart from it
+        if isinstance(volume, numpy.ndarray):  # its scalars are distinguished from it
             volume = pyvista.wrap(volume)
             volume.spacing = (1, 1, 1) if resolution is None else numbers(resolution, 3, "resolution")
         drawn, title, values = _grid(volume, scalars, preference, place)
