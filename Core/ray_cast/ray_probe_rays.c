@@ -60,7 +60,8 @@ static double depth_of(const double seen[4])
   return -log1p(-seen[3]);
 }
 
-/* Adds the variation on the way to x, and the step at x, to `sum`. last: the appearance where the way begins; receives that at x. */
+/* Add the variation between the last place and x, and the step at x, to `sum`. last: the appearance at the last place; receives the
+ * appearance at x. */
 static void pass(const stratus_transfer* transfer, double voxel, double x, double last[4], variation* v, double* sum)
 {
   double before[4], at[4];
@@ -100,7 +101,7 @@ static void measure_variation(const stratus_transfer* transfer, double voxel, do
         ++color;
       }
     }
-    if (border > passed) { /* a point may lie at the very border */
+    if (border > passed) { /* a point may be at the very border */
       pass(transfer, voxel, border, last, v, &sum);
       passed = border;
     }
@@ -166,7 +167,7 @@ static int64_t rows_of(const stratus_occupancy* occupancy)
   return (occupancy->hi[1] - occupancy->lo[1]) * (occupancy->hi[2] - occupancy->lo[2]);
 }
 
-/* Adds a medium's share of what a block can show: changes of the function, and the optical depth at its least value. */
+/* Add a medium's share of a block's possible contribution: changes of the function, and the optical depth at its least value. */
 static void add_medium(const variation* v, const stratus_value_range* r, int64_t b, double* changes, double* depth)
 {
   if (r->lo[b] <= r->hi[b]) {
@@ -281,7 +282,7 @@ static void measure_chords(const stratus_ray_grid* grid, const stratus_probe_cla
     const double at = p[axis] + begin * d[axis];
     cell[axis] = at > 0.0 ? (int64_t)at : 0;
     cell[axis] = cell[axis] < k->blocks[axis] ? cell[axis] : k->blocks[axis] - 1;
-    if (grid->table) { /* the block that the ray begins in lies between the border and the block that it goes through, or that one's */
+    if (grid->table) { /* the block that the ray begins in is between the border and the block that it goes through, or is that block */
       for (cell[axis] = home[axis]; cell[axis] > 0 && block_begin(grid, k, axis, cell[axis]) > at;) {
         --cell[axis];
       }
@@ -312,8 +313,8 @@ static void measure_chords(const stratus_ray_grid* grid, const stratus_probe_cla
   }
 }
 
-/* Makes the camera of patch `number`, which looks at a point of the world. Its plane lies before the volume at a distance of its own, so
- * that the samples of different patches lie differently. */
+/* Make the camera of patch `number`, which looks at a point of the world. Its plane is before the volume at a distance of its own, so that
+ * different patches have different sample places. */
 static void aim(const double point[3], double reach, double voxel, int number, stratus_camera* camera)
 {
   const double golden = 2.399963229728653; /* directions on a spiral over the sphere, an equal area for each */

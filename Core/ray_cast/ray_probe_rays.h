@@ -28,10 +28,10 @@ typedef struct stratus_probe_classes {
   double deepest;                      /* the same of all values of the volume */
 } stratus_probe_classes;
 
-/* Makes patches through occupied blocks, in directions spread over the sphere. Blocks are drawn by classes of how much the transfer
+/* Make patches through occupied blocks, in directions spread over the sphere. Blocks are drawn by classes of how much the transfer
  * functions change over their values, so that a small rough part of a large smooth volume is met, too. A patch weighs the inverse of the
- * density of rays where it lies, so that weighted sums over the rays stand for sums over pictures. The blocks are those of 4^3 voxels
- * whatever size the user set, so that a structure decides nothing. *count: 0 if no block is occupied, and then there are no classes. */
+ * density of rays at its place, so that weighted sums over the rays represent sums over images. The blocks are 4^3 voxels whatever size the
+ * user set, so that a structure decides nothing. *count: 0 if no block is occupied, and then there are no classes. */
 stratus_status stratus_ray_probe_rays(
   stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count, stratus_probe_classes* classes);
 

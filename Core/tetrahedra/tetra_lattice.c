@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Converts lattices of hexahedra to the form that rays read. Rays find a cell's neighbours by the numbers of its points
- * (tetra_lattice_next() in kernels/tetrahedra/tetra_march.h), so that of cells only a bit for each hexahedron is kept, whether it shows. A
+ * (tetra_lattice_next() in kernels/tetrahedra/tetra_march.h), so that only one bit is kept for each hexahedron: whether it shows. A
  * hexahedron is named by its first corner; the bits of points that are nobody's first corner stay 0, and so end the lattice on all sides.
- * Several lattices have the numbers of their points one after the other. A ray that leaves one by its border enters the next as it enters
- * the mesh: a face of both is passed by the same rays, as its points are the same floats. */
+ * The points of several lattices are numbered one lattice after the other. A ray that leaves one lattice by its border enters the next as
+ * it enters the mesh: the same rays pass a face of both, because its points are the same floats. */
 #include "tetra_lattice.h"
 
 #include <string.h>
 
-#define POINTS_MOST (INT32_MAX / TETRA_CELL) /* cells of rays are TETRA_CELL times a point's number, as are those of lists */
+#define POINTS_MOST (INT32_MAX / TETRA_CELL) /* cells of rays are TETRA_CELL times a point's number, as are cells of lists */
 #define WORD 32                              /* bits of a word */
 
 /* A lattice, its numbers counted from its own first point. */
@@ -64,7 +64,7 @@ static stratus_status number_points(stratus_tetra_mesh* tetra, const stratus_mes
   return STRATUS_OK;
 }
 
-/* A point's place in the lattice; a hexahedron is that of its first corner. */
+/* A point's place in the lattice; a hexahedron has the place of its first corner. */
 typedef struct lattice_place {
   int64_t point;
   int32_t i, j, k;
@@ -123,7 +123,7 @@ static bool shows(const lattice_build* b, int64_t first, int64_t cell, float ran
   return stratus_lattice_shows(b->mesh, b->corner, first, cell);
 }
 
-/* Fetches a value for each point. Those of cells stand at their first corners. */
+/* Fetch a value for each point. Values of cells are stored at their first corners. */
 static void fetch_values(const lattice_build* b, double bias)
 {
   const stratus_mesh* mesh = b->mesh;
@@ -137,7 +137,7 @@ static void fetch_values(const lattice_build* b, double bias)
   }
 }
 
-/* What lattices show. */
+/* The hexahedra of lattices that show, and their values' range. */
 typedef struct lattice_counts {
   int64_t shown, hidden, changed; /* hexahedra; words of bits that differ from those before */
   float low, high;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What one frame tells every ray through tetrahedra: scalars of four bytes only, the same bytes on host and device.
+ * The arguments of one frame that every ray through tetrahedra reads: scalars of four bytes only, the same bytes on host and device.
  *
- * A point lies at eye + a right + b up + c forward. A ray has coordinates of its own, x = a - u w and y = b - v w with w = c (parallel: w
- * = 1), in which it is the line x = y = 0. They are a shear of space, so that points behind the eye are like all others. z is c measured
- * from the mesh's middle and scaled to about 1; in perspective a, b and w are scaled alike. A parallel camera's right and up may lean
- * along forward: that part is taken out of them, and added to where rays begin and end. */
+ * A point is at eye + a right + b up + c forward. A ray has coordinates of its own, x = a - u w and y = b - v w with w = c (parallel: w =
+ * 1), in which it is the line x = y = 0. They are a shear of space, so that points behind the eye are like all others. z is c measured from
+ * the mesh's middle and scaled to about 1; in perspective a, b and w have the same scale. A parallel camera's right and up may lean along
+ * forward: that part is removed from them, and added to where rays begin and end. */
 #ifndef STRATUS_TETRA_ARGUMENTS_H
 #define STRATUS_TETRA_ARGUMENTS_H
 
@@ -25,7 +25,7 @@
  * rows of pixels that it may cover (first | last << 16); 1 if those are not known. */
 #define TETRA_CELL 8
 #define TETRA_FACE 8
-/* What a ray makes of its cells. */
+/* How a ray combines its cells. */
 #define TETRA_LIGHT 0    /* light behind light */
 #define TETRA_EXTREMES 1 /* the largest or smallest value */
 #define TETRA_ADD 2      /* the mean or the sum of values */
@@ -61,10 +61,10 @@ typedef struct stratus_tetra_arguments {
   float per_z, per_frame; /* world lengths along `forward` of a unit of z, and of the middle's c */
   int columns;            /* of tiles */
   int cell_values;
-  int lattice; /* 1: cells are those of a lattice, whose neighbours follow from the names of their points */
+  int lattice; /* 1: cells of a lattice, whose neighbours follow from the names of their points */
   int mode;
   float sign; /* extremes: 1, or -1 for the smallest value */
-  float grey; /* sums: what the sum is multiplied by; 0: it is divided by the length over which values count */
+  float grey; /* sums: factor of the sum; 0: it is divided by the length over which values count */
   int contour_count;
   float contour[TETRA_CONTOURS][5]; /* sorted by value: value, colour times opacity, opacity */
   int plane_count;
@@ -76,7 +76,8 @@ typedef struct stratus_tetra_arguments {
   float bend[2]; /* by how much light changes at most where a normal turns by an angle, and how much it bends by the angle's square */
   int thins;     /* bit c: component c has a gradient opacity; of one component bit 0 */
   float factor_scale[4], factor_last; /* from gradients to steps of each component's gradient opacity, and the last step of all */
-  float factor_way;                   /* > 0: gradient opacities multiply the opacity of a way of this world length; 0: the optical depth */
+  /* > 0: gradient opacities multiply the opacity of a segment of this world length; 0: the optical depth */
+  float factor_way;
 } stratus_tetra_arguments;
 
 #endif

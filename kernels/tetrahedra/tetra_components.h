@@ -24,17 +24,17 @@ typedef struct stratus_tetra_mixture {
   vfloat length;                          /* in the world */
 } stratus_tetra_mixture;
 
-/* What a component makes of a way. */
+/* A component's contribution on a path. */
 typedef struct stratus_tetra_medium {
   vfloat color[3], depth; /* the mean colour, and the optical depth */
   vfloat tau;             /* the mean of the sums an entry, 0 where nothing shows */
-  vfloat middle;          /* of what shows, as a part of the way, where the component's gradient counts */
-  vmask opaque;           /* the way meets an entry of opacity 1, and `middle` is where */
+  vfloat middle;          /* middle of the optical depth, as a fraction of the path, where the component's gradient counts */
+  vmask opaque;           /* the path meets an entry of opacity 1, and `middle` is where */
 } stratus_tetra_medium;
 
 INLINE int component_has_gradient(CONSTANT stratus_tetra_arguments* a, int c) { return (a->light.on | a->thins) >> c & 1; }
 
-/* What component c makes of a way of `length` between two places of its table, without its gradient. */
+/* Compute component c's contribution on a path of `length` between two places of its table, without its gradient. */
 INLINE void component_mean(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* all, int c, vfloat from, vfloat to, vfloat length,
   vmask mask, stratus_tetra_medium* medium)
 {
@@ -102,7 +102,7 @@ INLINE void light_component(CONSTANT stratus_tetra_arguments* a, const stratus_t
   if (a->thins >> c & 1) {
     const vfloat thinned = medium->depth * lit.factor;
     vfloat opaque = v_select(v_lt(zero, lit.factor), medium->depth, zero);
-    if (a->factor_way > 0.0f) { /* what an opaque way has become over the rest of the piece */
+    if (a->factor_way > 0.0f) { /* optical depth of an opaque path over the rest of the piece */
       const vfloat rest = (one - medium->middle) * part * m->length * v_set(OPAQUE_WAY * a->media.weight[c] / a->factor_way);
       opaque = v_select(v_lt(lit.factor, v_set(0.98f)), v_min(lit.factor * rest, v_set(OPAQUE_DEPTH)), medium->depth);
     }
@@ -110,8 +110,8 @@ INLINE void light_component(CONSTANT stratus_tetra_arguments* a, const stratus_t
   }
 }
 
-/* What all components make of the part at..at+part of a stretch, between the places `from` and `to` of their tables: the light that it
- * emits where nothing hides it, and its optical depth. own: the optical depths of components, without gradient opacity. */
+/* Mix all components over the part at..at+part of a stretch, between the places `from` and `to` of their tables: glow, the light that it
+ * emits if nothing hides it, and its optical depth. own: the optical depths of components, without gradient opacity. */
 INLINE void mix_components(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, const vfloat from[TETRA_COMPONENTS],
   const vfloat to[TETRA_COMPONENTS], vfloat at, vfloat part, vmask mask, vfloat glow[3], vfloat* depth, vfloat own[TETRA_COMPONENTS])
 {
@@ -148,8 +148,8 @@ INLINE void mix_components(CONSTANT stratus_tetra_arguments* a, const stratus_te
   }
 }
 
-/* Where a product or a share of components is mixed of their means, the error falls with the square of the number of pieces: by three
- * quarters from a whole stretch, `glow` and `depth`, to two halves. Returns that square, where the halves' difference asks for it. */
+/* If a product or a share of components is mixed from their means, the error falls with the square of the number of pieces: by three
+ * quarters from a whole stretch, `glow` and `depth`, to two halves. Returns that square, if the halves' difference requires it. */
 INLINE vfloat mixing_pieces(
   CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, vmask mask, const vfloat glow[3], vfloat depth)
 {

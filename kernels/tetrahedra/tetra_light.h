@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Stretches that are lit and thinned by the field's gradient, that of each of several components or of one, the variant TETRA_LIT. Between
- * the two faces of a cell the gradient is interpolated as the field is. A stretch is cut into pieces, each of which is lit at the middle of
- * its optical depth. */
+ * Stretches that are lit, and whose opacity is multiplied, by the field's gradient: of each of several components, or of one. This is the
+ * variant TETRA_LIT. Between the two faces of a cell the gradient is interpolated as the field is. A stretch is cut into pieces, each of
+ * which is lit at the middle of its optical depth. */
 #ifndef STRATUS_TETRA_LIGHT_H
 #define STRATUS_TETRA_LIGHT_H
 
@@ -9,12 +9,12 @@
 #include "tetra_pixel.h"
 #include "tetra_shade.h"
 
-/* The fewest pieces, squared, of a stretch whose opacity over a length is thinned: what a piece lets pass is no linear function of its
- * optical depth. */
+/* The fewest pieces, squared, of a stretch on which gradient opacity multiplies the opacity of a length: a piece's transparency is then not
+ * a linear function of its optical depth. */
 #define TETRA_PIECES_THINNED 256.0f
 /* The same of one that meets entries of opacity 1, which thin to none where the gradient opacity is 0. */
 #define TETRA_PIECES_OPAQUE 16.0f
-#define TETRA_MOMENTS 10 /* ints an entry before those of the moments, see stratus_tetra_sums() */
+#define TETRA_MOMENTS 10 /* ints for each entry before the moments' ints, see stratus_tetra_sums() */
 
 typedef struct stratus_tetra_stretch {
   vfloat us, uw, vs, vw;       /* of its ray */
@@ -62,8 +62,8 @@ INLINE void tetra_light_at(CONSTANT stratus_tetra_arguments* a, GLOBAL const flo
   }
 }
 
-/* How much component c's light changes over the stretch, for the number of its pieces. depth: its optical depth. Light that changes evenly
- * is met exactly by that at the middle of what shows, but for what hides itself, a part of the depth; light that bends is not. */
+/* How much component c's light changes over the stretch, for the number of its pieces. depth: its optical depth. If light changes evenly,
+ * the light at the middle of the optical depth is exact, except for the part of the depth that hides itself; if light bends, it is not. */
 INLINE vfloat tetra_light_pieces(
   CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, int c, const stratus_tetra_stretch* s, vfloat depth, vmask mask)
 {
@@ -100,8 +100,8 @@ INLINE vfloat tetra_light_pieces(
   return q;
 }
 
-/* The middle of the optical depth between two entries of a table of `entries` entries, as a part of the way between them. tau: the rise of
- * the sums of optical depth. */
+/* The middle of the optical depth between two entries of a table of `entries` entries, as a fraction of the distance between them. tau: the
+ * rise of the sums of optical depth. */
 INLINE vfloat tetra_middle_of(GLOBAL const int* sums, int entries, vint low, vint high, vfloat tau, vmask mask)
 {
   GLOBAL const int* moments = sums + TETRA_MOMENTS * entries;

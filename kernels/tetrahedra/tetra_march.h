@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Marches rays from cell to cell through their faces. A ray holds the three points of the face by which it entered a cell, in coordinates
- * of its own (tetra_arguments.h), and the name of the cell's fourth point. The fourth point tells by which face the ray leaves; that face
- * tells the next cell and its fourth point.
+ * of its own (tetra_arguments.h), and the name of the cell's fourth point. The fourth point decides by which face the ray leaves. That face
+ * gives the next cell and its fourth point.
  *
- * Whether a ray passes a face depends on the signs of its edges alone. Signs are exact, and the same seen from the cells on either side.
- * An edge of exactly zero gets the sign that it would have if all points were moved by (e, e^2) for a vanishing e. So a ray passes none or
- * two of the faces of a cell of any shape, and a way that begins at a border face ends at another. */
+ * Whether a ray passes a face depends only on the signs of its edges. Signs are exact, and the same seen from the cells on either side. An
+ * edge of exactly zero gets the sign that it would have if all points were moved by (e, e^2) for a vanishing e. So a ray passes none or two
+ * of the faces of a cell of any shape, and a path that begins at a border face ends at another. */
 #ifndef STRATUS_TETRA_MARCH_H
 #define STRATUS_TETRA_MARCH_H
 
@@ -20,8 +20,9 @@ typedef struct stratus_tetra_scene {
   GLOBAL const int* sums; /* stratus_tetra_sums(): running sums up to each entry's middle, then each entry's own, then the opaque entries */
   GLOBAL const float* cell_values; /* read only if the arguments' cell_values is set */
   GLOBAL const float*
-    gradients;                 /* of points, four floats each, a set for each component; as the next read by the variant TETRA_LIT alone */
-  GLOBAL const float* factors; /* the gradient opacities of components */
+    /* of points, four floats each, a set for each component; this and the next are read only by the variant TETRA_LIT */
+    gradients;
+  GLOBAL const float* factors;    /* the gradient opacities of components */
   GLOBAL const float* components; /* of points or cells, four floats each: places in the components' tables */
   GLOBAL const int* media;        /* their sums */
 } stratus_tetra_scene;
@@ -286,8 +287,8 @@ INLINE vmask tetra_may_show(CONSTANT stratus_tetra_arguments* a, const stratus_t
 }
 #endif
 
-/* Adds the light of a cell that was passed, cut to the part that is seen. Returns the lanes whose way has ended: those that are outside,
- * hidden by what lies in front, or beyond what is seen. */
+/* Add the light of a cell that was passed, cut to the visible part. Returns the lanes whose path has ended: they are outside, hidden by
+ * matter in front, or beyond the visible part. */
 INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, vmask live)
 {

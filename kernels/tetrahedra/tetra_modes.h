@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a ray makes of a stretch along which the field is linear where it gathers no light: sums of values, and surfaces. */
+ * Stretches along which the field is linear, on rays that gather no light: sums of values, and surfaces. */
 #ifndef STRATUS_TETRA_MODES_H
 #define STRATUS_TETRA_MODES_H
 
 #include "tetra_pixel.h"
 #include "tetra_shade.h"
-/* A device's kernel holds a file where it is included first: what other variants need, too, must stand above. */
+/* A device's kernel holds a file where it is included first: files that other variants need, too, must be included above. */
 #if TETRA_LIT
 #include "tetra_components.h"
 #else
 typedef int stratus_tetra_stretch; /* of no use */
 #endif
 
-/* Adds the mean of a stretch times its length: red of opacity times value, green of what counts. The sums of a place are of opacity times
- * value, of opacity, and of what counts. */
+/* Add the mean of a stretch times its length: red of opacity times value, green of the values that count. The sums of a place are of
+ * opacity times value, of opacity, and of the values that count. */
 INLINE void tetra_add(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
   const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
 {
@@ -38,8 +38,8 @@ INLINE void tetra_add(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sum
   }
 }
 
-/* Composites the surfaces that a stretch passes, in their order along it. A surface lies where the field passes its value upwards or
- * downwards, so that one on the border of two cells counts once. stretch: what lights it, read by the variant TETRA_LIT alone. */
+/* Composite the surfaces that a stretch passes, in their order along it. A surface is where the field passes its value upwards or
+ * downwards, so that one on the border of two cells counts once. stretch: its light, read only by the variant TETRA_LIT. */
 INLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_stretch* stretch, stratus_tetra_light* light,
   vmask mask, vfloat first, vfloat last, vfloat near, vfloat length)
 {

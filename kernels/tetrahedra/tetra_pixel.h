@@ -15,7 +15,7 @@ typedef struct stratus_tetra_picture {
   GLOBAL uint* samples;
 } stratus_tetra_picture;
 
-/* What a ray sees, from begin to end in z. World distance is offset + length z. */
+/* The visible part of a ray, from begin to end in z. World distance is offset + length z. */
 typedef struct stratus_tetra_sight {
   vfloat length, offset, begin, end;
 } stratus_tetra_sight;
@@ -46,7 +46,8 @@ INLINE void tetra_clip(CONSTANT stratus_tetra_arguments* a, vfloat us, vfloat uw
   }
 }
 
-/* What the rays of pixels x, y see. us, uw, vs, vw: their parts by column and by row. ends: read only if the arguments say has_ends. */
+/* Return the visible part of the rays of pixels x, y. us, uw, vs, vw: their parts by column and by row. ends: read only if the arguments
+ * say has_ends. */
 INLINE stratus_tetra_sight tetra_sight(
   CONSTANT stratus_tetra_arguments* a, GLOBAL const float* ends, vfloat us, vfloat uw, vfloat vs, vfloat vw, vint x, vint y, vmask mask)
 {

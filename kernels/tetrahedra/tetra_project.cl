@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The projection of tetrahedra on a device. Where STRATUS_WIDTH is 16 (a CPU) a work item does a tile of pixels in packets, as the host
- * does. Else (a GPU) a work item does one pixel, and a group does a square of them: each item finds the planes of one cell, and all pixels
+ * The projection of tetrahedra on a device. If STRATUS_WIDTH is 16 (a CPU), a work item does a tile of pixels in packets, as the host does.
+ * Otherwise (a GPU) a work item does one pixel, and a group does a square of them: each item finds the planes of one cell, and all pixels
  * of the group read these from local memory. Pixels whose pieces came out of order are listed, and tetra_project_again draws them. */
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
@@ -97,8 +97,8 @@ static void find_cell(
   }
 }
 
-/* Draws the cells that the group has found. pixel: the state of this item's. It alone is kept across barriers, and the rest of the tile
- * made anew: PoCL 3.1 mixes up the items' copies of so large a structure. */
+/* Draw the cells that the group has found. pixel: the state of this item's pixel. Only this state is kept across barriers, and the rest of
+ * the tile is made again: PoCL 3.1 mixes up the items' copies of so large a structure. */
 static void draw_found(const stratus_project_view* view, __constant stratus_tetra_arguments* a, int tile, int place,
   __local const group_cell* cells, uint count, tile_pixel* pixel)
 {

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What projection tells every tile, beside the arguments of a frame (tetra_arguments.h). The same bytes on host and device. */
+ * The arguments of projection that every tile reads, in addition to a frame's arguments (tetra_arguments.h). The same bytes on host and
+ * device. */
 #ifndef STRATUS_TETRA_PROJECT_ARGUMENTS_H
 #define STRATUS_TETRA_PROJECT_ARGUMENTS_H
 
-/* Pixels along a tile's edge. A tile's state fits a processor's innermost cache, and most cells lie in one tile. */
+/* Pixels along a tile's edge. A tile's state fits a processor's innermost cache, and most cells are in one tile. */
 #define PROJECT_TILE 32
 
 /* The pixels whose rays may meet a cell: columns x0..x1, rows y0..y1; none if x0 > x1. near: the cell's smallest z. */

@@ -107,7 +107,7 @@ INLINE void cross_product(const vfloat p[3], const vfloat q[3], vfloat out[3])
   }
 }
 
-/* Loads the points as the tile's first pixel sees them: x, y, z, value; those of points 1 to 3 are relative to point 0. */
+/* Load the points as the tile's first pixel sees them: x, y, z, value; points 1 to 3 are relative to point 0. */
 INLINE void see_cells(const project_tile* t, const int* cells, vfloat p[4][4], cell_planes* out, vfloat* nearest, vfloat* depth)
 {
   const stratus_project_view* v = t->view;

@@ -191,7 +191,7 @@ static void draw_cells(project_tile* t, GLOBAL const uint* cells, uint count)
   flush(t);
 }
 
-/* Draws the tile, and again those of its pixels whose pieces came out of order. */
+/* Draw the tile, and draw again its pixels whose pieces came out of order. */
 static void draw_tile(const stratus_project_view* view, CONSTANT stratus_tetra_arguments* arguments, int tile, stratus_project_found* found)
 {
   GLOBAL const uint* cells = view->bins + view->bin_begin[tile];

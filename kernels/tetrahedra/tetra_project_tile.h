@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a work item or thread draws of a tile under projection: all its pixels in packets, or one pixel where a packet is one ray. A piece
- * is the part of a pixel's ray inside a cell. Pieces are collected in a buffer, shaded one per lane, then composited one after another
- * behind what their pixels hold. A pixel depends on its cells and their order, not on the number of lanes. */
+ * The part of a tile that a work item or thread draws under projection: all its pixels in packets, or one pixel if a packet is one ray. A
+ * piece is the part of a pixel's ray inside a cell. Pieces are collected in a buffer, shaded one per lane, then composited one after
+ * another behind the earlier pieces of their pixels. A pixel depends on its cells and their order, not on the number of lanes. */
 #ifndef STRATUS_TETRA_PROJECT_TILE_H
 #define STRATUS_TETRA_PROJECT_TILE_H
 
@@ -9,7 +9,7 @@
 #include "tetra_pixel.h"
 #include "tetra_project_arguments.h"
 
-/* What is drawn together: pixels along its edge, and pieces in the buffer, few enough to stay in the innermost cache. */
+/* Sizes of the parts that are drawn together: pixels along an edge, and pieces in the buffer, few enough to stay in the innermost cache. */
 #if STRATUS_WIDTH == 1
 #define PROJECT_SIDE 1
 #define PIECES 1

@@ -12,7 +12,7 @@
 /* The most that a stretch's weight is, so that long stretches do not overflow. At this weight a stretch that shows is opaque in any case:
  * the least sum, 1, spread over 2^16 entries and 256 pieces, is an optical depth of 2^16. */
 #define OPAQUE_WEIGHT 0x1p40f
-/* What lies behind so little transparency changes no float. */
+/* Matter behind so little transparency changes no float. */
 #define OPAQUE_TRANSPARENCY 0x1p-24f
 
 /* The light that a ray has gathered. */
@@ -45,12 +45,13 @@ INLINE stratus_tetra_place tetra_place_select(vmask mask, const stratus_tetra_pl
   return place;
 }
 
-/* What light and gradient make of a place: a colour C of opacity A becomes C diffuse + A specular, and the optical depth is multiplied. */
+/* The effect of light and gradient at a place: a colour C of opacity A becomes C diffuse + A specular, and the optical depth is
+ * multiplied. */
 typedef struct stratus_tetra_lit {
   vfloat diffuse[3], specular[3], factor;
 } stratus_tetra_lit;
 
-/* Adds `scale` of a medium's colour and opacity to what a ray has gathered. */
+/* Add `scale` of a medium's colour and opacity to the light that a ray has gathered. */
 INLINE void tetra_gather(stratus_tetra_light* light, const stratus_tetra_lit* lit, vfloat scale, const vfloat color[4])
 {
   vfloat c[3] = { color[0], color[1], color[2] };
@@ -189,7 +190,7 @@ INLINE void tetra_end(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sum
 }
 
 /* The part of a stretch before its first opaque entry. Returns the lanes that meet one, *entry; *end: the place where the part before ends;
- * *part: its share of the stretch; *before: those of the lanes that have such a part. */
+ * *part: its share of the stretch; *before: the lanes among them that have such a part. */
 INLINE vmask tetra_before_opaque(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, vmask mask, const stratus_tetra_place* from,
   const stratus_tetra_place* to, vint* entry, stratus_tetra_place* end, vfloat* part, vmask* before)
 {
