@@ -61,8 +61,11 @@ def scenes(vtk, mappers):
     yield "masked", masked, look()
     yield "array", made("gpu", ScalarMode=3), look()
     yield "cells", made("cells", cells), look()
-    # Ours refuse light in maximum intensity, where VTK's leave it out; and know nothing of shaders.
-    yield "refused", made("gpu", BlendMode=1), look(Shade=1)
+    yield "lit-maximum", made("gpu", BlendMode=1), look(Shade=1) # both leave the light out
+    # Ours refuse isosurfaces of values taken as they are; and know nothing of shaders.
+    boxes = look(InterpolationType=0)
+    boxes.GetIsoSurfaceValues().SetValue(0, 200)
+    yield "refused", made("gpu", BlendMode=5), boxes
     yield "shader", made("gpu"), look()
 
 
@@ -148,7 +151,7 @@ for name in of_vtk:
     lit = (of_vtk[name].max(axis=1) > 20).mean()
     check(lit > 0.05, f"{name} shows: {lit}")
 check(str(changed["gpu-lit.class"]) == "vtkStratusFactoryVolumeMapper" and str(changed["smart.class"]) == "vtkSmartVolumeMapper", "classes")
-check(len(lines) == 2 and "shading" in lines[0] and "shaders of its own" in lines[1], f"one line for each refusal: {lines}")
+check(len(lines) == 2 and "nearest" in lines[0] and "shaders of its own" in lines[1], f"one line for each refusal: {lines}")
 
 # A library that is not there, and none of VTK at all.
 lonely = os.path.join(folder, "stratus", "factory")
