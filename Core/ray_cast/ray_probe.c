@@ -21,9 +21,9 @@
 #define LATTICE_RUNGS 25
 #define CELL_RUNGS 31
 #define ONE_VOXEL 8
-/* The finer setting that candidates are compared with. On a lattice it has steps of this rung at first; at least FINER_BY rungs lie between
- * it and the setting that is taken, or it is made finer by as many: beyond the finest setting of pictures, too. Of cells, its error is the
- * tolerance times CELL_SHARE. Rays end by that tolerance, too, those of candidates among them, so that sampling alone is compared. */
+/* The finer setting with which candidates are compared. On a lattice it has steps of this rung at first. At least FINER_BY rungs are
+ * between it and the chosen setting, or it is made finer by as many: beyond the finest setting of images, too. For cells, its error is the
+ * tolerance times CELL_SHARE. Rays end by that tolerance, too, also the candidates' rays, so that only sampling is compared. */
 #define LATTICE_FINE 14
 #define FINER_BY 6
 #define CELL_SHARE 0.125
@@ -59,7 +59,7 @@ typedef struct setting {
   int cells; /* local: the rung of cells in rough blocks */
 } setting;
 
-/* What one sampling rule has shown so far, at all its rungs. */
+/* The results of one sampling rule so far, at all its rungs. */
 typedef struct family {
   stratus_sampling sampling;
   int rungs;                /* 1 where the user has set the step */
@@ -85,7 +85,7 @@ typedef struct probe {
   uint64_t samples;     /* of all settings together */
 } probe;
 
-/* Sets what a setting stands for, with what the user has set in its place. */
+/* Fill `choice` from a setting, with the values that the user has set instead. */
 static void take(const probe* p, const setting* s, stratus_ray_choice* choice)
 {
   const stratus_ray_cast_options* options = p->options;
@@ -172,7 +172,7 @@ static stratus_status draw_patches(probe* p, const setting* s, double tolerance,
   stratus_ray_cast_arguments unused;
   stratus_image picture;
   bool empty;
-  TRY(begin_patch(&job, 0, &unused, &picture, &empty)); /* what fails for one patch, a step too short, fails for all */
+  TRY(begin_patch(&job, 0, &unused, &picture, &empty)); /* an error of one patch, a step too short, is an error of all */
   TRY(stratus_each_tile(caster->context, "sampling", p->count, draw_patch, &job, sums));
   p->samples += sums[1];
   return STRATUS_OK;
@@ -255,8 +255,8 @@ static stratus_status measure(probe* p, family* f, int rung)
   return STRATUS_OK;
 }
 
-/* What a voxel's length costs. It is reckoned, not measured: samples that were taken hang on the structure. Cells cost the same at every
- * rung, but for their pieces. */
+/* The cost of a voxel's length. It is computed, not measured, because measured samples depend on the structure. Cells cost the same at
+ * every rung, but for their pieces. */
 static double cost_of(const probe* p, const family* f, int rung)
 {
   const setting s = setting_of(f, rung);
@@ -289,12 +289,12 @@ static int coarsest_lattice(const probe* p, const family* f)
   return f->rungs == 1 || p->options->mode != STRATUS_MODE_COMPOSITE || !(rung > 0.0) ? 0 : rung < ONE_VOXEL ? (int)rung : ONE_VOXEL;
 }
 
-/* Finds the coarsest rung of a family that keeps `most`, by as many rungs at a time as the error asks for. Gives up once the next rung to
- * be measured would cost more than `dear`. *best: -1 if no rung was found. */
+/* Find the coarsest rung of a family that keeps `most`, moving by as many rungs at a time as the error suggests. Gives up once the next
+ * rung to be measured would cost more than `dear`. *best: -1 if no rung was found. */
 static stratus_status search(probe* p, family* f, int start, double most, double dear, int* best)
 {
   const bool cells = f->sampling == STRATUS_SAMPLING_CELLS;
-  int low = cells ? coarsest_cells(p, f) : coarsest_lattice(p, f), high = f->rungs - 1; /* the rung lies in low..high, if there is one */
+  int low = cells ? coarsest_cells(p, f) : coarsest_lattice(p, f), high = f->rungs - 1; /* the rung is in low..high, if there is one */
   int rung = start < low ? low : start < high ? start : high;
   *best = -1;
   while (low <= high) {
@@ -306,7 +306,7 @@ static stratus_status search(probe* p, family* f, int start, double most, double
       *best = rung;
       high = rung - 1;
       if (excess > -1.0 || settled) {
-        break; /* the next coarser rung would miss, or save nothing: the ways through cells are whole */
+        break; /* the next coarser rung would miss, or save nothing: paths through cells are whole */
       }
       rung -= (int)floor(-excess);
     } else {
@@ -439,7 +439,7 @@ static bool too_near(const probe* p, const family* f, int rung, const setting* f
   return (local || alike(f->sampling, fine->sampling)) && open && (local ? f->cells : rung) > fine->rung - FINER_BY;
 }
 
-/* The error of a setting, from its difference to the finer one: what that errs by itself is added. */
+/* The error of a setting: its difference to the finer setting, plus the finer setting's own error. */
 static double expected_of(const family* f, int rung, double error, const setting* fine)
 {
   if (f->sampling == STRATUS_SAMPLING_LOCAL || !alike(f->sampling, fine->sampling) || f->rungs == 1) {
