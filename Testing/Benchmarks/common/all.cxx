@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench all: runs every part of the bench scene by scene, each in a process of its own, so that one that crashes costs its scene
-// alone, and then writes the page. Ours and its peers share a process, as in the parts.
+// stratus-bench all: runs every part of the bench scene by scene, each in a separate process, so that a crash only costs its scene, and
+// then writes the page. Ours and its peers share a process, as in the parts.
 #include "bench.h"
 
 #include <algorithm>
@@ -150,7 +150,7 @@ std::string table_of(const options& o, const std::string& part)
   return o.folder + '/' + part + ".csv";
 }
 
-// Whether a whole scene of this machine and commit stands in the table.
+// Whether a whole scene of this machine and commit is in the table.
 bool is_done(const options& o, const unit& u)
 {
   const origin now = origin_of_this_run();

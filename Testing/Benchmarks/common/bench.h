@@ -159,7 +159,7 @@ struct table {
 origin origin_of_this_run(); // without scenes
 void write_origin(std::FILE* file, const origin& o);
 void read_origin(const std::string& line, std::vector<origin>& origins); // a row before the header
-// Replaces the rows of the scenes that this run measured, and keeps those of other scenes before them.
+// Replaces the rows of the scenes that this run measured, and keeps other scenes' rows before them.
 void replace_scenes(table& t, const std::vector<row>& rows);
 std::vector<std::string> split(const std::string& text); // at commas
 // Rows of single measurements, METRIC/0, METRIC/1 and so on, by which runs are compared.

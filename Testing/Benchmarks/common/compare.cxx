@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench compare: tells what a run does slower or less exactly than another.
+// stratus-bench compare: prints where a run is slower or less exact than another.
 #include "bench.h"
 
 #include <algorithm>

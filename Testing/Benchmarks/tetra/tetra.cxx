@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench tetra: compares pictures and visibility orders of tetrahedra with those of existing methods, in one process.
+// stratus-bench tetra: compares pictures and visibility orders of tetrahedra with existing methods, in one process.
 #include "tetra_bench.h"
 
 #include <vtkImageData.h>

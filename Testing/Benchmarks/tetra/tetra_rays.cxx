@@ -61,7 +61,7 @@ public:
   // Returns the coordinates along right, up and forward of a position relative to the eye.
   vector3 along(const vector3& p) const { return { dot(this->Rows[0], p), dot(this->Rows[1], p), dot(this->Rows[2], p) }; }
 
-  // Finds the pixels that the corners span. Returns false if the cell lies behind the eye or outside the window.
+  // Finds the pixels that the corners span. Returns false if the cell is behind the eye or outside the window.
   bool box_of(const vector3 (&corners)[4], double box[4]) const
   {
     const double nearest = this->Camera.near_k;

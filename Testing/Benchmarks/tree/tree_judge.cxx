@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares first hits with those of the plain walk in double precision.
+// Compares first hits with the plain walk's in double precision.
 #include "tree_methods.h"
 
 #include <algorithm>
