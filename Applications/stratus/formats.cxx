@@ -20,7 +20,6 @@
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
 #include <vtkCellData.h>
-#include <vtkCommand.h>
 #include <vtkCompositeDataSet.h>
 
 #include <vtkDataSetReader.h>
@@ -47,9 +46,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <set>
 #include <system_error>
 
 namespace {
@@ -82,35 +79,10 @@ made ensight(const std::string& path)
   return reader;
 }
 
-#ifdef STRATUS_NETCDF
-// Prints a reader's warnings, each once. Without it they would be taken for failures, as those of VTK's readers are.
-class warnings : public vtkCommand
-{
-public:
-  static warnings* New() { return new warnings; }
-  void Execute(vtkObject*, unsigned long, void* data) override
-  {
-    std::string text = data ? static_cast<const char*>(data) : "";
-    const size_t at = text.find("): "); // behind file, line and class
-    text = text.substr(at == std::string::npos ? 0 : at + 3);
-    text = text.substr(0, text.find_last_not_of('\n') + 1);
-    if (this->Said.insert(text).second) {
-      std::fprintf(stderr, "stratus: %s\n", text.c_str());
-    }
-  }
-
-private:
-  std::set<std::string> Said;
-};
-#endif
-
 made netcdf(const std::string& path)
 {
 #ifdef STRATUS_NETCDF
-  const made reader =
-    vtkStratusUgridReader::CanReadFile(path.c_str()) ? reader_for<vtkStratusUgridReader>(path) : reader_for<vtkStratusCFReader>(path);
-  reader->AddObserver(vtkCommand::WarningEvent, vtkSmartPointer<warnings>::New());
-  return reader;
+  return vtkStratusUgridReader::CanReadFile(path.c_str()) ? reader_for<vtkStratusUgridReader>(path) : reader_for<vtkStratusCFReader>(path);
 #else
   throw cli::failure(
     "cannot read '" + path + "': this program was built without libnetcdf (Debian: libnetcdf-dev), which reads netCDF files");
