@@ -68,8 +68,8 @@ public:
   //@{
   /**
    * Get the name of an axis of the output's coordinates, 0 to 2, and the unit of its numbers: "east" (from the meridian of longitude 0, on
-   * the sphere) and "m", "height" and "m", or the name and unit of the file's coordinate or dimension. "" where the file does not tell, and
-   * for another axis. After UpdateInformation().
+   * the sphere) and "m", "height" and "m", or the name and unit of the file's coordinate or dimension. The text is "" if the file has none,
+   * and for another axis. After UpdateInformation().
    */
   const char* GetNameOfAxis(int axis);
   const char* GetUnitsOfAxis(int axis);
