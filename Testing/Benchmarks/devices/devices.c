@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * stratus-bench-devices [PIXELS [FRAMES]]: pictures of scenes of record on the host and on each OpenCL device. Lines of CSV: milliseconds
- * of the first picture, kernels and structures included; of a frame (the median over FRAMES cameras of an orbit); where it was drawn, which
- * is the host if the device refused; and in the last frame, the pixels whose bits differ from the host's and the largest difference of a
- * channel. The build's cache of kernels is that of the environment, STRATUS_CACHE_DIR: an empty one measures the compiler, too. */
+ * of the first picture, kernels and structures included; of a frame (the median over FRAMES of the cameras of record); where it was drawn,
+ * which is the host if the device refused; and in the last frame, the pixels whose bits differ from the host's and the largest difference
+ * of a channel. The build's cache of kernels is that of the environment, STRATUS_CACHE_DIR: an empty one measures the compiler, too. */
 #define _POSIX_C_SOURCE 200809L
 #include "stratus/ray_cast.h"
 #include "stratus/scenes.h"
@@ -51,12 +51,6 @@ static int ascending(const void* a, const void* b)
   return (x > y) - (x < y);
 }
 
-/* Camera `frame` of an orbit of FRAMES through the cameras of record. */
-static void place_camera(stratus_context* context, const double bounds[6], int up_axis, int frame, stratus_camera* camera)
-{
-  check(context, stratus_scene_camera(context, bounds, up_axis, frame % 8, frame / 8 % 2, 1.0, camera));
-}
-
 /* A picture of a scene in one look: of a volume, or of a mesh. */
 typedef struct picture {
   stratus_context* context;
@@ -73,7 +67,7 @@ static double draw(picture* p, int frame)
 {
   const stratus_image image = { .width = size, .height = size, .rgba = rgba };
   stratus_camera camera;
-  place_camera(p->context, p->bounds, p->scene ? p->scene->up_axis : 2, frame, &camera);
+  check(p->context, stratus_scene_camera(p->context, p->bounds, p->scene ? p->scene->up_axis : 2, frame % 8, frame / 8 % 2, 1.0, &camera));
   const double start = now_ms();
   if (p->scene) {
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
