@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CF's grids: coordinates become the grid that they are, values lose packing and fills, and wrong files are told of.
+// CF's grids: coordinates become the grid type that they describe, values lose packing and fills, and wrong files are refused.
 #include "netcdf_testing.h"
 
 #include "vtkDataArray.h"
@@ -80,7 +80,7 @@ void test_stretched(const std::string& folder)
   check(r.reader->GetNumberOfVariables() == 1 && std::string(r.reader->GetNameOfVariable(0)) == "qc" &&
       std::string(r.reader->GetUnitsOfVariable(0)) == "g/kg" && std::string(r.reader->GetLongNameOfVariable(0)) == "cloud water" &&
       std::string(r.reader->GetNameOfVariable(1)).empty() && std::string(r.reader->GetTimeUnits()) == "hours since 2001-01-01",
-    "what the file tells of its variables");
+    "names, units and long names of variables");
 }
 
 void test_uniform(const std::string& folder)
@@ -97,7 +97,7 @@ void test_uniform(const std::string& folder)
   }
 }
 
-// Dimensions in another order, told by the coordinates' attributes; down is down, and 0 has no time.
+// Dimensions in another order: the coordinates' attributes name the axes. A depth becomes a negative height.
 void test_order(const std::string& folder)
 {
   netcdf_content c;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures as OpenEXR files: what OpenEXR's own library reads back is what went in, bit for bit, right side up; what cannot be written is
-// refused and leaves the file that was there. Argument: a folder to write to.
+// Pictures as OpenEXR files: OpenEXR's own library reads back the written values, bit for bit and right side up. A picture that cannot be
+// written is refused, and the file that was there stays. Argument: a folder to write to.
 #include "Testing/support/exr_reading.h"
 #include "mapper_testing.h"
 
@@ -175,7 +175,7 @@ size_t BytesInUse()
   return info.uordblks + info.hblkhd;
 }
 
-// The buffers of one picture are far larger than what is allowed for all.
+// One picture's buffers are far larger than the memory that all pictures together may leave in use.
 void KeepsNothing()
 {
   vtkSmartPointer<vtkImageData> image = MakeImage(512, 32);

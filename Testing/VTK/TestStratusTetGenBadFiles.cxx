@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TetGen's files that are wrong: each is told with its line, its value and what it must be, both outputs are empty, nothing crashes and
-// nothing is allocated for a lie; files cut short at every byte, and with bytes changed. Argument: a folder to write to.
+// Wrong TetGen files: each error names the line, the value and the allowed values. Both outputs are empty, nothing crashes, and no false
+// count makes the reader allocate. Files are cut short at every byte, and bytes are changed. Argument: a folder to write to.
 #include "tetgen_testing.h"
 
 #include "vtkStratusTetGenReader.h"
@@ -15,7 +15,7 @@ namespace {
 using Reader = vtkStratusTetGenReader;
 std::string Folder;
 
-// What a reader says and gives.
+// A reader's result: whether it read, its messages and its error code.
 struct Outcome {
   bool Read;
   std::string Text;
@@ -75,7 +75,7 @@ void Refused(const std::string& extension, const std::string& text, const std::v
   const Outcome outcome = Read("mesh" + extension);
   CHECK(!outcome.Read && outcome.Code == code, "%s was read or fails otherwise (%lu): '%s' %s", extension.c_str(), outcome.Code,
     text.c_str(), outcome.Text.c_str());
-  CHECK(outcome.Read || outcome.Text.find("mesh" + extension) != std::string::npos, "'%s' tells no file", outcome.Text.c_str());
+  CHECK(outcome.Read || outcome.Text.find("mesh" + extension) != std::string::npos, "'%s' names no file", outcome.Text.c_str());
   for (const std::string& word : words) {
     CHECK(outcome.Text.find(word) != std::string::npos, "'%s' says nothing of '%s'", outcome.Text.c_str(), word.c_str());
   }
@@ -176,7 +176,7 @@ void MissingFiles()
   WriteGood();
 }
 
-// Where the last number of a text begins. A file that is cut behind that lacks at most digits, which nothing can tell.
+// Returns where the last number of a text begins. A file that is cut behind this place lacks only digits, which no reader can notice.
 size_t LastNumber(const std::string& text)
 {
   return text.find_last_of(" \n", text.find_last_not_of(" \n")) + 1;
@@ -197,7 +197,7 @@ void CutFiles()
   }
 }
 
-// Any byte any other: read or refused; what is read holds no point that is not there.
+// Replaces any byte by any other: the reader reads or refuses, and a mesh that it reads refers only to points that exist.
 void ChangedFiles()
 {
   const std::string bytes("0123456789-+.e \n#\0\xff", 19);
@@ -215,7 +215,7 @@ void ChangedFiles()
       reader->SetFileName((Folder + "/mesh" + file.first).c_str());
       const Outcome outcome = ReadAgain(reader);
       ++(outcome.Read ? read : refused);
-      CHECK(outcome.Read || outcome.Text.find("mesh.") != std::string::npos, "'%s' tells no file", outcome.Text.c_str());
+      CHECK(outcome.Read || outcome.Text.find("mesh.") != std::string::npos, "'%s' names no file", outcome.Text.c_str());
       const vtkIdType points = reader->GetOutput()->GetNumberOfPoints();
       for (vtkCellArray* cells : { reader->GetOutput()->GetCells(), reader->GetSurface()->GetPolys(), reader->GetSurface()->GetLines() }) {
         vtkNew<vtkIdList> ids;
@@ -230,7 +230,7 @@ void ChangedFiles()
   CHECK(read > 100 && refused > 1000, "%d read, %d refused: the changes are too many or too few", read, refused);
 }
 
-// Stops whatever tells its progress.
+// Aborts every filter that reports progress.
 class Stopper : public vtkCommand
 {
 public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TetGen's files: what the program writes is read right, what we write it reads, and both come back the same bit for bit. Argument: a
-// folder to write to.
+// TetGen's files: the reader reads the program's files, the program reads the writer's files, and both round trips keep every bit.
+// Argument: a folder to write to.
 #include "tetgen_testing.h"
 
 #include "vtkStratusTetGenReader.h"
@@ -75,7 +75,7 @@ void CheckCube(Reader* reader, const char* what)
   CHECK(reader->GetSurface()->GetNumberOfLines() > 18, "%s: edges", what);
 }
 
-// Every middle of an edge lies where VTK says that it does.
+// Every midpoint of an edge is where vtkQuadraticTetra puts it.
 void CheckMiddles(vtkUnstructuredGrid* mesh)
 {
   vtkNew<vtkQuadraticTetra> shape;
@@ -108,7 +108,7 @@ void ReadsWhatTetGenWrites()
       }
     }
   }
-  // What names have in common, and single files of the mesh.
+  // The names' common part, and single files of the mesh.
   for (const char* name : { "cube.1", "cube.1.node", "cube.1.edge", "cube.1.neigh" }) {
     vtkNew<Reader> reader;
     ReadFile(reader, name);
@@ -239,7 +239,8 @@ void PartsOfComplexes()
   CHECK(writer->Write() == 0 && errors->Has("3 polygons and 2 holes"), "not refused: %s", errors->Text.c_str());
 }
 
-// More than a megabyte, so that lines lie across the borders of what is read at once; a line longer than that; odd ends of lines.
+// A file of more than a megabyte, so that lines cross the borders of the blocks that are read at once; a line longer than a block; odd ends
+// of lines.
 void LongFilesAndLines()
 {
   vtkNew<vtkUnstructuredGrid> mesh;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Surfaces filled by TetGen: volumes, holes, regions, limits, markers; what crashes TetGen or lets it run on becomes an error. Argument: a
-// folder to write to.
+// Surfaces filled by TetGen: volumes, holes, regions, limits, markers. Input that crashes TetGen or never lets it end becomes an error.
+// Argument: a folder to write to.
 #include "tetgen_testing.h"
 
 #include "vtkStratusTetGenFilter.h"
@@ -93,7 +93,7 @@ void Boxes()
     double a[3], b[3];
     filter->GetOutput()->GetPoint(point, a);
     box->GetPoint(static_cast<vtkIdType>(ids->GetComponent(point, 0)), b);
-    CHECK(std::equal(a, a + 3, b), "point %lld is not that of the input", static_cast<long long>(point));
+    CHECK(std::equal(a, a + 3, b), "point %lld differs from the input's", static_cast<long long>(point));
   }
   filter->SetMaximumVolume(0.01);
   Good(filter, 1.0, "small tetrahedra");
@@ -109,7 +109,7 @@ void Boxes()
   CHECK(few <= 8 + 5 && many > 100, "%lld points", static_cast<long long>(few));
 }
 
-// In a slab, whose corners alone make flat tetrahedra. It has no small angles, beside which TetGen promises nothing.
+// A slab, whose eight corners make flat tetrahedra. It has no small angles; next to small angles TetGen promises nothing.
 void Qualities()
 {
   const double slab[3] = { 1, 0.9, 0.1 };
@@ -164,7 +164,7 @@ void HolesAndRegions()
   const double right[3] = { 3, 1, 1 }, middle[3] = { 1, 0, 0 }, lower[3] = { 1.5, 0.25, 0.25 }, upper[3] = { 2.5, 0.75, 0.75 };
   vtkNew<vtkPolyData> rooms;
   AddBox(rooms, Zero, One, 1);
-  AddBox(rooms, middle, right, 1); // its points in one place with those of the wall
+  AddBox(rooms, middle, right, 1); // its points coincide with the wall's points
   vtkNew<vtkCellArray> without_twin;
   vtkNew<vtkIdList> ids;
   for (vtkIdType side = 0; side < 12; ++side) {

@@ -99,7 +99,7 @@ void FullFromByte(const std::string& name, bool surface_alone)
   std::filesystem::create_directories(Folder);
 }
 
-// What is written to goes through a link to a device that is always full, or into a folder that takes no files.
+// The output is a link to a device that is always full, or is in a folder that accepts no files.
 void NoPlace()
 {
   vtkNew<vtkStratusTetGenReader> reader;

@@ -22,7 +22,7 @@ namespace {
 
 using reader = variable_reader<vtkStratusVDBReader>;
 
-// Compares every value of the image with what `at` tells of the voxel; returns how many differ.
+// Compares every value of the image with `at`, the voxel's expected value; returns how many differ.
 int count_wrong(vtkDataSet* data, const std::function<double(int x, int y, int z, int component)>& at, double tolerance)
 {
   vtkImageData* image = vtkImageData::SafeDownCast(data);
@@ -88,7 +88,7 @@ template <class Grid, bool nano = false> void test_kind(const std::string& folde
   }
 }
 
-// What is packed into few bits differs by what the packing loses.
+// Values packed into few bits differ by at most the packing's error.
 template <class Build> void test_packed(const std::string& folder, const std::string& kind, double error)
 {
   const auto grid = vdb::make_grid<openvdb::FloatGrid>("density");
@@ -114,10 +114,10 @@ void test_half(const std::string& folder)
   check(count_wrong(
           data, [&](int x, int y, int z, int) { return grid->tree().getValue(openvdb::Coord(x, y, z)); }, 0.0) == 0,
     "small integers are exact in halves");
-  check(std::string(r.reader->GetDescription()).find("kept in halves") != std::string::npos, "halves are told of");
+  check(std::string(r.reader->GetDescription()).find("kept in halves") != std::string::npos, "the description names halves");
 }
 
-// Inner values of a level set are those of inactive tiles, which are no background.
+// Inner values of a level set are in inactive tiles, which are not background.
 void test_level_set(const std::string& folder)
 {
   const auto sphere = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(30.0F, openvdb::Vec3f(0), 1.0F);
@@ -135,7 +135,7 @@ void test_level_set(const std::string& folder)
   }
 }
 
-// Each voxel lies where the grid's map puts it, turned and mirrored.
+// Each voxel is where the grid's map puts it, turned and mirrored.
 void test_maps(const std::string& folder)
 {
   for (bool mirrored : { false, true }) {
@@ -227,7 +227,7 @@ void test_memory(const std::string& folder)
   check(
     std::string(wide.reader->GetDescription()).find("2 blocks of 8000 bytes (0.007629 MiB) in place of an image of 32865632800 bytes") !=
       std::string::npos,
-    std::string("nothing of blocks is told: ") + wide.reader->GetDescription());
+    std::string("the description lacks the blocks: ") + wide.reader->GetDescription());
   wide.reader->SetLayout(vtkStratusVDBReader::IMAGE_LAYOUT);
   wide.read();
   check(wide.errors->heard.find("'density' would take 32865632800 bytes") != std::string::npos &&
@@ -322,7 +322,7 @@ void test_blocks(const std::string& folder)
       file + ": " + std::to_string(twice) + " cells are in two blocks, " + std::to_string(bare) + " with an active corner are in none");
     std::printf(
       "%s: %u blocks of %.0f voxels, %.0f of them active\n", file.c_str(), parts ? parts->GetNumberOfPartitions() : 0, voxels, active);
-    check(voxels < 2.5 * active, file + ": the blocks hold much more than what is active");
+    check(voxels < 2.5 * active, file + ": the blocks hold many more voxels than are active");
   }
 }
 
@@ -332,7 +332,7 @@ long resident_most()
   return getrusage(RUSAGE_SELF, &used) == 0 ? used.ru_maxrss / 1024 : -1;
 }
 
-// Pages of an image that hold background 0 alone are never written: 512 MiB with two voxels take what the voxels take.
+// Pages of an image that hold only the background 0 are never written: 512 MiB with two voxels need the memory of two voxels.
 void test_pages(const std::string& folder)
 {
   const auto grid = openvdb::FloatGrid::create(0.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What tests of netCDF readers share: a file written by libnetcdf itself.
+// Helpers for tests of netCDF readers: write a file with libnetcdf itself.
 #pragma once
 
 #include "reading_testing.h"

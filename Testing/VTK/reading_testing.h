@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What tests of readers that read by variables share: readers whose errors are kept, and files that are cut.
+// Helpers for tests of readers that read variables: readers whose errors are kept, and files that are cut.
 #pragma once
 
 #include "vtkCommand.h"
@@ -57,13 +57,13 @@ template <class Reader> struct variable_reader {
   }
 };
 
-template <class Reader> void refuse(const std::string& path, const char* variable, const std::string& told)
+template <class Reader> void refuse(const std::string& path, const char* variable, const std::string& words)
 {
   variable_reader<Reader> reader(path, variable);
   vtkDataSet* output = reader.read();
-  check(reader.errors->heard.find(told) != std::string::npos,
-    path + " must be refused with '" + told + "', not '" + reader.errors->heard + "'");
-  check(!output || output->GetNumberOfPoints() == 0, path + ": something was put out beside an error");
+  check(reader.errors->heard.find(words) != std::string::npos,
+    path + " must be refused with '" + words + "', not '" + reader.errors->heard + "'");
+  check(!output || output->GetNumberOfPoints() == 0, path + ": something was put out with an error");
 }
 
 // Copies the first part of a file.

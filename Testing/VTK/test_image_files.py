@@ -30,7 +30,7 @@ SIZE = (5, 4, 3)  # x, y, z
 NAMES = {"i1": ("signed char", "MET_CHAR"), "u1": ("uint8", "MET_UCHAR"), "i2": ("short", "MET_SHORT"), "u2": ("unsigned short int", "MET_USHORT"),
          "i4": ("int32_t", "MET_INT"), "u4": ("uint", "MET_UINT"), "i8": ("long long", "MET_LONG_LONG"), "u8": ("uint64", "MET_ULONG_LONG"),
          "f4": ("float", "MET_FLOAT"), "f8": ("double", "MET_DOUBLE")}
-# Columns: the ways from a sample to the next one along x, y and z. Mirrored, turned, in another order, sheared, left-handed.
+# Columns: the vectors from a sample to the next one along x, y and z. Mirrored, turned, in another order, sheared, left-handed.
 FRAMES = {"plain": numpy.diag((1.0, 1.5, 2.0)), "mirrored": numpy.diag((-1.0, -1.5, 2.0)), "left": numpy.diag((1.0, -1.5, 2.0)),
           "swapped": numpy.array([[0, -1.5, 0], [1, 0, 0], [0, 0, 2.0]]),
           "turned": numpy.linalg.qr(chance.normal(size=(3, 3)))[0] * (0.5, 1.25, 3.0),
@@ -230,7 +230,7 @@ def test_nrrd_components_and_time():
         for step in range(4):
             reader = expect("film.nrrd", film[..., step], FRAMES["plain"], numpy.zeros(3), time=0.25 * step)
             check(reader.GetTimeUnits() == "s" and reader.GetLengthUnits() == "mm", "time and lengths have their units")
-    # A space of four dimensions tells by its last one.
+    # A space of four dimensions has time as its last dimension.
     ways = " ".join([*(vector((*FRAMES["left"][:, i], 0)) for i in range(3)), "(0,0,0,0.5)"])
     film = values_of("<u2", (*SIZE, 3))
     write("four.nrrd", nrrd("u2", sizes=film.shape, space="", endian="little"), f"space: left-posterior-superior-time\nspace directions: {ways}\n"

@@ -9,7 +9,7 @@ import numpy
 import stratus
 from netcdf_reading import Read, check, degree, finish, near, write
 
-udunits = os.environ.get("STRATUS_UDUNITS", "1") == "1"  # what the readers were built with
+udunits = os.environ.get("STRATUS_UDUNITS", "1") == "1"  # whether the readers were built with UDUNITS
 nt, nz, ny, nx = 2, 6, 4, 5
 random = numpy.random.default_rng(7)
 lat, lon = numpy.linspace(40, 46, ny), numpy.linspace(3, 9, nx)
@@ -262,7 +262,7 @@ lifted = random.uniform(1, 2, (nz, ny, nx)) * numpy.linspace(1, 5, nz)[:, None, 
 got = judge("field", write("heights field", sizes, lev=("lev", s, {}), height=("lev lat lon", lifted, {"units": "km", "positive": "DOWN"}),
     **{**axes, "q": ("time lev lat lon", field, {"coordinates": "height"})}), -1000 * lifted, 0)
 
-# What contradicts itself is refused.
+# Contradictions are refused.
 for name, lev, extra, message in (
     ("unit", {"standard_name": "ocean_sigma_coordinate", "formula_terms": "sigma: lev eta: eta depth: depth"},
         {"eta": sea["eta"], "depth": (xy, depth, {"units": "Pa"})}, "'depth', has the unit 'Pa', it must be one of length"),
@@ -278,7 +278,7 @@ for name, lev, extra, message in (
         lev), **extra, **axes))
     check(message in got.error, "%s: '%s' is not in '%s'" % (name, message, got.error))
 
-# Levels that are mere numbers are told of.
+# Levels that are only numbers give a warning.
 path = write("heights bare", sizes, lev=("lev", numpy.arange(nz) + 1.0, {}), **axes)
 warnings = []
 reader = stratus.vtkStratusCFReader()

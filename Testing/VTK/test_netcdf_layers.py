@@ -192,7 +192,7 @@ for on in ("face", "node"):
             check(near(read[:, copy], read[:, of]) and near(points[:, copy, 1:], points[:, of, 1:]),
                 "globe: copies have the values of their nodes")
 
-# What contradicts itself is refused.
+# Contradictions are refused.
 variable, values = tracer("face")
 for name, level, extra, message in (
     ("unit", (depths, {"units": "K", "positive": "down"}), {}, "has the unit 'K', it must be one of length or pressure"),

@@ -87,9 +87,9 @@ for unsigned, bits in (("i1", "u1"), ("i2", "u2"), ("i4", "u4"), ("i8", "u8")): 
     check(by_type is not None and numpy.array_equal(by_type, numpy.resize(values, shape).astype(by_type.dtype)), "values of " + bits)
 _, values = read(write("signed by attribute", "u1", [0, 1, 255, 128], _Unsigned="false"))
 check(values is not None and set(values.ravel()) == {0, 1, -1, -128}, "_Unsigned false takes a sign from a type without")
-for kind in ("i2", "u1", "i4", "f4"):  # the guide's older way to tell that bytes have no sign: an upper limit above 127
+for kind in ("i2", "u1", "i4", "f4"):  # the guide's older rule for bytes without a sign: an upper limit above 127
     _, values = read(write("byte range " + kind, "i1", [0, 1, -1, -6], valid_range=numpy.array([0, 250], kind)))
-    check(values is not None and same(values, numpy.ma.masked_equal(numpy.resize([0, 1, 255, 250], shape), 255)), "bytes in 0..250, told as " + kind)
+    check(values is not None and same(values, numpy.ma.masked_equal(numpy.resize([0, 1, 255, 250], shape), 255)), "bytes in 0..250, given as " + kind)
 _, values = read(write("unsigned limit", "i1", [0, 1, -1, -6], _Unsigned="true", valid_max=int16(250)))
 check(values is not None and same(values, numpy.ma.masked_equal(numpy.resize([0, 1, 255, 250], shape), 255)), "a limit of a wider type")
 
@@ -129,7 +129,7 @@ for attribute, keeps in (("valid_max", single <= numpy.float32(.1)), ("valid_min
 _, values = read(write("double missing", "f4", real, missing_value=numpy.array([1e20, -999.])))
 check(same(values, numpy.ma.masked_where((single == numpy.float32(1e20)) | (single == -999), single)), "two doubles are missing")
 
-# limits of unpacked values on packed ones say nothing about these: ignored, as netCDF4 does, and told
+# limits of unpacked values do not apply to packed ones: they are ignored, as by netCDF4, and reported
 path = write("unpacked range", "i2", short, fill=int16(-1), scale_factor=.001, valid_range=numpy.array([-47.9, 47.9]))
 with netCDF4.Dataset(path) as file:
     reader, values = read(path)

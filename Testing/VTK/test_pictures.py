@@ -104,7 +104,7 @@ def reads():
         values = vtk_to_numpy(data.GetArray(name)).reshape(5, 7, -1)[::-1, :, component]
         check((values.view(numpy.uint32) == channels[of].astype(numpy.float32).view(numpy.uint32)).all(), f"{of} comes as it was")
     check(reader.CanReadFile(reader.GetFileName()) == 1 and reader.CanReadFile(__file__) == 0 and reader.CanReadFile("nowhere") == 0, "CanReadFile")
-    # The other way: what the writer wrote.
+    # The reverse: read the writer's file.
     writer = stratus.vtkStratusEXRWriter()
     writer.SetInputData(picture)
     writer.SetFileName(os.path.join(folder, "again.exr"))
@@ -215,7 +215,7 @@ def measures():
     test = test_of(a, c, Tolerance=1e30)
     check(not test.Compare() and numpy.isinf(test.GetLargestDifference()), f"a NaN is no colour: {test.GetReason()}")
     check(test_of(c, c.copy()).Compare(), "the same NaN is")
-    # Depth counts among bits alone.
+    # Depth counts only in the comparison of bits.
     one, other = image_of(a), image_of(a)
     for image, value in (one, 1), (other, 2):
         depth = numpy_to_vtk(numpy.full(23 * 31, value, numpy.float32), deep=True)

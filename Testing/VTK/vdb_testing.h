@@ -15,7 +15,7 @@ namespace vdb {
 
 constexpr double background = -2.5;
 
-// The voxels of the cloud: a ball, and one that is alone.
+// The voxels of the cloud: a ball and one separate voxel.
 inline bool in_cloud(int x, int y, int z)
 {
   return (x - 6) * (x - 6) + (y - 4) * (y - 4) + (z - 2) * (z - 2) <= 49 || (x == -9 && y == 20 && z == 31);
@@ -30,7 +30,7 @@ inline bool in_tile(int x, int y, int z)
   return x >= 24 && x < 32 && y >= 8 && y < 16 && z >= 16 && z < 24;
 }
 constexpr double tile = 7;
-// What a grid of numbers with signs has at a voxel.
+// Returns a grid's value at a voxel, for types with a sign.
 inline double value(int x, int y, int z)
 {
   return in_cloud(x, y, z) ? cloud(x, y, z) : in_tile(x, y, z) ? tile : background;
@@ -43,7 +43,7 @@ template <class Value> Value of(double number)
     return number > 0;
   } else if constexpr (std::is_arithmetic_v<Value>) {
     return static_cast<Value>(number);
-  } else { // a vector that tells its components apart
+  } else { // a vector of three different components
     using T = typename Value::ValueType;
     return Value(static_cast<T>(number), static_cast<T>(2 * number), static_cast<T>(-2 * number));
   }
