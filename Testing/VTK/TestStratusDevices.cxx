@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Devices of the filters and of the visibility order: one that does not exist is refused and changes nothing, every other gives the same
-// bytes, and the report tells the stages of the last output.
+// Devices of the filters and of the visibility order. A device that does not exist is refused and changes nothing, every other device gives
+// equal bytes, and the report lists the stages of the last output.
 #include "vtkStratusDistanceMapFilter.h"
 #include "vtkStratusHybridTreeFilter.h"
 #include "vtkStratusPartitionFilter.h"
@@ -29,7 +29,7 @@ void Append(vtkDataArray* array, Bytes& bytes)
   }
 }
 
-// What a filter gives, as bytes.
+// Returns a filter's output as bytes.
 Bytes Output(vtkStratusHybridTreeFilter* filter)
 {
   Bytes bytes;
@@ -101,7 +101,7 @@ template <class Filter> void CheckReport(Filter* filter, const Names& expected, 
   }
 }
 
-// stages: those of each output.
+// stages: the stages of each output, as the report names them.
 template <class Filter> void CheckDevices(Filter* filter, const Names& stages)
 {
   const char* name = filter->GetClassName();
@@ -116,7 +116,7 @@ template <class Filter> void CheckDevices(Filter* filter, const Names& stages)
   CHECK(std::strncmp(filter->GetDeviceName(), "host (", 6) == 0, "%s: on %s", name, filter->GetDeviceName());
   CheckReport(filter, stages, true);
 
-  // The error names what was asked for and what there is; device, output and report stay.
+  // The error names the refused device and lists the devices that there are. Device, output and report stay.
   const vtkMTimeType before = filter->GetMTime();
   filter->SetDevice("no such device");
   CHECK(
@@ -157,7 +157,7 @@ template <class Filter> void CheckDevices(Filter* filter, const Names& stages)
   CHECK(errors->Count == 1, "%s: %s", name, errors->Text.c_str());
 }
 
-// The same, and that a filter which is updated again in the same context tells of the last output only.
+// Checks also that the report of a filter which is updated again in one context lists only the last output's stages.
 template <class Filter> void CheckFilter(Filter* filter, const Names& stages)
 {
   CheckDevices(filter, stages);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mappers' reports of building: the last picture that built anything tells its stages, a device that is named runs kernels for those
-// that it can do, and what a picture reuses is no stage.
+// The mappers' build reports list the stages of the last picture that built anything. A named device runs kernels for the stages that have
+// one, and a structure that a picture reuses is no stage.
 #include "tetrahedra_scene.h"
 
 #include "vtkIdTypeArray.h"
@@ -131,5 +131,5 @@ int main()
     TestVolume(name);
     TestTetrahedra(name);
   }
-  return Failures > 0 ? 1 : has_device ? 0 : 77; // 77: what needs a device was not tested
+  return Failures > 0 ? 1 : has_device ? 0 : 77; // 77: the cases on a device were skipped
 }

@@ -126,7 +126,7 @@ void BruteForce()
   }
 }
 
-// The first block lies on the image's first points, whatever its extent and direction; for cells on the centre of the first.
+// The first block is at the image's first points, or at the centre of its first cell for cell data, whatever extent and direction are.
 void Geometry()
 {
   for (bool cells : { false, true }) {
@@ -154,7 +154,7 @@ void Geometry()
   }
 }
 
-// What the property's opacity shows is what counts, and its edits count as the filter's.
+// The property's opacity decides which blocks count, and an edit of the property updates the filter.
 void Property()
 {
   Scene scene;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tree that an image carries: it comes through VTK's writers and readers valid, its boxes lie where the voxels are, and a filter that
-// fails keeps its last outputs. Argument: a folder to write files to.
+// The tree that an image carries: it stays valid through VTK's writers and readers, its boxes contain the voxels, and a filter that fails
+// keeps its last outputs. Argument: a folder to write files to.
 #include "vtkStratusHybridTreeFilter.h"
 
 #include "mapper_testing.h"
@@ -158,14 +158,14 @@ void BoxesLieOnTheVoxels()
         inside += found;
       }
     }
-    CHECK(all > 100 && inside == all, "%lld of %lld voxels lie in a leaf", static_cast<long long>(inside), static_cast<long long>(all));
+    CHECK(all > 100 && inside == all, "%lld of %lld voxels are inside a leaf", static_cast<long long>(inside), static_cast<long long>(all));
     CHECK(purpose == Filter::RAY_CASTING || filter->GetNumberOfVoxels() == all, "%lld voxels of %lld count",
       static_cast<long long>(filter->GetNumberOfVoxels()), static_cast<long long>(all));
     double root[6], bounds[6];
     boxes->GetCellBounds(0, root);
     image->GetBounds(bounds);
     for (int a = 0; a < 3; ++a) { // half a voxel at most beyond the image
-      CHECK(root[2 * a] >= bounds[2 * a] - 1.0 - 1e-9 && root[2 * a + 1] <= bounds[2 * a + 1] + 1.0 + 1e-9, "the root lies at %g..%g",
+      CHECK(root[2 * a] >= bounds[2 * a] - 1.0 - 1e-9 && root[2 * a + 1] <= bounds[2 * a + 1] + 1.0 + 1e-9, "the root is at %g..%g",
         root[2 * a], root[2 * a + 1]);
     }
   }
@@ -184,7 +184,7 @@ void EveryMethodBuilds()
     filter->Update();
     CHECK(filter->GetNumberOfVoxels() > 100 && (voxels < 0 || voxels == filter->GetNumberOfVoxels()), "%s: %lld voxels",
       filter->GetMethodAsString(), static_cast<long long>(filter->GetNumberOfVoxels()));
-    CHECK(std::strlen(filter->GetReason()) > 0 && filter->GetBytes() > 0 && filter->GetNumberOfLeaves() >= 1, "%s tells nothing",
+    CHECK(std::strlen(filter->GetReason()) > 0 && filter->GetBytes() > 0 && filter->GetNumberOfLeaves() >= 1, "%s reports nothing",
       filter->GetMethodAsString());
     voxels = filter->GetNumberOfVoxels();
   }

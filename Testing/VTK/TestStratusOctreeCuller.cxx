@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No camera makes the culler leave out what can be seen: every picture is that of no culler at all, and not for want of culling.
+// No camera makes the culler leave out a visible prop: every picture equals the one without a culler, although props are culled.
 #include "culler_testing.h"
 
 #include "vtkActor2D.h"
@@ -141,7 +141,7 @@ void TestStereo()
       w->Draw();
     }
     CHECK(culled.Draw() == whole.Draw(), "stereo %s: another picture than without a culler", name);
-    CHECK((culled.Draw() == mono) == (type == 0), "stereo %s: what one eye sees", name);
+    CHECK((culled.Draw() == mono) == (type == 0), "stereo %s: one eye's picture", name);
     CHECK(culled.Seen() < 200, "stereo %s: %d are kept", name, int(culled.Seen()));
   }
 }
@@ -152,7 +152,7 @@ void TestRenderers(bool shared)
   CulledWindow w;
   w.AddLattice(5);
   vtkNew<vtkRenderer> right, overlay;
-  Part both(4, 4, 4, 1.0), alone(4, 4, 5.2, 0.2);
+  Part both(4, 4, 4, 1.0), farther(4, 4, 5.2, 0.2);
   w.Renderer->SetViewport(0, 0, 0.3, 1);
   right->SetViewport(0.3, 0, 1, 1);
   overlay->SetViewport(0.6, 0.6, 0.9, 0.9);
@@ -161,7 +161,7 @@ void TestRenderers(bool shared)
   for (vtkRenderer* renderer : { right.Get(), overlay.Get() }) {
     w.Window->AddRenderer(renderer);
     renderer->AddActor(both.Actor);
-    renderer->AddActor(alone.Actor);
+    renderer->AddActor(farther.Actor);
     renderer->GetCullers()->RemoveAllItems();
     if (shared) {
       renderer->AddCuller(w.Culler);
@@ -273,7 +273,7 @@ void TestFails()
   camera->UseExplicitProjectionTransformMatrixOn();
   w.Draw();
   CHECK(w.Seen() == 27, "a camera that is not finite culls: %d are kept", int(w.Seen()));
-  matrix->Zero(); // no plane tells anything apart
+  matrix->Zero(); // no plane separates any two points
   matrix->Modified();
   w.Draw();
   CHECK(w.Seen() == 27, "a camera of nothing culls: %d are kept", int(w.Seen()));
@@ -332,9 +332,9 @@ void TestInstall()
   given->SetMinimumCoverage(0.01);
   given->SetSortingStyleToBackToFront();
   vtkStratusOctreeCuller* culler = vtkStratusOctreeCuller::Install(renderer);
-  CHECK(renderer->GetCullers()->GetNumberOfItems() == 1 && renderer->GetCullers()->GetLastItem() == culler, "it is not alone");
+  CHECK(renderer->GetCullers()->GetNumberOfItems() == 1 && renderer->GetCullers()->GetLastItem() == culler, "there is another culler");
   CHECK(culler->GetMinimumCoverage() == 0.01 && culler->GetSortingStyle() == vtkStratusOctreeCuller::SORT_BACK_TO_FRONT, "other settings");
-  CHECK(vtkStratusOctreeCuller::Install(renderer) == culler, "a second one beside the first");
+  CHECK(vtkStratusOctreeCuller::Install(renderer) == culler, "a second one next to the first");
   std::ostringstream text;
   culler->Print(text);
   CHECK(text.str().find("StopRule: pixels") != std::string::npos, "%s", text.str().c_str());

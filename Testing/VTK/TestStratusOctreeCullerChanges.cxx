@@ -192,7 +192,7 @@ void TestLists()
   CHECK(!Empty(w.Compare("a list begun anew")), "nothing is drawn");
 }
 
-// Frames without a change ask for no bounds; after one, for those alone that it may concern.
+// Frames without a change query no bounds. After a change, frames query only the bounds that it may concern.
 void TestAsked()
 {
   CulledWindow w;
@@ -202,7 +202,7 @@ void TestAsked()
   second.Mapper->SetInputConnection(first.Source->GetOutputPort());
   w.Renderer->AddActor(first.Actor);
   w.Renderer->AddActor(second.Actor);
-  first.Actor->GetProperty()->SetColor(0, 1, 0); // an actor makes its property when it is first asked for
+  first.Actor->GetProperty()->SetColor(0, 1, 0); // an actor makes its property on the first call of GetProperty()
   w.Draw(), w.Draw(), w.Draw();
   CHECK(w.Culler->GetNumberOfPropsAsked() == 0, "%d asked without a change", int(w.Culler->GetNumberOfPropsAsked()));
   w.Renderer->GetActiveCamera()->Azimuth(3);
@@ -241,7 +241,7 @@ void TestStatic()
   CHECK(w.Culler->GetNumberOfPropsAsked() == 0 && w.Seen() == before, "%d asked, %d kept, not %d", int(w.Culler->GetNumberOfPropsAsked()),
     int(w.Seen()), int(before));
   w.Culler->Modified();
-  w.Compare("static, told of a move");
+  w.Compare("static, modified after a move");
   CHECK(w.Seen() == before + 1, "%d kept, not %d", int(w.Seen()), int(before) + 1);
   Run(w, { "static, shown", [&] { hidden.Actor->VisibilityOn(); }, [&] { hidden.Actor->VisibilityOff(); } });
   Run(w, { "static, added", [&] { w.Renderer->AddActor(added.Actor); }, [&] { w.Renderer->RemoveActor(added.Actor); } });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the renderer's own culler does beside culling is done here, too: render times, the order, the length of the list, the total, and
-// that earlier cullers' times count. vtkFrustumCoverageCuller is called on the same props; it keeps more, since it tests spheres.
+// The culler also does the other work of the renderer's own culler: render times, their total, the order and the length of the list, and it
+// respects the times of earlier cullers. vtkFrustumCoverageCuller is called on equal props; it keeps more, since it tests spheres.
 #include "culler_testing.h"
 
 #include "vtkActor2D.h"
@@ -76,7 +76,7 @@ void Compare(Scene& s, int initialized, const char* what)
   double total = 0.0;
   for (size_t i = 0; i < s.Props.size(); ++i) {
     if (kept.count(s.Props[i]) > 0) {
-      // The core tells coverage in single precision, from sums of several terms.
+      // The core computes coverage in single precision, from sums of several terms.
       CHECK(std::fabs(given.Times[i] - meant.Times[i]) <= 1e-5 * meant.Times[i] + 1e-7, "%s: prop %zu has %g, not %g", what, i,
         given.Times[i], meant.Times[i]);
       total += given.Times[i];

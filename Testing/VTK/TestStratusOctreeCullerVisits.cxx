@@ -117,7 +117,7 @@ void TestVisits(bool own)
   vtkObjectFactory::SetAllEnableFlags(1, "vtkActor");
 }
 
-// Makes one change after a single frame, which has asked for all bounds and looked at no source, and checks the next frame.
+// Makes one change after a single frame, which has queried all bounds and looked at no source, and checks the next frame.
 struct Change {
   const char* Name;
   std::function<void(CulledWindow& w, std::unique_ptr<Part>& part)> Do;

@@ -160,9 +160,9 @@ void QuadraticGrids()
     { "biquadratic, linear wedges", VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON, VTK_QUADRATIC_LINEAR_WEDGE, 0 } };
   const int n = 3;
   for (const Case& c : cases) {
-    for (int alone = c.Pyramid ? 0 : 1; alone < (c.Pyramid ? 1 : 3); ++alone) { // these two meet no other type in whole faces
+    for (int kind = c.Pyramid ? 0 : 1; kind < (c.Pyramid ? 1 : 3); ++kind) { // without pyramids: hexahedra, then wedges
       for (double bend : { 0.0, 0.04 }) {
-        Grid linear = alone == 0 ? MixedGrid(n) : CubesOf(n, alone == 1 ? VTK_HEXAHEDRON : VTK_WEDGE);
+        Grid linear = kind == 0 ? MixedGrid(n) : CubesOf(n, kind == 1 ? VTK_HEXAHEDRON : VTK_WEDGE);
         Grid grid = Elevated(linear, c.Hexahedron, c.Wedge, c.Pyramid, n, bend);
         AddArrays(grid);
         vtkNew<vtkStratusPartitionFilter> filter;
@@ -171,7 +171,7 @@ void QuadraticGrids()
         filter->Update();
         Fills(filter->GetOutput(), n, c.Name);
         filter->SetLeafCells(50);
-        for (int depth = 1; depth <= 3; ++depth) { // straight edges' middles lie on planes but for rounding
+        for (int depth = 1; depth <= 3; ++depth) { // straight edges' middles are on the planes, up to rounding
           filter->SetDepth(depth);
           filter->Update();
           Carries(grid, filter->GetOutput());

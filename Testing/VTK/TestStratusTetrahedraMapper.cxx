@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper: the same picture as the image mapper's where the field is the same, what the window shows, opaque geometry,
-// matrices, scalars of cells, ghosts, both blend modes, and what is refused.
+// vtkStratusTetrahedraMapper draws the image mapper's picture of an equal field. The window shows the picture; opaque geometry, matrices,
+// scalars of cells, ghosts and both blend modes count; other inputs are refused.
 #include "tetrahedra_scene.h"
 
 #include "vtkActor.h"
@@ -50,7 +50,7 @@ void TestMethods()
   const std::vector<float> chosen = scene.GridPicture();
   const bool marches = std::string(scene.Tetrahedra->GetMethodUsedAsString()) == "march";
   CHECK(chosen == (marches ? marched : projected), "auto draws a picture of its own");
-  CHECK(std::string(scene.Tetrahedra->GetMethodReason()).size() > 10, "no reason is told");
+  CHECK(std::string(scene.Tetrahedra->GetMethodReason()).size() > 10, "there is no reason");
 }
 
 void TestInside()
@@ -153,7 +153,7 @@ void TestRefusals()
     CHECK(scene.GridErrors->Count == before + 1 && scene.GridErrors->Has(word), "%s: %d errors, '%s'", word,
       scene.GridErrors->Count - before, scene.GridErrors->Text.c_str());
     scene.Render();
-    CHECK(scene.GridErrors->Count == before + 1, "%s: told again", word);
+    CHECK(scene.GridErrors->Count == before + 1, "%s: reported again", word);
   };
   for (int p = 0; p < 7; ++p) {
     vtkNew<vtkPlane> plane;

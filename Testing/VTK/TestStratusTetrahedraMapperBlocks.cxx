@@ -123,7 +123,7 @@ vtkSmartPointer<vtkDataSet> Straight(int number, bool image)
 
 struct BlockScene : GridScene {
   BlockScene() : GridScene(64, 48) { this->Tetrahedra->AddObserver(vtkCommand::WarningEvent, this->Warnings); }
-  // The same picture as that of the whole, by march and by projection, without entering at the borders of joined blocks.
+  // Blocks look like the whole grid, marched and projected, and no ray enters at the borders of joined blocks.
   void IsWhole(vtkDataObjectTree* blocks, vtkStructuredGrid* whole, const char* what, bool joined = true)
   {
     for (const int method : { vtkStratusTetrahedraMapper::MARCH_METHOD, vtkStratusTetrahedraMapper::PROJECT_METHOD }) {
@@ -271,7 +271,7 @@ void ImagesAndRectilinearGrids()
   scene.IsWhole(blocks, Whole(false, false), "images and rectilinear grids");
 }
 
-// Steps in objects of their own take values alone.
+// Steps in new objects rebuild only the values.
 void Steps()
 {
   BlockScene scene;
@@ -294,7 +294,7 @@ void Steps()
   }
 }
 
-// Blocks whose values differ where they touch both keep theirs; hidden cells and points hide in their own block alone.
+// Blocks whose values differ where they touch both keep their values. Hidden cells and points hide only in their own block.
 void BlocksOfTheirOwn()
 {
   BlockScene scene;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper and cells other than tetrahedra: every kind gives the image mapper's picture of the same field, whole cells
-// are hidden, scalars of cells stay theirs, what has no volume is ignored and counted, and what is built is kept.
+// vtkStratusTetrahedraMapper and cells other than tetrahedra: every kind gives the image mapper's picture of an equal field, whole cells
+// are hidden, and scalars of cells stay constant in a cell. Cells without volume are ignored and counted, and unchanged grids are not
+// rebuilt.
 #include "tetrahedra_scene.h"
 #include "vtkStratusPartitionFilter.h"
 
@@ -48,7 +49,7 @@ void EveryKindOfCell()
   }
 }
 
-// A field that is not linear, and scalars of cells: what the partition filter makes of the grid gives the same picture.
+// A field that is not linear, and scalars of cells: the partition filter's tetrahedra of the grid give the grid's picture.
 void TheFilterDividesAlike()
 {
   for (int cells = 0; cells < 2; ++cells) {
@@ -83,7 +84,7 @@ void TheFilterDividesAlike()
   }
 }
 
-// One hexahedron of two is hidden in each way that there is: the picture is that of the other alone.
+// Every way of hiding one of two hexahedra gives the picture of the other hexahedron.
 void WholeCellsAreHidden()
 {
   GridScene scene;
@@ -110,15 +111,15 @@ void WholeCellsAreHidden()
   scene.Renderer->ResetCamera();
   const std::vector<float> whole = scene.GridPicture();
   scene.Tetrahedra->SetInputData(one);
-  const std::vector<float> alone = scene.GridPicture();
-  CHECK(!alone.empty() && alone != whole, "one cell looks like two");
+  const std::vector<float> single = scene.GridPicture();
+  CHECK(!single.empty() && single != whole, "one cell looks like two");
   scene.Tetrahedra->SetInputData(both);
   auto* values = vtkFloatArray::SafeDownCast(both->GetPointData()->GetScalars());
   const float kept = values->GetValue(8);
   for (float none : { std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity() }) {
     values->SetValue(8, none);
     values->Modified();
-    CHECK(scene.GridPicture() == alone, "a cell with a corner of %g is drawn", static_cast<double>(none));
+    CHECK(scene.GridPicture() == single, "a cell with a corner of %g is drawn", static_cast<double>(none));
   }
   values->SetValue(8, kept);
   values->Modified();
@@ -126,13 +127,13 @@ void WholeCellsAreHidden()
   vtkUnsignedCharArray* ghosts = both->AllocatePointGhostArray();
   ghosts->SetValue(2, vtkDataSetAttributes::HIDDENPOINT);
   both->Modified();
-  CHECK(scene.GridPicture() == alone, "a cell with a blanked corner is drawn");
+  CHECK(scene.GridPicture() == single, "a cell with a blanked corner is drawn");
   both->GetPointData()->RemoveArray("vtkGhostType");
   for (unsigned char flag : { vtkDataSetAttributes::HIDDENCELL, vtkDataSetAttributes::DUPLICATECELL }) {
     both->AllocateCellGhostArray()->SetValue(0, 0);
     both->GetCellGhostArray()->SetValue(1, flag);
     both->Modified();
-    CHECK(scene.GridPicture() == alone, "a cell with flag %d is drawn", flag);
+    CHECK(scene.GridPicture() == single, "a cell with flag %d is drawn", flag);
   }
 }
 
@@ -213,7 +214,7 @@ void LeavesAreSortedInParallel()
 void WhatHasNoVolumeIsIgnored()
 {
   GridScene scene;
-  const std::vector<float> alone = scene.GridPicture();
+  const std::vector<float> single = scene.GridPicture();
   const vtkIdType corners[4] = { 0, 1, 8, 7 };
   const int flat[] = { VTK_VERTEX, VTK_LINE, VTK_TRIANGLE, VTK_QUAD };
   const int sizes[] = { 1, 2, 3, 4 };
@@ -221,7 +222,7 @@ void WhatHasNoVolumeIsIgnored()
     scene.Grid->InsertNextCell(flat[i], sizes[i], corners);
   }
   scene.Grid->Modified();
-  CHECK(scene.GridPicture() == alone, "polygons among the cells change the picture");
+  CHECK(scene.GridPicture() == single, "polygons among the cells change the picture");
   CHECK(scene.Tetrahedra->GetNumberOfIgnoredCells() == 4, "%lld cells ignored",
     static_cast<long long>(scene.Tetrahedra->GetNumberOfIgnoredCells()));
   Grid surface = Grid::New();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper: arrays of two to four components give the image mapper's picture of the same linear fields, independent by
-// adding and by their shares, and dependent, lit and not, and in all modes; the colour function chooses among them; what is not drawn of
-// them is refused.
+// vtkStratusTetrahedraMapper: arrays of two to four components give the image mapper's picture of equal linear fields: independent
+// components by sums and by shares, and dependent ones; lit and unlit; in all modes. The colour function selects a component, and
+// components that cannot be drawn are refused.
 #include "tetrahedra_scene.h"
 
 #include "vtkColorTransferFunction.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper and Lagrange and Bezier cells of several orders: bent cells that share faces leave no gap between them, so
-// that a linear field gives the image mapper's picture; Bezier cells lie where VTK places their points; wrong numbers of nodes are refused.
+// vtkStratusTetrahedraMapper and Lagrange and Bezier cells of several orders. Curved cells that share faces leave no gap, so that a linear
+// field gives the image mapper's picture. Bezier cells are where VTK places their points. Wrong numbers of nodes are refused.
 #include "tetrahedra_scene.h"
 
 #include "vtkCellData.h"

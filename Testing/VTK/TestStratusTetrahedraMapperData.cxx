@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper: on real meshes (../shared/data) the blend modes agree with one another. On each ray the mean lies between the
-// smallest and the largest value; a surface is met only where its value does, and nearly wherever; light only darkens and brightens it.
+// vtkStratusTetrahedraMapper: on real meshes (../shared/data) the blend modes agree with one another. On each ray the mean is between the
+// smallest and the largest value. A ray meets a surface only if its values reach the surface's, and almost always then. Light only darkens
+// and brightens the surface.
 #include "tetrahedra_scene.h"
 
 #include "vtkContourValues.h"

@@ -10,7 +10,7 @@
 namespace {
 constexpr double Close = 0.02; // RMSE of 255: the tightest of the bars of record; the reference's own steps cost .006
 
-// A scene that takes cells one by one; values follow a smooth function of place unless told.
+// A scene to which cells are added one by one. Values follow a smooth function of place by default.
 struct Case : GridScene {
   Case() : GridScene(48, 36)
   {
@@ -150,8 +150,8 @@ void PartsThatInterleave()
   nested.Agrees("a cube in a hollow", Close, 2);
 }
 
-// One point in a mesh of 3072 cells pulled through what is behind it: .05 % of them and more are inside out. What overlaps is drawn twice;
-// order does not count in one colour.
+// In a mesh of 3072 cells one point is pulled through the cells behind it, which turns .05 % of the cells or more inside out. Overlaps are
+// drawn twice; in one colour the order does not matter.
 void InvertedCells()
 {
   Case scene;
@@ -195,14 +195,14 @@ void PointsTwiceAndForNothing()
   }
   apart.Agrees("points twice");
   twice.Agrees("points once", Close, 1);
-  const std::vector<float> alone = twice.GridPicture();
+  const std::vector<float> without = twice.GridPicture();
   const double position[3] = { 3, 4, 5 };
   twice.AddPoint({ 1e5, -1e5, 0 });
   twice.Points->Modified();
-  twice.Renderer->GetActiveCamera()->SetPosition(position); // the camera's range of old: not reset to what nothing uses
-  const std::vector<float> beside = twice.GridPicture();
+  twice.Renderer->GetActiveCamera()->SetPosition(position); // keep the old clipping range: no reset to the point that nothing uses
+  const std::vector<float> with = twice.GridPicture();
   twice.AgreesNow("an unused point far away", 0);
-  CHECK(!beside.empty() && !alone.empty(), "an unused point is an error: %s", twice.GridErrors->Text.c_str());
+  CHECK(!with.empty() && !without.empty(), "an unused point is an error: %s", twice.GridErrors->Text.c_str());
   twice.AddPoint({ std::nan(""), 0, 0 }, 0.5);
   twice.Points->Modified();
   CHECK(twice.GridPicture().empty() && twice.GridErrors->Count == 1 && twice.GridErrors->Has("finite"), "a point of no place: '%s'",
@@ -251,10 +251,10 @@ void AlongFaces(int method)
     camera->SetFocalPoint(1, 1, 1);
     camera->SetViewUp(axis == 1, axis == 2, axis == 0);
     camera->ParallelProjectionOn();
-    camera->SetParallelScale(0.9); // 36 pixels are 1.8: each 1/20, so that points of the grid stand on pixels' borders
+    camera->SetParallelScale(0.9); // 36 pixels are 1.8: each 1/20, so that points of the grid are on pixels' borders
     scene.Renderer->ResetCameraClippingRange();
     scene.Parts->GetPointData()->SetScalars(scene.Values);
-    for (double shift : { 0.0, 0.025 }) { // and at their middles
+    for (double shift : { 0.0, 0.025 }) { // and at pixels' middles
       double at[3] = { 1 + shift, 1 + shift, 1 + shift };
       at[axis] = 1;
       camera->SetFocalPoint(at);

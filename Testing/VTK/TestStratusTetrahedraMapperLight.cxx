@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper: light and gradient opacity give the image mapper's picture of the same linear field, by points and by cells'
-// place in it; what is not lit or thinned is refused.
+// vtkStratusTetrahedraMapper: light and gradient opacity give the image mapper's picture of an equal linear field, with scalars of points
+// and of cells. Modes without light or gradient opacity are refused.
 #include "tetrahedra_scene.h"
 
 #include "vtkContourValues.h"
@@ -54,7 +54,7 @@ void Lights()
   scene.Renderer->AddLight(lamp);
   scene.Volume->SetOrientation(10, 20, 30);
   scene.Volume->SetScale(1, 2, 1);             // normals are no vectors
-  LikeTheImage(scene, 45.0, "from two lamps"); // the rim of the cone is sharp: samples lie on either side
+  LikeTheImage(scene, 45.0, "from two lamps"); // the rim of the cone is sharp: samples fall on both sides
   scene.Volume->GetProperty()->ShadeOff();
   const std::vector<float> dark = scene.GridPicture();
   scene.Tetrahedra->SetMethodToProject();
@@ -83,10 +83,10 @@ void GradientOpacity()
   scene.Volume->GetProperty()->SetGradientOpacity(gradient);
   LikeTheImage(scene, 60.0, "optical depth");
   const double thin = scene.GridLight();
-  for (const double way : { 0.7, -1.0 }) {
-    scene.Tetrahedra->SetGradientOpacityDistance(way);
-    scene.Mapper->SetGradientOpacityDistance(way);
-    LikeTheImage(scene, 60.0, "opacity of a way");
+  for (const double length : { 0.7, -1.0 }) {
+    scene.Tetrahedra->SetGradientOpacityDistance(length);
+    scene.Mapper->SetGradientOpacityDistance(length);
+    LikeTheImage(scene, 60.0, "opacity of a length");
   }
   CHECK(scene.Tetrahedra->GetGradientOpacityDistance() == -1.0, "%g", scene.Tetrahedra->GetGradientOpacityDistance());
   scene.Volume->GetProperty()->DisableGradientOpacityOn();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper: every blend mode, clipping planes and crop boxes give the image mapper's picture of the same linear field;
-// what only marching draws is refused by projection.
+// vtkStratusTetrahedraMapper: every blend mode, clipping planes and crop boxes give the image mapper's picture of an equal linear field.
+// Projection refuses the modes that only marching draws.
 #include "tetrahedra_scene.h"
 
 #include "vtkContourValues.h"

@@ -82,7 +82,7 @@ void Steps(bool hexahedra, int method)
   Draw(scene, shallow, 1, 5, "modified, and the same");
 }
 
-// What changes more than values is built anew.
+// Changes of more than the values rebuild the geometry.
 void OtherGeometry()
 {
   GridScene scene;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusTetrahedraMapper and structured grids: curvilinear ones against the double reference of their tetrahedra, listed here; blanked
-// and ghost cells and points, values and coordinates that are not finite, left-handed grids and poles; steps of values; what is refused.
+// vtkStratusTetrahedraMapper and structured grids: curvilinear grids against the double reference of their tetrahedra, which are listed
+// here; blanked and ghost cells and points, values and coordinates that are not finite, left-handed grids and poles; steps of values;
+// refused inputs.
 #include "tetrahedra_scene.h"
 
 #include "vtkCellData.h"

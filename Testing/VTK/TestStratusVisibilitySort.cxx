@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order of a grid's tetrahedra, asked of every face: whichever way the camera looks, the grid is moved and ids are asked for.
+// The order of a grid's tetrahedra is right at every face, for any camera, matrix and number of ids at once.
 #include "vtkStratusVisibilitySort.h"
 
 #include "tetrahedra_testing.h"
@@ -25,7 +25,7 @@ std::vector<vtkIdType> Traverse(vtkStratusVisibilitySort* sort, vtkIdType chunk)
   bool last = false;
   sort->InitTraversal();
   while (vtkIdTypeArray* ids = sort->GetNextCells()) {
-    CHECK(!last && ids->GetNumberOfTuples() <= chunk && ids->GetNumberOfTuples() > 0, "%lld cells at once, %lld asked for",
+    CHECK(!last && ids->GetNumberOfTuples() <= chunk && ids->GetNumberOfTuples() > 0, "%lld cells at once, %lld requested",
       static_cast<long long>(ids->GetNumberOfTuples()), static_cast<long long>(chunk));
     last = ids->GetNumberOfTuples() < chunk;
     cells.insert(cells.end(), ids->GetPointer(0), ids->GetPointer(0) + ids->GetNumberOfTuples());
@@ -108,7 +108,7 @@ void Orders()
   }
 }
 
-// Cells one within the other in all directions: no order is right, each comes once, and what was given up is told.
+// Cells one within the other in all directions: no order is right, each cell comes once, and overlaps and forced cells are counted.
 void Overlaps()
 {
   Grid grid = Grid::New();

@@ -15,7 +15,7 @@
 
 namespace {
 
-// Cells from back to front by the planes of their faces alone; the mesh is convex.
+// Orders cells from back to front only by the planes of their faces; the mesh is convex.
 class PlainSort : public vtkVisibilitySort
 {
 public:
@@ -96,7 +96,7 @@ vtkIdTypeArray* PlainSort::GetNextCells()
   return this->Chunk;
 }
 
-// Every 37th cell with two points exchanged, if asked for: of the other orientation, but in the same place.
+// Returns a mesh of tetrahedra. With `inverted`, every 37th cell has two points exchanged, which changes its orientation but not its place.
 Grid Mesh(int depth, bool inverted)
 {
   Grid mixed = MixedGrid(5);
@@ -217,6 +217,6 @@ int main()
       others += Pictures(depth, inverted != 0);
     }
   }
-  CHECK(others > 16, "of 32 pictures by centres %d are wrong: nothing hangs on the order", others);
+  CHECK(others > 16, "of 32 pictures by centres %d are wrong: the order has no effect", others);
   return Failures == 0 ? 0 : 1;
 }

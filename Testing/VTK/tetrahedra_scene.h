@@ -55,8 +55,8 @@ inline void MakeGrid(vtkUnstructuredGrid* grid)
   grid->GetPointData()->SetScalars(values);
 }
 
-// PSNR in dB of equal pictures. The image's samples, .02 apart, err by about 1e-4 where the function bends, and by what a first or last
-// sample covers too much or too little.
+// PSNR in dB of equal pictures. The image's samples, .02 apart, err by about 1e-4 at the function's bends, and in the length of the first
+// and last sample.
 constexpr double SamePicture = 62.0;
 
 // A Scene with the grid in the place of the image.
@@ -123,8 +123,8 @@ inline double Determinant(const Vector& a, const Vector& b, const Vector& c, con
   return Dot(Minus(b, a), Cross(Minus(c, a), Minus(d, a)));
 }
 
-// Finds the stretch within from..to of a ray, t times `along`, that lies in the cell. Corners are relative to the ray's origin. Each
-// barycentric coordinate is linear along the ray.
+// Finds the part of a ray in the cell, t times `along` within from..to. Corners are relative to the ray's origin. Each barycentric
+// coordinate is linear along the ray.
 inline bool Meets(const Vector corners[4], const double values[4], const Vector& along, double from, double to, Stretch& stretch)
 {
   const double whole = Determinant(corners[0], corners[1], corners[2], corners[3]);
