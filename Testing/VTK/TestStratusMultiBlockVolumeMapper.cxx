@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkStratusMultiBlockVolumeMapper: a volume in uneven blocks, which no order of their middles draws right, looks as the whole one does;
-// what it leaves out and refuses.
+// vtkStratusMultiBlockVolumeMapper: a volume in uneven blocks, which no order of their middles draws right, looks like the whole volume.
+// Blocks that the mapper leaves out, and inputs that it refuses.
 #include "mapper_testing.h"
 
 #include "vtkStratusMultiBlockVolumeMapper.h"

@@ -23,7 +23,7 @@ void Compare(const char* what, const std::function<void(Scene&)>& change, vtkFlo
   CHECK(psnr >= wanted, "%s: %.1f dB against the reference", what, psnr);
   // Half a step of rounding, and as much again for a window that blends in bytes.
   const double shown = scene.ShownError(scene.Renderer->GetBackground());
-  CHECK(shown <= 1.0, "%s: what is shown differs by %.2f of 255 from what was cast", what, shown);
+  CHECK(shown <= 1.0, "%s: the window differs from the cast picture by %.2f of 255", what, shown);
 }
 
 void Cameras()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the window shows against the pictures in Baseline, by VTK's own image comparison. It overlooks much (differences below 16 of 255),
-// so the gate is TestStratusVolumeMapper's, in float; this one sees what no reference knows of: the geometry around and the window itself.
-// Argument: where to leave pictures that fail.
+// Compares the window with the pictures in Baseline by VTK's own image comparison. It ignores differences below 16 of 255, so the gate is
+// TestStratusVolumeMapper, which compares floats. This test covers the parts that no reference knows: the geometry around the volume and
+// the window itself. Argument: a folder for pictures that fail.
 #include "mapper_testing.h"
 
 #include "vtkActor.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rebuild by what changed, told by counters: a camera nothing, a transfer function tables and structure, data everything; and what is
-// rebuilt shows.
+// Counters show what each change rebuilds: a camera nothing, a transfer function tables and structure, data everything. Pictures show the
+// rebuilt parts.
 #include "mapper_testing.h"
 
 namespace {
@@ -70,7 +70,7 @@ int main()
   CHECK(scene.Picture() != before, "changed values change nothing");
   scene.Image->Modified();
   scene.Render();
-  CHECK(scene.Mapper->GetRangeBuilds() == 3, "an image told to be modified is not read again");
+  CHECK(scene.Mapper->GetRangeBuilds() == 3, "an image after Modified() is not read again");
 
   before = scene.Picture();
   const std::vector<unsigned char> shown = scene.Bytes();

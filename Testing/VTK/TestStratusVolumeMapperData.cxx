@@ -20,7 +20,7 @@ void Types()
     scene.Opacity->RemoveAllPoints();
     scene.Opacity->AddPoint(10, 0);
     scene.Opacity->AddPoint(100, 0.6);
-    scene.Mapper->SetSamplingToMidpoint(); // by hand: tables of types differ by what an entry is wide, and so may what a probe takes
+    scene.Mapper->SetSamplingToMidpoint(); // by hand: entries of the types' tables differ in width, so a probe may choose different steps
     scene.Mapper->SetSampleDistance(0.5);
     vtkDataArray* field = scene.Image->GetPointData()->GetScalars();
     auto typed = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
@@ -40,8 +40,8 @@ void Types()
     for (size_t i = 0; i < picture.size(); ++i) {
       worst = std::max(worst, std::fabs(static_cast<double>(picture[i]) - first[i]));
     }
-    // Integers of more than 24 bits are kept relative to their first value, 0 here, so nothing may differ. Floating point has table entries
-    // laid out in another way, doubles in a third, so that they differ from integers by what an entry is wide.
+    // Integers of more than 24 bits are kept relative to their first value, 0 here, so nothing may differ. Floats and doubles have table
+    // entries of two other widths, so they differ from integers by an entry's width.
     const double most = type == VTK_FLOAT || type == VTK_DOUBLE ? 0.001 : 0.0;
     CHECK(worst <= most, "%s differs from char by %g", typed->GetDataTypeAsString(), worst);
   }
@@ -79,7 +79,7 @@ void Layouts()
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
 }
 
-// Blanked points and cells are transparent. What is left of a constant volume tells how many cells are.
+// Blanked points and cells are transparent. The light that remains of a constant volume measures how many cells are drawn.
 void Blanking()
 {
   Scene scene(64, 48);
@@ -173,7 +173,7 @@ void Cropping()
   CHECK(scene.Light() == whole, "cropping that is off crops");
 }
 
-// Planes are along the image's own axes. Planes along those of the bounds of a mirrored image miss it, and a warning says so.
+// Cropping planes are along the image's own axes. Planes along the axes of a mirrored image's bounds miss the image, and a warning says so.
 void CropMirrored()
 {
   Scene scene;

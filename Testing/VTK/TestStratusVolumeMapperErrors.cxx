@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the mapper can't draw it refuses: one error that names the reason, nothing drawn, and the next good picture is as before.
+// The mapper refuses data and settings that it cannot draw: one error names the reason, nothing is drawn, and the next valid picture is
+// right.
 #include "refusal_testing.h"
 
 #include "vtkBitArray.h"

@@ -27,7 +27,7 @@ void FirstHits(Scene& scene)
   scene.Renderer->ResetCamera();
 }
 
-// What depth buffer and float picture say of the same hit.
+// Compares a hit's depth in the depth buffer with its depth in the float picture.
 void DepthIsInTheWindow()
 {
   for (bool parallel : { false, true }) {
@@ -67,7 +67,8 @@ void DepthIsInTheWindow()
   }
 }
 
-// A ball half inside: it hides what is behind it and is hidden by what is before it, drawn before or, in a layer above, after.
+// A ball half inside hides the volume behind it, and the volume in front hides the ball: drawn before the volume or, in a layer above,
+// after.
 void GeometryIsHiddenAndHides()
 {
   std::vector<unsigned char> before, after;
@@ -269,12 +270,12 @@ void CarriedTrees()
   numbers->DeepCopy(bytes(floats));
   floats->GetFieldData()->AddArray(numbers);
   ExpectCarried("in floats", floats, false);
-  Scene told;
+  Scene scene;
   vtkNew<ErrorObserver> warnings;
-  told.Mapper->AddObserver(vtkCommand::WarningEvent, warnings);
-  told.Mapper->SetInputData(floats);
-  FirstHits(told);
-  told.Render();
+  scene.Mapper->AddObserver(vtkCommand::WarningEvent, warnings);
+  scene.Mapper->SetInputData(floats);
+  FirstHits(scene);
+  scene.Render();
   CHECK(warnings->Count == 1 && warnings->Has("'StratusHybridTree' is of type float"), "%d warnings: %s", warnings->Count,
     warnings->Text.c_str());
 }
@@ -303,7 +304,7 @@ void Cloud()
   for (size_t i = 0; i < cloud->transfer.opacity_count; ++i) {
     scene.Opacity->AddPoint(cloud->transfer.opacity[2 * i], cloud->transfer.opacity[2 * i + 1]);
   }
-  scene.Color->RemoveAllPoints(); // by height of the values: what is seen are the cloud's borders, all of about the same
+  scene.Color->RemoveAllPoints(); // by the height of the values: the visible borders of the cloud have almost equal values
   const double low = cloud->transfer.color[0], high = cloud->transfer.color[4 * (cloud->transfer.color_count - 1)];
   scene.Color->AddRGBPoint(low, 0.95, 0.97, 1.0);
   scene.Color->AddRGBPoint(low + 0.2 * (high - low), 1.0, 0.75, 0.45);

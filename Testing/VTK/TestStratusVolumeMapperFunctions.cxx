@@ -294,7 +294,7 @@ void Builds()
   ours.Set(g, 1);
   CHECK(ours.GetBuilds() == 3 && At(ours, 1, 0, 2.0) == 0.9, "another function was not seen");
   ours.Set(g, 3);
-  CHECK(ours.GetBuilds() == 4 && At(ours, 3, 2, 2.0) == 0.9, "grey was not told from opacity");
+  CHECK(ours.GetBuilds() == 4 && At(ours, 3, 2, 2.0) == 0.9, "grey was taken for opacity");
 }
 
 vtkTypeUInt64 FunctionsOf(Scene& scene)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// While the window asks for a rate the picture may be coarser, when it is still it is exact. The time allotted is set, not measured, so
-// that nothing here depends on how fast the machine is.
+// While the window wants a frame rate the picture may be coarser; a still picture is exact. The allotted time is set, not measured, so that
+// no check depends on the machine's speed.
 #include "mapper_testing.h"
 
 #include "vtkCullerCollection.h"
@@ -44,7 +44,7 @@ int main()
     scene.Mapper->GetRangeBuilds() == 1, "value ranges built %llu times", static_cast<unsigned long long>(scene.Mapper->GetRangeBuilds()));
 
   scene.Window->SetDesiredUpdateRate(1.0); // a second is plenty: exact at an interactive rate too
-  CHECK(scene.Picture() == exact, "coarser than the time allotted asks for");
+  CHECK(scene.Picture() == exact, "coarser than the allotted time requires");
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
   return Failures == 0 ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blend modes, crop regions, masks and jitter in the window: held against the double reference, and, to tell how far the two agree, beside
-// VTK's own mapper of the GPU. Every setter is seen in the picture.
+// Blend modes, crop regions, masks and jitter in the window, compared with the double reference and, for an estimate of their agreement,
+// with VTK's own GPU mapper. Every setter shows in the picture.
 #include "mapper_testing.h"
 
 #include "Testing/support/reference_modes.h"
@@ -11,7 +11,7 @@
 #include <limits>
 
 namespace {
-// The reference's picture of what `options` ask for.
+// Returns the reference's picture with `options`.
 std::vector<float> Expected(Scene& scene, const stratus_ray_cast_options& options)
 {
   const SceneFunctions functions(scene);
@@ -52,7 +52,7 @@ double VtkPsnr(Scene& scene, const std::vector<float>& expected)
   return reference_psnr(shown.data(), expected.data(), scene.Pixels());
 }
 
-// least_db: what sampling every tenth of a voxel leaves; surfaces are wholly right or wrong at their rims.
+// least_db: limit in dB for samples every tenth of a voxel. At their rims, surfaces are wholly right or wrong.
 void Against(const char* what, Scene& scene, const stratus_ray_cast_options& options, double least_db)
 {
   scene.Mapper->SetSampleDistance(0.1);
@@ -191,7 +191,7 @@ void Masks()
   scene.Render();
   CHECK(scene.Errors->Has("5 x 5 x 5"), "another size: '%s'", scene.Errors->Text.c_str());
   small->AllocateScalars(VTK_FLOAT, 1);
-  scene.Mapper->SetSampleDistance(0.2); // so that it is told anew
+  scene.Mapper->SetSampleDistance(0.2); // so that the error is reported again
   scene.Render();
   CHECK(scene.Errors->Has("unsigned char"), "floats: '%s'", scene.Errors->Text.c_str());
   scene.Mapper->SetMaskInput(nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Opacity of exactly 1 is opaque, however short the way through it is against the unit distance: a slab whose value alone has opacity 1,
-// and labels in metres beside the same in voxels.
+// Opacity of exactly 1 is opaque, however short the ray's path is compared with the unit distance: a slab in which only one value has
+// opacity 1, and labels in metres next to equal labels in voxels.
 #include "mapper_testing.h"
 
 namespace {
@@ -50,7 +50,7 @@ const std::pair<const char*, Set> Samplings[] = { { "automatic", &vtkStratusVolu
   { "cells", &vtkStratusVolumeMapper::SetSamplingToCells } };
 const double Spacings[] = { 1.0, 0.001, 1e-6 };
 
-// Value 1, and it alone, has opacity 1: the end of a ramp, a peak, and an end held beyond.
+// Only value 1 has opacity 1: the end of a ramp, a peak, and an end held beyond.
 void ASlab()
 {
   for (int type : { VTK_FLOAT, VTK_UNSIGNED_CHAR }) {

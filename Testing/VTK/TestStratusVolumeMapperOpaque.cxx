@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Opaque geometry inside the volume: rays end where it begins, in float against the reference with the same depths, and in what is shown.
+// Opaque geometry inside the volume ends rays: in float against the reference with equal depths, and in the window.
 #include "mapper_testing.h"
 
 #include "vtkActor.h"
@@ -76,35 +76,35 @@ void Inside(bool parallel)
 void AroundIt()
 {
   Scene scene;
-  const std::vector<float> alone = scene.Picture();
+  const std::vector<float> plain = scene.Picture();
   double center[3], toEye[3];
   scene.Renderer->GetActiveCamera()->GetFocalPoint(center);
   scene.Renderer->GetActiveCamera()->GetDirectionOfProjection(toEye);
   Opaque before(scene, center[0] - 40 * toEye[0], center[1] - 40 * toEye[1], center[2] - 40 * toEye[2], 12);
   scene.Renderer->ResetCameraClippingRange();
-  CHECK(scene.Light() < 0.5 * std::accumulate(alone.begin(), alone.end(), 0.0), "a sphere in front hides too little");
+  CHECK(scene.Light() < 0.5 * std::accumulate(plain.begin(), plain.end(), 0.0), "a sphere in front hides too little");
   before.Sphere->SetCenter(center[0] + 40 * toEye[0], center[1] + 40 * toEye[1], center[2] + 40 * toEye[2]);
   scene.Renderer->ResetCameraClippingRange();
   scene.Render();
   double worst = 0.0;
   const float* rgba = scene.Rgba();
-  for (size_t i = 0; i < alone.size(); ++i) {
-    worst = std::max(worst, std::fabs(static_cast<double>(rgba[i]) - alone[i]));
+  for (size_t i = 0; i < plain.size(); ++i) {
+    worst = std::max(worst, std::fabs(static_cast<double>(rgba[i]) - plain[i]));
   }
   // The clipping range is another one, so the rays' ends round differently; nothing more.
   CHECK(worst < 1e-4, "a sphere behind changes the volume by %g", worst);
   before.Actor->VisibilityOff();
   scene.Renderer->ResetCameraClippingRange();
-  CHECK(scene.Picture() == alone, "a hidden actor changes the picture");
+  CHECK(scene.Picture() == plain, "a hidden actor changes the picture");
 }
 
-// An axes actor's own bounds are those of axes that point to both sides of the origin. Moved away, they say nothing of where it draws.
+// An axes actor's own bounds are symmetric about the origin. After a move they no longer contain the axes.
 void Axes()
 {
   Scene scene;
   scene.Image->SetOrigin(-80, -80, -80);
   scene.Renderer->ResetCamera();
-  const std::vector<float> alone = scene.Picture();
+  const std::vector<float> plain = scene.Picture();
   vtkNew<vtkAxesActor> axes;
   vtkNew<vtkTransform> away;
   away->Translate(-84, -68, -53);
@@ -119,7 +119,7 @@ void Axes()
   empty->SetInputData(noCells);
   nothing->SetMapper(empty);
   scene.Renderer->AddActor(nothing);
-  CHECK(part != alone, "the axes hide nothing");
+  CHECK(part != plain, "the axes hide nothing");
   CHECK(scene.Picture() == part, "the axes hide more when all of the depth is read");
 }
 
@@ -134,8 +134,8 @@ void Coarse()
   CHECK(std::fabs(coarse / fine - 1.0) < 0.1, "light of %g fine and %g coarse", fine, coarse);
 }
 
-// Depth is read only near props whose bounds tell where they draw. A follower's bounds do not, so that one which draws nothing makes the
-// whole depth be read: the same picture must come out, and over a gradient the window must show it.
+// Depth is read only near props whose bounds contain what they draw. A follower's bounds don't, so a follower that draws nothing makes the
+// mapper read the whole depth. Both pictures must be equal, also in a window with a gradient.
 void Near(int samples)
 {
   Scene scene;
@@ -143,7 +143,7 @@ void Near(int samples)
   scene.Renderer->GradientBackgroundOn();
   scene.Renderer->SetBackground(.1, .2, .3);
   scene.Renderer->SetBackground2(.8, .6, .5);
-  const std::vector<float> alone = scene.Picture();
+  const std::vector<float> plain = scene.Picture();
   Opaque small(scene, 8, 20, 20, 3);
   vtkNew<vtkLineSource> line;
   vtkNew<vtkPolyDataMapper> mapper;
@@ -162,7 +162,7 @@ void Near(int samples)
   empty->SetInputData(noCells);
   nothing->SetMapper(empty);
   scene.Renderer->AddActor(nothing);
-  CHECK(part != alone, "the actors hide nothing with %d samples", samples);
+  CHECK(part != plain, "the actors hide nothing with %d samples", samples);
   CHECK(scene.Picture() == part, "a part of the depth gives another picture than all of it with %d samples", samples);
   CHECK(scene.Bytes() == shown, "a part of the depth shows something else than all of it with %d samples", samples);
 

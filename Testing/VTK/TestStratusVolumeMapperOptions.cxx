@@ -28,7 +28,7 @@ void Structures()
   }
   scene.Mapper->SetStructureToAuto();
   CHECK(scene.Picture() == plain, "the automatic structure changes the picture");
-  CHECK(*scene.Mapper->GetReason(), "no reason told");
+  CHECK(*scene.Mapper->GetReason(), "there is no reason");
   for (int size : { 2, 8, 16, 32 }) {
     const vtkTypeUInt64 blocks = scene.Mapper->GetBlocks();
     scene.Mapper->SetBlockSize(size);
@@ -116,7 +116,7 @@ void ImageSampleDistance()
   CHECK(ratio > 0.22 && ratio < 0.28, "half the rays along each axis take %.2f of the samples", ratio);
   CHECK(std::fabs(coarse / light - 1.0) < 0.02, "the coarse picture has the light of %g instead of %g", coarse, light);
   CHECK(scene.Mapper->GetUsedImageSampleDistance() == 2.0, "used %g", scene.Mapper->GetUsedImageSampleDistance());
-  // What is shown is the coarse picture, interpolated: bright where it is.
+  // The window shows the coarse picture, interpolated: it is bright where the volume is.
   double shown = 0.0;
   for (unsigned char byte : scene.Bytes()) {
     shown += byte == 255 ? 0 : byte;
@@ -148,7 +148,7 @@ public:
     this->Ends += event == vtkCommand::VolumeMapperRenderEndEvent;
     if (event == vtkCommand::VolumeMapperRenderProgressEvent) {
       ++this->Steps;
-      // What an AbortCheckEvent's observer would do; the window asks those at most five times a second.
+      // Do what an observer of AbortCheckEvent would do. The window calls those at most five times a second.
       this->Window->SetAbortRender(this->Aborts);
       const double fraction = *static_cast<double*>(data);
       CHECK(fraction >= 0.0 && fraction <= 1.0, "progress of %g", fraction);
@@ -173,7 +173,7 @@ void ProgressAndAbort()
   observer->Aborts = 0;
   scene.Window->SetAbortRender(0);
   CHECK(scene.Picture() == whole, "the picture after an abort is another");
-  CHECK(scene.Errors->Count == 0, "an abort is told as an error: %s", scene.Errors->Text.c_str());
+  CHECK(scene.Errors->Count == 0, "an abort is reported as an error: %s", scene.Errors->Text.c_str());
 }
 
 void Printing()

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Translucent surfaces before, inside and behind a volume, with the renderer's flags of depth peeling: the window against the same layers
-// laid one over the other here. The surfaces cut a volume into layers: what lies before a surface is the picture that ends at the same
-// surface drawn opaque, and an even fog's is known. First hits are one layer, at the depth where they begin; without peels of volumes a
-// volume lies over all surfaces, and volumes over one another as they come.
+// Translucent surfaces before, inside and behind a volume, with the renderer's flags of depth peeling. The window is compared with layers
+// that this test blends itself. The surfaces cut a volume into layers: the part before a surface is the picture that ends at an opaque
+// surface in its place, and an even fog's layers are known. First hits are one layer, at the depth where they begin. If volumes are not
+// peeled, a volume covers all surfaces, and volumes cover one another in the order of drawing.
 #include "tetrahedra_scene.h"
 
 #include "vtkActor.h"
@@ -67,7 +67,8 @@ struct Flags {
 
 const double Ground[3] = { 0.25, 0.5, 0.125 };
 
-// The layers' colour at a pixel. False where a sheet's edge or its crossing with a volume's first depth is too near to tell.
+// Computes the layers' colour at a pixel. Returns false if the pixel is too near to a sheet's edge or to its crossing with a volume's first
+// depth.
 bool Expect(const stratus_camera& camera, const int size[2], size_t pixel, const Sheets& sheets, const std::vector<Drawn>& volumes,
   bool peeled, double opaqueK, double color[3])
 {
@@ -149,8 +150,8 @@ void Look(Scene& scene, bool parallel)
   camera->SetClippingRange(20, 200);
 }
 
-// What lies behind sheets and volumes: the window without them, and its depths; no number at the edges of opaque things. Lost: VTK itself
-// shows no sheet, volumes or not, as 9.1 does where it peels and the window has several samples a pixel.
+// The window without sheets and volumes, and its depths: NaN at the edges of opaque things. Lost: VTK itself shows no sheet, with or
+// without volumes. VTK 9.1 does so if it peels and the window has several samples a pixel.
 struct Backdrop {
   std::vector<unsigned char> Bytes;
   std::vector<double> K;
@@ -197,7 +198,7 @@ Backdrop DrawBackdrop(Scene& scene, const Sheets& sheets, const std::vector<vtkV
   return backdrop;
 }
 
-// Draws the volumes up to each sheet, which is opaque and alone then.
+// Draws the volumes up to each sheet, which is opaque then and the only one.
 void DrawUntil(Scene& scene, const Sheets& sheets, std::vector<Drawn>& drawn, const std::function<std::vector<Drawn>()>& pictures)
 {
   const int peeling = scene.Renderer->GetUseDepthPeeling();
@@ -263,7 +264,7 @@ void Judge(Scene& scene, const std::string& name, const Flags& flags, const Shee
       worst = std::max(worst, std::fabs(255.0 * color[c] - shown[4 * p + c]));
     }
   }
-  // Each layer is laid over another in bytes, and what lies behind all of them is one, too.
+  // Each layer is blended over another in bytes, and the backdrop counts as a layer, too.
   const size_t layers = cut && peeled ? drawn.size() * (sheets.size() + 1) : drawn.size();
   const double bar = 0.51 * static_cast<double>(sheets.size() + layers + 2);
   std::printf("%s, peeling %d, for volumes %d, %d samples, %s: %.2f of 255, bar %.2f, %zu pixels, %zu lit%s\n", name.c_str(), flags.Peeling,
@@ -277,7 +278,7 @@ void Judge(Scene& scene, const std::string& name, const Flags& flags, const Shee
 const Flags AllFlags[] = { { true, true, 0 }, { true, true, 4 }, { true, false, 0 }, { true, false, 4 }, { false, true, 0 },
   { false, false, 4 } };
 
-// Where a sheet of three colours is: before the volume, in its midst, behind it. The volume lies in 0..26.4 along z.
+// A sheet of three colours: before the volume, in its midst and behind it. The volume fills 0..26.4 along z.
 void OneSheet()
 {
   for (const Flags& flags : AllFlags) {
@@ -316,8 +317,8 @@ void ManySheets(bool parallel)
   }
 }
 
-// Two volumes, one before the other, in either order: neither ends the other's rays, whatever the samples. A sheet lies between them and
-// others around; or both lie between the same two, which are the foremost of four, the middle ones, or the hindmost.
+// Two volumes, one before the other, in either order: neither ends the other's rays, for any number of samples. A sheet is between them and
+// other sheets are around; or both are between two sheets, which are the first, the middle or the last two of four.
 void TwoVolumes(bool shared, const std::vector<double>& around = {})
 {
   for (int samples : { 0, 4 }) {
@@ -444,7 +445,7 @@ void Errors()
   scene.Render();
   scene.Mapper->SetInputData(none);
   scene.Render();
-  CHECK(scene.Errors->Count == 1, "an empty volume between peels is told %d times, not once", scene.Errors->Count);
+  CHECK(scene.Errors->Count == 1, "an empty volume between peels is reported %d times, not once", scene.Errors->Count);
   const std::vector<unsigned char> without = scene.Bytes();
   scene.Volume->VisibilityOff();
   scene.Render();

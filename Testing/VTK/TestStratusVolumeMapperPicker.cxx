@@ -174,7 +174,7 @@ struct Stage {
   }
 };
 
-// What a fine march by VTK's own search of cells finds on the way: the parameter and the cell. Shares nothing with the picker.
+// The cell and the parameter along the ray that a fine march by VTK's own cell search finds. It shares no code with the picker.
 struct Found {
   double T = -1.0;
   vtkIdType Cell = -1;
@@ -384,7 +384,7 @@ void Cuts()
   CHECK(stage.Pick(stage.Picker, from, to) && std::fabs(stage.Picker->GetPickPosition()[2] - 2.25) < 1e-9, "the box begins at 2.25, not %g",
     stage.Picker->GetPickPosition()[2]);
   CHECK(stage.Picker->GetCellIJK()[2] == 1 && std::fabs(stage.Picker->GetPCoords()[2] - 0.5) < 1e-9, "half way through the second cell");
-  mapper->SetCroppingRegionFlags(1 << (1 + 3 + 18)); // behind the box alone
+  mapper->SetCroppingRegionFlags(1 << (1 + 3 + 18)); // only the region behind the box
   CHECK(stage.Pick(stage.Picker, from, to) && std::fabs(stage.Picker->GetPickPosition()[2] - 6) < 1e-9,
     "the region behind the box begins at 6");
   mapper->SetCropping(0);
@@ -392,7 +392,7 @@ void Cuts()
   clip->SetOrigin(0, 0, 3.1);
   clip->SetNormal(0, 0, 1);
   mapper->AddClippingPlane(clip);
-  CHECK(stage.Pick(stage.Picker, from, to) && std::fabs(stage.Picker->GetPickPosition()[2] - 3.1) < 1e-9, "the plane lies at 3.1");
+  CHECK(stage.Pick(stage.Picker, from, to) && std::fabs(stage.Picker->GetPickPosition()[2] - 3.1) < 1e-9, "the plane is at 3.1");
   const auto cells = make_unstructured([](const double*) { return 50.0; }, false);
   Stage mesh(cells);
   auto* march = vtkStratusTetrahedraMapper::SafeDownCast(mesh.Volume->GetMapper());
@@ -421,7 +421,7 @@ void Props()
       same += own->GetCellId() == stage.Picker->GetCellId();
     }
   }
-  CHECK(same > 10, "%d cells are those of VTK's picker", same);
+  CHECK(same > 10, "%d cells equal those that VTK picks", same);
   const double from[3] = { 3.3, -20, 3.4 }, to[3] = { 3.3, 30, 3.4 };
   CHECK(stage.Pick(stage.Picker, from, to), "nothing is picked");
   const vtkIdType cell = stage.Picker->GetCellId();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Picking by hardware reads props off the window: the volume is picked where more than 3 of 255 show, what is before it or behind what
-// shows nothing is not it, and pictures are as before. It tells the cell and the point that a ray shows first, as the picture's depths do.
+// Picking by hardware reads props off the window. The volume is picked where it adds more than 3 of 255; props before it, or behind
+// transparent parts of it, are picked instead; and later pictures are as before. The selection contains the cell and the point that a ray
+// shows first, as the picture's depths do.
 #include "mapper_testing.h"
 
 #include "vtkActor.h"
@@ -104,9 +105,8 @@ void Volume(int mode, bool coarse)
   CHECK(shown > 1000 && scene.Picture() == before, "the picture after picking is another");
   const vtkSmartPointer<vtkSelection> cells = Select(scene, false);
   CHECK(cells && cells->GetNumberOfNodes() == 1 && cells->GetNode(0)->GetProperties()->Get(vtkSelectionNode::PROP()) == scene.Volume,
-    "where cells are asked for, the prop is another");
-  CHECK(!cells || TellsShownCells(scene, cells, mode == vtkStratusVolumeMapper::FIRST_HIT_MODE ? 0 : 1),
-    "cells of which nothing shows are told");
+    "a selection of cells names another prop");
+  CHECK(!cells || TellsShownCells(scene, cells, mode == vtkStratusVolumeMapper::FIRST_HIT_MODE ? 0 : 1), "invisible cells are selected");
   Areas(scene);
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rectilinear grids in the window and in the filters. Equal spacing draws the image's picture, stretched grids draw the double reference's;
-// cell data, ghosts, blanking, cropping, masks, picking, trees and distance maps work as on images; what cannot be drawn is refused.
+// cell data, ghosts, blanking, cropping, masks, picking, trees and distance maps work as on images; other grids are refused.
 #include "mapper_testing.h"
 
 #include "Testing/support/reference_modes.h"
@@ -303,7 +303,7 @@ void Filters()
     "the last good output is gone");
 }
 
-// What is no grid is told with its value, nothing is drawn, and the next good input is.
+// Errors about invalid grids contain the wrong value, nothing is drawn, and the next valid input is drawn.
 void BadGrids()
 {
   GridScene scene(20.0);

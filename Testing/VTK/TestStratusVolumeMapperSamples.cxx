@@ -42,7 +42,7 @@ void CountsWhatTheReportCounts()
     CHECK(unseen == 0, "structure %d: %d pixels show what was never sampled", structure, unseen);
   }
   scene.Mapper->CountSamplesOff();
-  CHECK(SamplesOf(scene), "the picture was drawn with samples, whatever is asked of the next");
+  CHECK(SamplesOf(scene), "the picture was drawn with samples, whatever the next one counts");
   scene.Render();
   CHECK(!SamplesOf(scene), "counted after it was switched off");
 }

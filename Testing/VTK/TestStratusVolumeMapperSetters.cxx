@@ -59,7 +59,7 @@ void Samplings()
     scene.Mapper->GetSamplingUsedAsString(), scene.Mapper->GetReason());
 }
 
-// What cells cannot draw is refused by name, and drawn as soon as the rule is another.
+// Settings that the rule "cells" cannot draw are refused by name. Another rule draws them at once.
 void CellsRefused()
 {
   for (bool mask : { false, true }) {

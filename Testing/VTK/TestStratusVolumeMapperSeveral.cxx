@@ -170,13 +170,13 @@ void Ports()
     over = std::max<double>(over, std::fabs(one[at] + (1.0f - one[at / 4 * 4 + 3]) * other[at] - picture[at]));
   }
   CHECK(over > 0.1, "the volumes lie over one another: %g", over);
-  // one alone is what its mapper draws
+  // A single volume looks like its own mapper's picture.
   scene.Volume->VisibilityOn();
   scene.Multi->RemoveVolume(5);
-  const std::vector<float> alone = scene.Mixed();
+  const std::vector<float> single = scene.Mixed();
   scene.Renderer->RemoveViewProp(scene.Multi);
   scene.Renderer->AddViewProp(scene.Volume);
-  CHECK(alone == scene.Picture(), "one volume alone is another picture");
+  CHECK(single == scene.Picture(), "a single volume is another picture");
 }
 
 void Interface()
@@ -196,7 +196,7 @@ void Interface()
   scene.Other->SetPosition(1, 0, 0);
   CHECK(scene.Multi->GetMTime() > time, "moving a volume modifies the prop");
   scene.OtherOpacity->AddPoint(90.0, 0.5);
-  CHECK(scene.Multi->GetRedrawMTime() > redraw, "a function that changed asks for a redraw");
+  CHECK(scene.Multi->GetRedrawMTime() > redraw, "a changed function requests a redraw");
   scene.Multi->SetVolume(scene.Volume, 8);
   CHECK(scene.Errors->Count == 1 && scene.Errors->Has("port 8 must be 0..7"), "%s", scene.Errors->Text.c_str());
   scene.Multi->SetVolume(scene.Volume, 2);
@@ -371,7 +371,7 @@ struct Cells {
   vtkNew<vtkVolume> Volume;
 };
 
-// An unstructured grid mixes with two images, and what is asked of it that does not mix is refused.
+// An unstructured grid mixes with two images, and settings that do not mix are refused.
 void Meshes()
 {
   Pair scene;
@@ -516,7 +516,7 @@ void Refusals()
     scene.Render();
     CHECK(
       scene.Errors->Count == 1 && !scene.Multi->GetLastImage() && std::string(scene.Multi->GetLastError()).find(words) != std::string::npos,
-      "told once: %s", scene.Multi->GetLastError());
+      "reported once: %s", scene.Multi->GetLastError());
   };
   refuses("the volume at port 5: there is no mapper", [](Pair& scene) { scene.Other->SetMapper(nullptr); });
   refuses("the volume at port 5: a mapper of class vtkFixedPoint", [](Pair& scene) {
@@ -558,7 +558,7 @@ void Refusals()
   refuses("there is no scalar array", [](Pair& scene) { scene.OtherImage->GetPointData()->Initialize(); });
 }
 
-// While many pictures a second are asked for, rays are fewer; the next still picture is exact again.
+// While the window wants many frames a second, fewer rays are cast; the next still picture is exact again.
 void Interactive()
 {
   Pair scene(400, 300);

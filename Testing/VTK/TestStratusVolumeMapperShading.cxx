@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What samples show beyond one value's colour and opacity: light, gradient opacity, several components. Each against the double reference,
-// and each setter by its effect. (How far VTK's own mappers are from the same reference: stratus-bench volume, scenes +shade and plume2.)
+// Light, gradient opacity and several components. Each is compared with the double reference, and each setter shows in the picture.
+// (stratus-bench volume, scenes +shade and plume2, measures how far VTK's own mappers are from that reference.)
 #include "mapper_testing.h"
 
 #include "vtkLight.h"
 #include "vtkLightCollection.h"
 
 namespace {
-// The double reference at 1/16 voxel, midpoint samples of .25: what is left is what the sampling itself leaves, lit or not.
+// Limit in dB against the double reference at 1/16 voxel, for midpoint samples of .25. The rest is the sampling's own error, lit or not.
 const double WantedDb = 50.0;
 
 void Fine(Scene& scene)

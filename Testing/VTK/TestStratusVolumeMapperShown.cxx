@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the window shows is the mapper's picture over what was there before, whichever way it got there: copied into the frame buffer where
-// nothing was, blended where something was.
+// The window shows the mapper's picture over the earlier content: copied into an empty frame buffer, blended over anything else.
 #include "mapper_testing.h"
 
 #include "vtkActor2D.h"
@@ -19,7 +18,7 @@ std::vector<unsigned char> WindowBytes(Scene& scene)
   return std::vector<unsigned char>(pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
 }
 
-// Copied or blended (a visible actor that draws nothing forbids the copy), alone on black the bytes are the same, alpha included.
+// Copied or blended (a visible actor that draws nothing forbids the copy), a single volume on black gives equal bytes, alpha included.
 void CopiedAsBlended()
 {
   Scene scene;
@@ -37,7 +36,7 @@ void CopiedAsBlended()
   CHECK(WindowBytes(scene) == copied, "copied and blended bytes differ");
 }
 
-// What an older picture showed, elsewhere in the window, is gone.
+// An older picture leaves nothing elsewhere in the window.
 void NothingStays()
 {
   Scene scene;
@@ -55,7 +54,7 @@ void TwoVolumes()
 {
   Scene scene;
   scene.Render();
-  std::vector<unsigned char> alone = WindowBytes(scene);
+  std::vector<unsigned char> single = WindowBytes(scene);
   vtkNew<vtkStratusVolumeMapper> mapper;
   vtkNew<vtkVolume> volume;
   mapper->SetInputData(scene.Image);
@@ -68,13 +67,13 @@ void TwoVolumes()
   const std::vector<unsigned char> both = WindowBytes(scene);
   size_t lost = 0, lit = 0;
   for (size_t p = 0; p < both.size(); p += 4) {
-    const int before = alone[p] + alone[p + 1] + alone[p + 2], after = both[p] + both[p + 1] + both[p + 2];
+    const int before = single[p] + single[p + 1] + single[p + 2], after = both[p] + both[p + 1] + both[p + 2];
     lit += before > 30;
     lost += before > 30 && after == 0;
   }
   CHECK(lit > 500, "the first volume lights %zu pixels only", lit);
   CHECK(lost == 0, "the second volume erased %zu of %zu pixels", lost, lit);
-  CHECK(both != alone, "the second volume shows nothing");
+  CHECK(both != single, "the second volume shows nothing");
 }
 
 // Two renderers side by side: neither draws into the other's half; a kept colour buffer is blended with.

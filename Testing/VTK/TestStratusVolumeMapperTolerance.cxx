@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tolerance through the mapper: functions, data and settings are probed, cameras are not; the probe's error keeps the tolerance; looser
-// tolerances cost less; what is set by hand needs no tolerance.
+// tolerances cost less; settings made by hand need no tolerance.
 #include "mapper_testing.h"
 
 namespace {
@@ -57,7 +57,7 @@ void WhatIsProbed()
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
 }
 
-// A narrow band and a smooth function: what is expected keeps the tolerance, and so does the picture against the finest one.
+// A narrow band and a smooth function: the expected error keeps the tolerance, and so does the picture compared with the finest one.
 void Ladder()
 {
   for (bool narrow : { false, true }) {
@@ -94,7 +94,7 @@ void Ladder()
   }
 }
 
-// Rule and step set by hand leave nothing to be measured; one of them alone does.
+// Rule and step set by hand leave nothing to measure; if only one is set, the other is probed.
 void ByHand()
 {
   Scene scene(64, 48);
@@ -135,7 +135,7 @@ void Moving()
   scene.Window->SetDesiredUpdateRate(0.0001);
   CHECK(scene.Picture() == exact, "the still picture after moving is another");
   CHECK_PROBES(scene, 1u, "the still picture after moving");
-  scene.Opacity->AddPoint(0.7, 0.9); // the first picture after an edit is a whole one, and it alone is probed
+  scene.Opacity->AddPoint(0.7, 0.9); // the first picture after an edit is a whole one, and only this picture is probed
   scene.Window->SetDesiredUpdateRate(1e6);
   scene.Render();
   scene.Window->SetDesiredUpdateRate(0.0001);

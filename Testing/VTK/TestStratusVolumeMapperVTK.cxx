@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What programs of VTK's own mappers call: vectors, pictures as images, VTK's meaning of gradient opacity and of components beside VTK's
-// own pictures, and calls that are kept without an effect.
+// Calls of programs that use VTK's own mappers: vectors, pictures as images, VTK's meaning of gradient opacity and of components compared
+// with VTK's own pictures, and calls that are kept without an effect.
 #include "mapper_testing.h"
 
 #include "vtkDoubleArray.h"

@@ -206,7 +206,7 @@ struct Scene {
   vtkNew<ErrorObserver> Errors;
 };
 
-// Computes the window's rays from VTK's composite matrix alone, which the mapper does not use.
+// Computes the window's rays only from VTK's composite matrix, which the mapper does not use.
 inline stratus_camera ReferenceCamera(vtkRenderer* renderer)
 {
   vtkCamera* active = renderer->GetActiveCamera();

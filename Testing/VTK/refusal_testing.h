@@ -32,8 +32,8 @@ inline void Refused(const char* what, const char* word, const std::function<void
   CHECK(IsBlack(scene), "%s: something is drawn", what);
   CHECK(!scene.Mapper->GetLastImage(), "%s: the picture before it is handed out", what);
   scene.Render();
-  CHECK(scene.Errors->Count == 1, "%s: told again with every picture", what);
-  CHECK(*scene.Mapper->GetLastError(), "%s: no last error where it was told before", what);
+  CHECK(scene.Errors->Count == 1, "%s: reported again with every picture", what);
+  CHECK(*scene.Mapper->GetLastError(), "%s: the last error is lost when it repeats", what);
   mends(scene);
   CHECK(scene.Picture() == before, "%s: the picture after it is another", what);
   CHECK(!*scene.Mapper->GetLastError(), "%s: still '%s'", what, scene.Mapper->GetLastError());

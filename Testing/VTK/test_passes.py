@@ -116,7 +116,7 @@ class Scene:
         """The mean distance of our picture from FixedPoint's, and from the one without a volume, of 255: of all pixels, and of those of a ball in
         front, its border aside."""
         ours, fixed, none = (self.draw(mapper, render_pass) for mapper in (self.ours, self.fixed, None))
-        if render_pass is None:  # tells where a ball is in front
+        if render_pass is None:  # the first call marks the pixels that a ball in front covers
             self.front = (numpy.abs(ours - none).max(2) == 0) & (numpy.abs(none - none[2, -2]).max(2) > 8)
             for _ in range(3):
                 self.front[1:-1, 1:-1] &= self.front[:-2, 1:-1] & self.front[2:, 1:-1] & self.front[1:-1, :-2] & self.front[1:-1, 2:]

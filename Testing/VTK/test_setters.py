@@ -350,7 +350,7 @@ def culled():
     for style, number in ("None", 0), ("FrontToBack", 1), ("BackToFront", 2):
         getattr(culler, "SetSortingStyleTo" + style)()
         check(culler.GetSortingStyle() == number, f"SetSortingStyleTo{style} is {culler.GetSortingStyle()}")
-    # Large boxes past a narrow frustum's corners: the planes alone don't tell them apart.
+    # Large boxes past a narrow frustum's corners. A test of only the frustum's planes does not cull them.
     camera.SetViewAngle(4)
     for i in range(200):
         mapper, actor = vtk.vtkPolyDataMapper(), vtk.vtkActor()

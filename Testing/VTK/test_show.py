@@ -128,7 +128,7 @@ def steps():
     step, ramp, near = alpha([(0, 0), (0.5, 0), (0.5, 0.8), (1, 0.8)]), alpha([(0, 0), (0.5, 0.8), (1, 0.8)]), \
         alpha([(0, 0), (0.4999999, 0), (0.5, 0.8), (1, 0.8)])
     check(numpy.abs(step - ramp).max() > 40, "two opacities at one value are a step, not a ramp")
-    # The narrow ramp lies between two entries of the mapper's tables, the step on one of them.
+    # The narrow ramp is between two entries of the mapper's tables, the step is on one of them.
     check(numpy.abs(step - near).max() <= 4, f"the step is where it is given: {numpy.abs(step - near).max()}")
     check(numpy.array_equal(step, alpha([(0, 0), (0.5, 0), (0.5, 0.1), (0.5, 0.8), (1, 0.8)])), "of three at one value the middle one says nothing")
     check(numpy.array_equal(step, alpha([(1, 0.8), (0.5, 0), (0.5, 0.8), (0, 0)])), "in any order of values")
@@ -155,8 +155,8 @@ def ranges():
     for value in 7.0, 0.0, -3.0, 1e308, -1e308, 1e-310, 1e17:
         box = stratus.show(numpy.full((8, 8, 8), value), opacity=0.3, **options)
         check(box[30, 30, 3] > 100 and box[0, 0, 3] == 0, f"{value} everywhere is a box: {box[30, 30]}")
-    told, none = reason(numpy.full((8, 8, 8), 7.0), opacity=0, **options)
-    check(none.max() == 0 and "opacity is 0" in told, f"of the opacity that is asked for: {told}")
+    warning, none = reason(numpy.full((8, 8, 8), 7.0), opacity=0, **options)
+    check(none.max() == 0 and "opacity is 0" in warning, f"of the opacity that is asked for: {warning}")
     check(stratus.show(numpy.full((8, 8, 8), 7, numpy.uint8), **options)[30, 30, 3] > 100, "one integer everywhere is a box")
     image = stratus.as_image(field * 2.0**500)
     image.GetPointData().GetScalars().SetName("density")
@@ -179,13 +179,13 @@ def types():
 
 def reason(array, **options):
     """The one warning of a picture, "" where there is none, and the picture."""
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         picture = stratus.show(array, **{"size": (60, 60), **options})
-    check(len(told) <= 1, f"one warning: {[str(one.message) for one in told]}")
-    for one in told:
+    check(len(caught) <= 1, f"one warning: {[str(one.message) for one in caught]}")
+    for one in caught:
         check(one.category is stratus.NothingShown and one.filename == __file__, f"at the caller's line: {one.filename}")
-    return str(told[0].message) if told else "", picture
+    return str(caught[0].message) if caught else "", picture
 
 
 def reasons():
@@ -193,20 +193,20 @@ def reasons():
     field = ball((20, 20, 20), (10, 10, 10), 8)
     for array, words in (numpy.full((8, 8, 8), numpy.nan), "512 NaN or infinite"), (numpy.full((8, 8, 8), numpy.inf), "512 NaN or infinite"), \
             (numpy.ma.masked_all((8, 8, 8)), "512 masked"):
-        told, picture = reason(array)
-        check(words in told and (picture == picture[0, 0]).all(), f"'{words}' and the background: {told}")
+        warning, picture = reason(array)
+        check(words in warning and (picture == picture[0, 0]).all(), f"'{words}' and the background: {warning}")
     check("all values are 7" in reason(numpy.full((8, 8, 8), 7.0), opacity=[(8, 0), (9, 1)])[0], "constant, beside the function")
-    told = reason(field, opacity=[(0, 0), (2, 0), (3, 1), (4, 0)])[0]
-    check("0..1" in told and "2..4" in told, f"a function beside the values: {told}")
+    warning = reason(field, opacity=[(0, 0), (2, 0), (3, 1), (4, 0)])[0]
+    check("0..1" in warning and "2..4" in warning, f"a function beside the values: {warning}")
     noise = numpy.random.default_rng(1).random((12, 12, 12))
     spiked = noise.copy()
     spiked[3, 4, 5] = 1e300
     for options in {}, dict(opacity=0.5):
-        told = reason(spiked, **options)[0]
-        check("next to nothing shows" in told and "95 %" in told, f"a spike of 1e300: {told}")
+        warning = reason(spiked, **options)[0]
+        check("next to nothing shows" in warning and "95 %" in warning, f"a spike of 1e300: {warning}")
     check(reason(spiked, opacity=[(0, 0), (1, 0.5)])[0] == "", "a function of one's own is for the others")
-    told = reason(field, opacity=[(0, 0), (1, 1e-5)])[0]
-    check("half a step" in told and "unit_distance" in told, f"too thin: {told}")
+    warning = reason(field, opacity=[(0, 0), (1, 1e-5)])[0]
+    check("half a step" in warning and "unit_distance" in warning, f"too thin: {warning}")
     mapper = stratus.vtkStratusVolumeMapper()
     mapper.SetBlendModeToMinimumIntensity()
     check("mode minimum" in reason(field, mapper=mapper)[0], "the smallest value of each ray is transparent")
@@ -273,7 +273,7 @@ def refusals():
     mapper = stratus.vtkStratusVolumeMapper()
     mapper.SetBlockSize(3)
     refuse(RuntimeError, "block", show, field, mapper=mapper)
-    refuse(RuntimeError, "block", show, field, mapper=mapper)  # which the mapper itself tells only once
+    refuse(RuntimeError, "block", show, field, mapper=mapper)  # the mapper itself reports this only once
     mapper.SetBlockSize(0)
     check(show(field, mapper=mapper, size=(30, 20)).max() > 0 and mapper.GetLastError() == "", "mended, it draws")
     mapper.SetBlockSize(3)
@@ -312,7 +312,7 @@ def refusals():
     check(ended.returncode == 0, "a window that is not X's is not asked for a display: " + ended.stderr)
 
 
-def told(function, name):
+def described(function, name):
     """Text besides the signature."""
     return [line for line in (function.__doc__ or "").splitlines() if line.strip() and not line.startswith(("C++:", name + "("))]
 
@@ -321,13 +321,13 @@ def helps():
     by_vtk = set(vars(vtk.vtkObjectBase)) | {"SafeDownCast", "NewInstance", "GetNumberOfGenerationsFromBase", "GetNumberOfGenerationsFromBaseType"}
     for name in (name for name in dir(stratus) if name.startswith("vtkStratus")):
         one = getattr(stratus, name)
-        check(len(one.__doc__ or "") > 200, name + " is told")
+        check(len(one.__doc__ or "") > 200, name + " is described")
         for method, function in vars(one).items():
             if callable(function) and not isinstance(function, type) and not method.startswith("__") and method not in by_vtk:
-                overridden = [getattr(base, method) for base in one.__mro__[1:] if hasattr(base, method)]  # VTK tells what it is for
-                check(any(told(candidate, method) for candidate in [function, *overridden]), f"{name}.{method} is told")
+                overridden = [getattr(base, method) for base in one.__mro__[1:] if hasattr(base, method)]  # or VTK describes the method
+                check(any(described(candidate, method) for candidate in [function, *overridden]), f"{name}.{method} is described")
     for function in stratus.show, stratus.as_image, stratus.Picture:
-        check(len(function.__doc__ or "") > 50, f"{function} is told")
+        check(len(function.__doc__ or "") > 50, f"{function} is described")
 
 
 shares_memory()

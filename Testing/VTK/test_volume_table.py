@@ -25,7 +25,7 @@ table = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line 
 check(len(table) > 30 and all(len(row) == 3 and all(row) for row in table), "rows of three cells")
 words = {word: row for row in table for word in re.findall(r"`(\w+)`", row[0])}
 
-# What several ways to say the same thing set, and what a mapper has from elsewhere.
+# Setters with several names, and properties that a mapper gets from elsewhere.
 plain = "InputData InputConnection RemoveInputConnection"
 
 

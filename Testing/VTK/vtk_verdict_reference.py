@@ -22,7 +22,7 @@ def rays(bounds, camera):
     mapper.SetInputConnection(source.GetOutputPort())
     actor.SetMapper(mapper)
     renderer.AddActor(actor)
-    renderer.SetNearClippingPlaneTolerance(0.001)  # what a window of 24 bits of depth sets
+    renderer.SetNearClippingPlaneTolerance(0.001)  # as in a window with 24 bits of depth
     look_at(renderer, camera)
     matrix = renderer.GetActiveCamera().GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1, 1)
     inverse = numpy.linalg.inv(numpy.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)]))
