@@ -60,7 +60,7 @@ static void fill_slab(stratus_type type, double inside, double outside, double m
   put(type, 0, most);
 }
 
-/* Draws with all structures, or with octants alone, which must not differ, and returns the alpha of the middle pixel. */
+/* Draws with all structures, which must not differ, or only with octants, and returns the middle pixel's alpha. */
 static double draw(stratus_context* context, stratus_type type, const double* opacity, size_t count, stratus_sampling sampling,
   stratus_interpolation interpolation, bool all)
 {
@@ -110,8 +110,8 @@ static double absorbed(double opacity, double length)
 
 static void check_slab(double alpha, double opacity, stratus_interpolation interpolation, double half_width, const char* what, double k)
 {
-  /* Nearest: the slab is 6 voxels thick, whose ends may lie between two samples. Linear: the 5 between its layers, and what the way to
-   * other values shows of the window. */
+  /* Nearest: the slab is 6 voxels thick, and its ends may be between two samples. Linear: the 5 voxels between its layers, and half_width
+   * voxels at each end, where values between the layers are still in the window. */
   const bool nearest = interpolation == STRATUS_INTERPOLATION_NEAREST;
   const double least = absorbed(opacity, nearest ? 5.7 : 4.7), most = absorbed(opacity, nearest ? 6.3 : 5.3 + 2.0 * half_width);
   if (!(alpha >= least && alpha <= most)) {
@@ -119,8 +119,8 @@ static void check_slab(double alpha, double opacity, stratus_interpolation inter
   }
 }
 
-/* Every label of bytes, and 500 of each larger type. The first ones are drawn in every way with all structures, the others with octants,
- * and those of larger types in one way each. */
+/* Tests every label of bytes and 500 of each larger type. The first ones are drawn with every interpolation and sampling and with all
+ * structures, the others only with octants, and the larger types' others with one interpolation and sampling each. */
 static void each_label_is_shown_by_its_window(void** state)
 {
   enum { OF_BYTES = 256, OF_OTHERS = 500, WITH_ALL = 12 };

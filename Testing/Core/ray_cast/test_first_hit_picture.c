@@ -315,7 +315,7 @@ static void equal_coordinates_draw_the_picture_of_the_image(void** state)
   stratus_context_destroy(context);
 }
 
-/* Differences of a square polynomial are exact on any spacing, so that light tells the field's own gradient. */
+/* Differences of a square polynomial are exact on any spacing, so that light shows the field's own gradient. */
 static void gradients_are_those_of_the_field(void** state)
 {
   (void)state;

@@ -214,7 +214,7 @@ static void a_tree_that_comes_with_the_data_is_used(void** state)
   assert_int_equal(first.report.differing_pixels, 0);
   expect_builds(&first, 1, 0); /* the audit walks from voxel to voxel */
   o.c.options.audit = 0;
-  o.c.options.structure = STRATUS_STRUCTURE_DISTANCE; /* asked for another */
+  o.c.options.structure = STRATUS_STRUCTURE_DISTANCE; /* the options request another structure */
   expect_offered(&o, 0);
   o.c.options.structure = STRATUS_STRUCTURE_HYBRID;
   expect_offered(&o, 1);

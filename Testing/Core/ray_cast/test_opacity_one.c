@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Opacity 1 stops all light, however short the way, by both sampling rules, in volumes and in meshes, on host and device. Opacities below
- * 1, however little, stay translucent by the right amount. */
+ * Opacity 1 stops all light on any path length, by both sampling rules, in volumes and in meshes, on host and device. Opacities just below
+ * 1 stay translucent by the right amount. */
 #include "tetra_case.h"
 #include "testing.h"
 
@@ -121,8 +121,8 @@ static void a_slab_of_opacity_1_is_opaque_at_any_spacing(void** state)
   }
 }
 
-/* The function reaches 1 exactly at the slab's value, wherever that lies in the table: at the foot of a plateau, at a peak, between steps.
- */
+/* The function reaches 1 exactly at the slab's value, which is at any place in the table: at the foot of a plateau, at a peak, between
+ * steps. */
 static void opacity_1_at_the_value_itself_is_opaque(void** state)
 {
   static const double foot[] = { 0, 0, 100.3, 1, 200, 1 }, peak[] = { 0, 0, 100.3, 1, 200, 0 },
@@ -171,7 +171,7 @@ static void a_narrow_band_of_opacity_1_is_met_on_the_way(void** state)
   }
 }
 
-/* Exact alpha of a way through a medium of uniform opacity. */
+/* Returns the exact alpha of a path through a medium of uniform opacity. */
 static double absorbed(double opacity, double length)
 {
   return -expm1(length * log1p(-opacity));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Volumes that were cut into blocks: the order against brute force along rays, and pictures against that of the whole volume. */
+ * Volumes that were cut into blocks: the order against brute force along rays, and pictures against the whole volume's. */
 #include "picture_case.h"
 
 #include "block_order.h"
@@ -146,7 +146,7 @@ static bool meets(const stratus_block_box* box, const double from[3], const doub
   return *leave > *enter + 1e-9;
 }
 
-/* Boxes of cut volumes, some left out, from eyes outside and inside: along random rays no box comes after one that lies behind it. */
+/* Boxes of cut volumes, some left out, from eyes outside and inside: along random rays no box comes after a box that it hides. */
 static void no_ray_meets_boxes_in_another_order(void** state)
 {
   uint64_t pairs = 0, wrong = 0;
@@ -209,8 +209,8 @@ static void no_ray_meets_boxes_in_another_order(void** state)
 
 /* ---- pictures */
 
-/* A cut moves the samples next to it, but none of rule cells, which integrates each cell by itself. What is left is that each block's table
- * has entries of its own, for it covers the block's values alone. */
+/* A cut moves the samples next to it, except by rule cells, which integrates each cell separately. The remaining difference is that each
+ * block's table covers only the block's values, so that it has other entries. */
 static void blocks_draw_the_whole(void** state)
 {
   static const double most[] = {
@@ -258,8 +258,8 @@ static void blocks_draw_the_whole(void** state)
     (double)worst[STRATUS_SAMPLING_PREINTEGRATED], (double)worst[STRATUS_SAMPLING_CELLS]);
 }
 
-/* With a layer of their neighbours' cells blocks have the gradients of the whole, and are ordered as without: drawn twice, for the boxes of
- * the first time are of what the caster has not seen. */
+/* If blocks include a layer of their neighbours' cells, they have the whole volume's gradients, and their order is found as without it.
+ * Each case is drawn twice, because the caster has not seen the blocks' boxes in the first frame. */
 static void blocks_with_layers_of_others_draw_the_whole_lit(void** state)
 {
   stratus_ray_cast_report reports[BLOCKS_MOST];

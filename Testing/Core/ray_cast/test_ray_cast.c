@@ -250,7 +250,7 @@ static void a_single_layer_has_no_thickness_but_a_layer_of_cells_has(void** stat
   case_destroy(&c);
 }
 
-/* A peak a tenth of the field's step over a voxel wide: what pre-integration is for. */
+/* A peak a tenth of the field's step over a voxel wide: the case that pre-integration is made for. */
 static void preintegration_keeps_narrow_peaks(void** state)
 {
   picture_case c;

@@ -59,7 +59,7 @@ static void expect_bytes(const char* device, uint32_t seeds)
   }
   print_message(
     "             %d of %u pictures show something, %d have pixels outside the window, %d inside\n", lit, seeds, outside, inside);
-  assert_true(lit > 3 && outside > 3 && inside > 3); /* else the cases tell little */
+  assert_true(lit > 3 && outside > 3 && inside > 3); /* else the cases test little */
   stratus_context_destroy(context);
 }
 

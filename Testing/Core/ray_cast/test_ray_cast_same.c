@@ -46,7 +46,7 @@ static void structures_change_no_bit(void** state)
     }
     case_destroy(&c);
   }
-  assert_true(lit > 60); /* else the cases show too little to tell anything */
+  assert_true(lit > 60); /* else the pictures show too little */
   assert_true(skipped > 0);
   stratus_context_destroy(context);
 }
@@ -116,9 +116,9 @@ static void threads_change_no_bit(void** state)
   }
 }
 
-/* A pixel's picture depends on its ray alone. A window of the same rays therefore shows the same, whatever packets and tiles they fall
- * into. */
-static void tiles_change_no_bit(void** state)
+/* A pixel's picture depends only on its ray. A window of the same rays therefore shows the same pixels in any packets and tiles, but for
+ * the rounding of its camera. */
+static void tiles_change_nothing_but_roundings(void** state)
 {
   (void)state;
   stratus_context* context = case_context("host", 2);
@@ -153,7 +153,7 @@ static void tiles_change_no_bit(void** state)
   stratus_context_destroy(context);
 }
 
-/* The sampling rules have a table each, lit pictures another: what returns is used again, and is never the other's. */
+/* Each sampling rule has a table, and lit pictures have another. A table is used again when its rule returns, and only then. */
 static void rules_that_take_turns_keep_their_tables(void** state)
 {
   (void)state;
@@ -220,7 +220,7 @@ int test_ray_cast_same(void)
     cmocka_unit_test(structures_change_no_bit),
     cmocka_unit_test(trees_that_come_with_the_data_change_no_bit),
     cmocka_unit_test(threads_change_no_bit),
-    cmocka_unit_test(tiles_change_no_bit),
+    cmocka_unit_test(tiles_change_nothing_but_roundings),
     cmocka_unit_test(rules_that_take_turns_keep_their_tables),
     cmocka_unit_test(a_caster_that_was_used_before_draws_the_same),
   };

@@ -117,7 +117,7 @@ static void nearest_is_exact(void** state)
         while (begin < end) {
           double next = end;
           int64_t box[3];
-          for (int a = 0; a < 3; ++a) { /* a point just behind the border tells the box */
+          for (int a = 0; a < 3; ++a) { /* find the box of a point just behind the border */
             box[a] = (int64_t)fmin(fmax(floor(p[a] + (begin + 1e-9) * d[a] + 0.5), 0.0), N - 1);
             next = fmin(next,
               ((double)box[a] + (d[a] > 0.0 ? 0.5 : -0.5) - p[a]) / d[a] > begin + 1e-9

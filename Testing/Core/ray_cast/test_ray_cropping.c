@@ -2,8 +2,8 @@
  * Crop regions, masks and jitter of the ray cast in every mode, compared with a double reference, and with the same picture without
  * structure.
  *
- * Planes cut a ray exactly in both. Only the samples' errors are left, which are of first order for an extreme that lies on a plane. A
- * mask's border is met to half a step, .05 voxel, and a ray that passes it by less than that is wholly right or wholly wrong: MASK_DB. */
+ * Planes cut a ray exactly in both. Only the samples' errors are left, which are of first order for an extreme that is on a plane. A mask's
+ * border is met to half a step, .05 voxel, and a ray that passes it more closely is wholly right or wholly wrong: MASK_DB. */
 #include "picture_case.h"
 #include "reference_modes.h"
 
@@ -58,7 +58,7 @@ static void crop_between(picture_case* c, uint32_t regions)
   }
 }
 
-/* Each of the 27 regions alone, and the sets that VTK has names for. */
+/* Each single one of the 27 regions, and the sets that VTK has names for. */
 static void each_region_is_where_it_should_be(void** state)
 {
   static const uint32_t named[] = { 0x2000u, 0x5ffdfffu, 0x0417410u, 0x7ebfbefu, 0x2ebfeba,
@@ -167,7 +167,7 @@ static void a_mask_that_changes_is_read_again(void** state)
   assert_true(masked > 0 && masked < whole);
   memset(mask, 0, 23 * 29 * 21);
   case_render_with(*state, caster, &c, &drawn);
-  assert_int_equal(case_lit(&drawn), masked); /* not told that it changed */
+  assert_int_equal(case_lit(&drawn), masked); /* the mask's revision is the old one */
   c.options.mask_revision = 1;
   case_render_with(*state, caster, &c, &drawn);
   assert_int_equal(case_lit(&drawn), 0);
@@ -257,14 +257,14 @@ static void jitter_moves_samples_and_nothing_else(void** state)
   case_render(*state, &c, &other);
   assert_true(reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS) > 65.0);
   int near = 0, far = 0;
-  for (int i = 0; i < CASE_PIXELS; ++i) { /* depths are told from the eye, not from the moved lattice's begin */
+  for (int i = 0; i < CASE_PIXELS; ++i) { /* depths are measured from the eye, not from the moved lattice's begin */
     if (isfinite(drawn.depth[i]) && isfinite(other.depth[i])) {
       const bool same = fabsf(drawn.depth[i] - other.depth[i]) < 0.5f;
       near += same;
       far += !same;
     }
   }
-  /* A ray that only grazes a faint part may meet it on one lattice, and what lies behind on the other. */
+  /* A ray that only grazes a faint part may meet it on one lattice, and a part behind it on the other. */
   assert_true(near > 100 && far * 100 <= near);
   case_destroy(&c);
 }

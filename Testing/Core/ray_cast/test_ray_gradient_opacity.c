@@ -34,7 +34,8 @@ static void gradient_opacity_thins_as_the_reference_says(void** state)
   stratus_context_destroy(context);
 }
 
-/* Opacities that are multiplied show less than depths that are, the less the longer the way; and a way of length 0 is the depth. */
+/* Gradient opacity that scales the opacity over a length shows less than one that scales optical depth, and the less the greater the
+ * length. Length 0 means optical depth. */
 static void gradient_opacity_of_opacities_thins_as_the_reference_says(void** state)
 {
   (void)state;
@@ -76,7 +77,7 @@ static void gradient_opacity_of_opacities_thins_as_the_reference_says(void** sta
   stratus_context_destroy(context);
 }
 
-/* A white slab of opacity 1 in a field of constant gradient: of gradient opacity F, a way of the length that is set shows F. */
+/* A white slab of opacity 1 in a field of constant gradient: with gradient opacity F, a path of the given length shows F. */
 static void a_slab_of_opacity_one_shows_its_gradient_opacity(void** state)
 {
   (void)state;

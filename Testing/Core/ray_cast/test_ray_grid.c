@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Rectilinear grids. Equal spacing given as coordinates draws the image's picture; stretched grids draw the double reference's, which finds
- * cells in the coordinates themselves; no structure, block size or instruction set changes a bit; what is no grid is refused. */
+ * cells in the coordinates themselves; no structure, block size or instruction set changes a bit; invalid grids are refused. */
 #include "grid_case.h"
 #include "ray_cast_host.h"
 #include "reference_modes.h"
 #include "volume.h"
 #include "testing.h"
 
-/* Where tables translate positions, floats round other numbers: of RGBA this much in one channel, as the issue asks. */
+/* If tables translate positions, floats are rounded differently: one channel of RGBA may differ by this much. */
 #define IMAGE_ERROR 1e-5f
-/* dB against the reference with samples a hundredth of a mean voxel apart, about a fifth of the shortest one: those of image grids at a
- * quarter of a voxel. */
+/* Limit in dB against the reference with samples a hundredth of a mean voxel apart, about a fifth of the shortest one. It equals the limit
+ * of image grids at a quarter of a voxel. */
 #define GRID_STEP 0.01
 #define GRID_DB 58.0
 
@@ -278,7 +278,7 @@ static void rule_local_keeps_its_bits_too(void** state)
   assert_true(local > (few_run() ? 1 : 4));
 }
 
-/* Whole cells far from 0, as UTM coordinates are, and the same grid told from its other end. */
+/* Whole cells far from 0, like UTM coordinates, and the same grid listed from its other end. */
 static void far_and_falling_coordinates_draw_the_same(void** state)
 {
   uint32_t none = 0;

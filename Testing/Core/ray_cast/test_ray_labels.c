@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Label maps, compared with the double reference; the entries of their tables and those of components; and what is not read where
- * nothing is lit. */
+ * Label maps, compared with the double reference; the entries of their tables and of components' tables; and the arrays that unlit pictures
+ * do not read. */
 #include "components_case.h"
 
 #include "ray_caster.h"
@@ -41,12 +41,12 @@ static void labels_have_colours_and_opacities_of_their_own(void** state)
     m.c.options.shade = type == STRATUS_FLOAT64;
     const double scale = case_type_values[type].scale;
     const double thin[2][4] = { { 0.0, 0.3, 0.3 * scale, 1.0 }, { 0.02 * scale, 1.0, 0.2 * scale, 0.1 } };
-    for (int l = 0; l < 2; ++l) { /* label 1 has a gradient opacity of its own, and label 2 that of no label, where there is one */
+    for (int l = 0; l < 2; ++l) { /* label 1 has its own gradient opacity; label 2 uses the one of no label, if there is one */
       m.transfers[l].gradient = thin[l];
       m.transfers[l].gradient_count = type == STRATUS_FLOAT64 || (type == STRATUS_UINT32 && l == 1) ? 2 : 0;
     }
     m.c.options.gradient_distance = type == STRATUS_FLOAT64 ? 2.0 : 0.0;
-    m.c.options.sample_distance = 0.02; /* labels are steps: what a sample misses there is of first order */
+    m.c.options.sample_distance = 0.02; /* labels are steps, where the samples' error is of first order */
     reference_scene scene = case_scene(&m.c);
     scene.transfer = m.transfers;
     scene.labels = labels;
@@ -72,7 +72,7 @@ static void labels_have_colours_and_opacities_of_their_own(void** state)
   stratus_context_destroy(context);
 }
 
-/* Tables of components and labels have as many entries as the tolerance asks for; of more labels than have room, as many as fit. */
+/* Tables of components and labels have as many entries as the tolerance needs, or as many as fit for all labels. */
 static void components_and_labels_take_the_entries_of_the_tolerance(void** state)
 {
   (void)state;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Rule local: cells in rough blocks, samples in all others. It is taken where few blocks are rough, keeps the tolerance, takes fewer
- * samples than either rule alone, and no structure, block size or instruction set changes a bit of it. */
+ * Rule local: cells in rough blocks, samples in all others. It is chosen if few blocks are rough, keeps the tolerance, and needs fewer
+ * samples than either of its two rules. No structure, block size or instruction set changes a bit of its picture. */
 #include "picture_case.h"
 
 #include "volume.h"

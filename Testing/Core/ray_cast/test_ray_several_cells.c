@@ -206,7 +206,7 @@ static void no_structure_changes_a_bit_of_rule_local(void** state)
   stratus_context_destroy(threads[1]);
 }
 
-/* What the probes choose keeps the tolerance of the whole picture. */
+/* The probes' settings together keep the tolerance of the whole picture. */
 static void automatic_sampling_of_sharp_functions_keeps_the_tolerance(void** state)
 {
   int cells = 0;

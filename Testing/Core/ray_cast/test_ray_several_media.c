@@ -26,7 +26,7 @@ static void take_many(stratus_context* context, several_case* m, int n, many* of
   m->of[n].options.sample_distance = 0.2;
   m->of[n].camera = camera;
   several_place(&m->of[n], seed + 17u * (uint32_t)n);
-  for (int c = 0; c < COMPONENTS; ++c) { /* the first component's points are those of the case, wherever that was moved */
+  for (int c = 0; c < COMPONENTS; ++c) { /* the first component uses the moved case's points */
     of->transfers[c].unit_distance *= 2.0;
     of->transfers[c].opacity = m->of[n].opacity;
   }
@@ -104,7 +104,7 @@ static void labels_mix_as_the_reference_does(void** state)
     c->options.label_count = 2;
     c->options.shade = i == 1;
     for (int n = 0; n < 2; ++n) {
-      m.of[n].options.sample_distance = 0.02; /* labels are steps: what a sample misses there is of first order */
+      m.of[n].options.sample_distance = 0.02; /* labels are steps, where the samples' error is of first order */
     }
     assert_true(several_psnr("labels", *state, &m, &drawn) >= 54.0);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);

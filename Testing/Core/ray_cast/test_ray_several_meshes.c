@@ -214,7 +214,7 @@ static void a_mesh_alone_is_the_ordinary_picture(void** state)
   m.volumes.count = 0;
   expect_drawn(state, &third);
   m.volumes.count = volumes;
-  print_message("             beside an empty volume %g, alone %g\n", (double)largest_difference(&drawn, &other),
+  print_message("             with an empty volume %g, without %g\n", (double)largest_difference(&drawn, &other),
     (double)largest_difference(&third, &other));
   /* both round values to the entries of one table, in different ways */
   assert_true(largest_difference(&drawn, &other) < 1e-3f && largest_difference(&third, &other) < 1e-3f);
@@ -294,7 +294,7 @@ static void a_wall_in_a_mesh_hides_what_is_behind(void** state)
   }
 }
 
-/* Where cells overlap both count, so that what lies behind is as dim as it is with two meshes. */
+/* Where cells overlap both count, so that a part behind them is as dim as behind two meshes. */
 static void cells_that_overlap_both_count(void** state)
 {
   mixed_create(*state, 0, 1, 560);

@@ -5,8 +5,8 @@
 
 #include "volume.h"
 
-/* dB against the reference at a quarter of a voxel. Light multiplies colours that are sampled at the same places, so that the sampling's
- * own error and the bound are those of the unlit pictures. */
+/* Limit in dB against the reference at a quarter of a voxel. Light multiplies colours that are sampled at equal places, so lit
+ * pictures have the sampling error and the limit of unlit ones. */
 #define MIDPOINT_DB 58.0
 
 static picture drawn;
@@ -125,7 +125,7 @@ static void what_is_wrong_with_a_lamp_is_said(void** state)
   const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
-    for (int positional = 0; positional < 2; ++positional) { /* what a directional light does not read is not checked */
+    for (int positional = 0; positional < 2; ++positional) { /* fields that a directional light does not read are not checked */
       c.options.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 },
         .color = { 1, 1, 1 },
         .positional = positional,
@@ -246,7 +246,7 @@ static void each_number_of_the_shading_has_its_effect(void** state)
   c.options.shade = 1;
   c.options.shading.ambient = 1.0;
   c.options.shading.diffuse = 0.0;
-  assert_true(fabs(light_of(context, &c) - plain) < 1e-5 * plain); /* ambient light alone shows the colours as they are */
+  assert_true(fabs(light_of(context, &c) - plain) < 1e-5 * plain); /* ambient light without any other shows the colours as they are */
   for (int i = 0; i < CASE_PIXELS; ++i) {                          /* light changes no opacity, no depth and no count */
     assert_true(drawn.rgba[4 * i + 3] == other.rgba[4 * i + 3]);
     assert_true(drawn.depth[i] == other.depth[i] && drawn.samples[i] == other.samples[i]);

@@ -2,14 +2,14 @@
  * Slices, compared with a double reference that finds the surface by bisection: planes, spheres, cylinders, cones and saddles, from inside
  * and outside, cropped, clipped and masked, on images and on grids whose spacing changes.
  *
- * Slices don't sample, so that rounding alone is left: that of a position, some 1e-5 voxel, times the steepest change of colour or opacity,
- * and the table's half an entry, as of the other modes. A ray that grazes the surface may meet it in one picture and not in the other. */
+ * Slices don't sample, so that only rounding is left: of a position, some 1e-5 voxel, times the steepest change of colour or opacity, and
+ * the table's half an entry, as in the other modes. A ray that grazes the surface may meet it in only one picture. */
 #include "grid_case.h"
 #include "reference_modes.h"
 #include "volume.h"
 
 #define SLICE_DB 64.0    /* as of the modes that sample; measured: 70 and more */
-#define DEPTH_ERROR 1e-3 /* world, of volumes 30 wide; larger where a ray nearly lies in a plane */
+#define DEPTH_ERROR 1e-3 /* in world units, for volumes 30 wide; larger if a ray is nearly in a plane */
 #define GRAZING_SHARE 0.003
 
 static picture drawn, other;

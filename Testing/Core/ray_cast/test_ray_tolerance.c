@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The tolerance keeps its word: random scenes, drawn with the settings that the probe takes, err by no more than was asked for, against the
- * double-precision reference. And the probe is asked only when it must be. */
+ * Random scenes, drawn with the settings that the probe chooses, err by at most the tolerance, against the double-precision reference. And
+ * the probe runs only when it must. */
 #include "random_scene.h"
 #include "testing.h"
 
@@ -105,7 +105,7 @@ static void random_scenes_keep_the_tolerance(void** state)
   }
   /* Of all 5,993 cases that met their tolerance 7 err by more than twice as much, in a few pixels each: see docs/failures.md. */
   assert_true(test_many(&seeds, SCENES) ? far_beyond * 500 <= cases : far_beyond == 0);
-  assert_true(!test_many(&seeds, 200) || beyond * 100 <= cases); /* fewer cases cannot tell one in a hundred */
+  assert_true(!test_many(&seeds, 200) || beyond * 100 <= cases); /* fewer cases cannot show a share of one in a hundred */
   if (test_many(&seeds, QUICK)) {
     assert_true(unmet * 20 <= cases + unmet);
     assert_true(tallies[1].ratios[tallies[1].cases / 2] > 0.25);
@@ -202,14 +202,14 @@ static void a_probe_comes_with_data_function_and_tolerance_alone(void** state)
   draw(context, caster, &s, &options, rgba, &report);
   assert_int_equal(report.probe_builds, 4);
 
-  options.sampling = STRATUS_SAMPLING_MIDPOINT; /* what is set by hand needs none */
+  options.sampling = STRATUS_SAMPLING_MIDPOINT; /* a rule and a step set by hand need no probe */
   options.sample_distance = s.volume.spacing[0];
   draw(context, caster, &s, &options, rgba, &report);
   assert_int_equal(report.probe_builds, 4);
   assert_true(isnan(report.expected_error) && report.tolerance_met);
   assert_true(report.sample_distance == options.sample_distance);
 
-  /* what was measured serves again where options are as they were, and equal input gives an equal choice, whatever was drawn before */
+  /* The last measurement serves again if the options return, and equal input gives an equal choice after any earlier frame. */
   stratus_ray_caster* other = NULL;
   options = stratus_ray_cast_options_default();
   options.tolerance = 0.05;

@@ -103,7 +103,7 @@ static void on_grids_whose_spacing_changes(void** state)
   case_destroy(&c);
 }
 
-/* Rows that are all the same make a function of the value alone: its points are the columns' middles. */
+/* Equal rows make a function of only the value: its points are the columns' middles. */
 static void equal_rows_draw_the_picture_of_the_function_of_the_value(void** state)
 {
   double opacity[2 * TRANSFER_2D_SIDE], color[4 * TRANSFER_2D_SIDE];
@@ -186,7 +186,7 @@ static void no_structure_thread_or_instruction_set_changes_a_bit(void** state)
   }
 }
 
-/* What is left automatic errs by no more than was asked for, and the audit finds nothing that skipping changed. */
+/* Automatic settings err by at most the tolerance, and the audit finds no pixel that skipping changed. */
 static void the_tolerance_is_kept(void** state)
 {
   static const double tolerances[] = { 0.01, 0.001 };
@@ -242,7 +242,7 @@ static void new_entries_change_the_picture_and_the_same_rebuild_nothing(void** s
   assert_int_equal(other.report.occupancy_builds, occupancies);
   assert_int_equal(other.report.table_builds, tables);
   assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
-  for (int i = 0; i < function.of.columns * function.of.rows; ++i) { /* of colour alone */
+  for (int i = 0; i < function.of.columns * function.of.rows; ++i) { /* an edit of only the colour */
     function.rgba[4 * i] = 1.0f - function.rgba[4 * i];
   }
   ++function.of.revision;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The automatic structure follows from what frames and builds cost. The costs are given here, so that no timing decides a test; that the
- * pictures are the same is tested beside it. */
+ * The automatic structure follows from the costs of frames and builds. The tests give these costs, so that no timing decides a test. Other
+ * tests compare the pictures. */
 #include "picture_case.h"
 #include "ray_caster.h"
 
@@ -70,7 +70,7 @@ static void the_cheaper_of_map_and_none_is_drawn(void** state)
   case_destroy(&c);
 }
 
-/* A table of running sums serves two rules and every step: what a trial found with one of them tells nothing of another. */
+/* A table of running sums serves two rules and every step. A trial with one of them predicts nothing for another. */
 static void another_sampling_is_tried_anew(void** state)
 {
   static const struct {
@@ -90,7 +90,7 @@ static void another_sampling_is_tried_anew(void** state)
     c.options.sampling = samplings[i].sampling;
     c.options.sample_distance = samplings[i].step;
     c.options.cell_error = samplings[i].cell_error;
-    /* the times turn by less than those before had told */
+    /* each sampling's times contradict the earlier sampling's result */
     costs.frame[STRATUS_STRUCTURE_NONE] = i % 2 ? 3.0 : 2.0;
     costs.frame[STRATUS_STRUCTURE_DISTANCE] = i % 2 ? 2.5 : 8.0;
     for (int frame = 0; frame < 3; ++frame) {
@@ -106,7 +106,7 @@ static void another_sampling_is_tried_anew(void** state)
 }
 
 /* The second sampling's trial has to wait until frames have taken 50 times what the first's has wasted. */
-static void what_another_sampling_told_serves_until_the_next_trial(void** state)
+static void another_sampling_s_result_serves_until_the_next_trial(void** state)
 {
   static const stratus_structure expected[] = { STRATUS_STRUCTURE_NONE, STRATUS_STRUCTURE_NONE, STRATUS_STRUCTURE_NONE,
     STRATUS_STRUCTURE_NONE, STRATUS_STRUCTURE_DISTANCE };
@@ -131,8 +131,7 @@ static void what_another_sampling_told_serves_until_the_next_trial(void** state)
   case_destroy(&c);
 }
 
-/* Samplings that change with every frame ask for as many trials. Each finds other times, so that the report tells it from the one before.
- */
+/* Samplings that change with every frame want as many trials. Each trial finds other times, so that the report shows a new trial. */
 static void all_trials_together_take_a_small_share(void** state)
 {
   enum { FRAMES = 200 };
@@ -157,7 +156,7 @@ static void all_trials_together_take_a_small_share(void** state)
   case_destroy(&c);
 }
 
-/* Tiles that a trial draws are the picture's: with either structure the counts are those of all pixels. */
+/* A trial's tiles are part of the picture: with either structure, all pixels are counted once. */
 static void a_trial_s_tiles_are_drawn_once(void** state)
 {
   picture_case c;
@@ -259,7 +258,7 @@ int test_ray_trial(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_cheaper_of_map_and_none_is_drawn),
     cmocka_unit_test(another_sampling_is_tried_anew),
-    cmocka_unit_test(what_another_sampling_told_serves_until_the_next_trial),
+    cmocka_unit_test(another_sampling_s_result_serves_until_the_next_trial),
     cmocka_unit_test(all_trials_together_take_a_small_share),
     cmocka_unit_test(a_trial_s_tiles_are_drawn_once),
     cmocka_unit_test(a_picture_of_samples_follows_from_no_times),
