@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The report of building: what belongs to a stage and what to the stages within it, and how stages are summed, listed and forgotten. */
+ * The build report: which time, bytes and kernels count for a stage and which for the stages within it, and how stages are summed, listed
+ * and forgotten. */
 #include "base.h"
 
 #include <setjmp.h>
@@ -49,7 +50,7 @@ static void a_stage_leaves_out_the_stages_within_it(void** state)
     assert_string_equal(stages[i].where, kernels[i] ? stratus_context_device(context) : "host");
     assert_int_equal(stages[i].bytes, bytes[i]);
     assert_int_equal(stages[i].kernels, kernels[i]);
-    /* What a stage was given less what was given to those within it, and no more than the clock besides. */
+    /* A stage's own time is its time less the time of the stages within it. The clock adds at most `elapsed`. */
     assert_true(stages[i].ms >= least_ms[i] - elapsed && stages[i].ms <= least_ms[i] + elapsed);
   }
   stratus_context_destroy(context);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Costs that are measured: what the process and the file keep of them, and what may be wrong with the file. */
+ * Measured costs: how the process and the file keep them, and wrong lines and files. */
 #define _XOPEN_SOURCE 700
 #include "calibration.h"
 #include "comma_locale.h"
@@ -80,19 +80,19 @@ static void add_one(const char* part, double number)
   add(part, 1, &number);
 }
 
-/* A measurement for tests: gives the numbers that it is told, and counts its calls. */
+/* A measurement for tests: copies `numbers`, returns `status` and counts its calls. */
 typedef struct measured {
   int calls, count;
   double numbers[2];
   stratus_status status;
 } measured;
 
-static stratus_status tell(stratus_context* context, void* job, double* numbers)
+static stratus_status copy_numbers(stratus_context* context, void* job, double* numbers)
 {
   measured* m = job;
   ++m->calls;
   memcpy(numbers, m->numbers, (size_t)m->count * sizeof *numbers);
-  return m->status == STRATUS_OK ? STRATUS_OK : stratus_fail(context, m->status, "told to fail");
+  return m->status == STRATUS_OK ? STRATUS_OK : stratus_fail(context, m->status, "fails as the test wants");
 }
 
 static void numbers_come_back_bit_by_bit_in_any_locale(void** state)
@@ -126,7 +126,7 @@ static void three_processes_measure_and_the_least_of_each_number_is_kept(void** 
     stratus_calibration_forget();
     for (int again = 0; again < 2; ++again) { /* a process measures once, whatever the file says */
       stratus_calibration calibration = stratus_calibration_of("test", "part", 2);
-      assert_int_equal(stratus_calibrate(host, &calibration, tell, &m), STRATUS_OK);
+      assert_int_equal(stratus_calibrate(host, &calibration, copy_numbers, &m), STRATUS_OK);
       assert_memory_equal(calibration.numbers, least[process], sizeof least[process]);
       assert_int_equal(m.calls, process < 3);
     }
@@ -151,7 +151,7 @@ static void without_a_file_the_process_keeps_what_it_measured(void** state)
       stratus_calibration_forget();
       for (int again = 0; again < 2; ++again) {
         stratus_calibration calibration = stratus_calibration_of("test", "part", 1);
-        assert_int_equal(stratus_calibrate(host, &calibration, tell, &m), STRATUS_OK);
+        assert_int_equal(stratus_calibrate(host, &calibration, copy_numbers, &m), STRATUS_OK);
         assert_true(calibration.numbers[0] == 7.0);
         assert_int_equal(m.calls, 4 * i + process + 1);
       }
@@ -208,7 +208,7 @@ static void another_version_s_file_is_not_read(void** state)
 
 static void lines_that_are_none_are_ignored_and_go(void** state)
 {
-  /* Each would be a line of "bad" with one number, were it not for what is wrong with it. */
+  /* Each would be a line of "bad" with one number, but for its one fault. */
   static const char* const bad[] = { "test: bad", "test: bad\t", "test: bad\t1", "test: bad\t1\t", "test: bad\t1\tnan", "test: bad\t1\tinf",
     "test: bad\t1\t-0x1p0", "test: bad\t1\t0x", "test: bad\t1\t0x1p2000", "test: bad\t1\t1.5", "test: bad\t1\t0x1p0 ",
     "test: bad\t1\t0x1p0\t", "test: bad\t0\t0x1p0", "test: bad\t4\t0x1p0", "test: bad\t-1\t0x1p0", "test: bad\t11\t0x1p0",
@@ -310,8 +310,8 @@ static void a_measurement_that_fails_is_told_and_not_stored(void** state)
   stratus_calibration calibration = stratus_calibration_of("test", "part", 1);
   char path[PATH];
   (void)state;
-  assert_int_equal(stratus_calibrate(host, &calibration, tell, &m), STRATUS_DEVICE_ERROR);
-  assert_string_equal(stratus_context_message(host), "told to fail");
+  assert_int_equal(stratus_calibrate(host, &calibration, copy_numbers, &m), STRATUS_DEVICE_ERROR);
+  assert_string_equal(stratus_context_message(host), "fails as the test wants");
   static const double wrong[] = { NAN, INFINITY, -1.0 };
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
     add_one("part", wrong[i]);
@@ -319,7 +319,7 @@ static void a_measurement_that_fails_is_told_and_not_stored(void** state)
   path_in(folder, path);
   assert_false(exists(path));
   m.status = STRATUS_OK;
-  assert_int_equal(stratus_calibrate(host, &calibration, tell, &m), STRATUS_OK);
+  assert_int_equal(stratus_calibrate(host, &calibration, copy_numbers, &m), STRATUS_OK);
   assert_int_equal(m.calls, 2);
 }
 
@@ -370,7 +370,7 @@ static void* ask(void* argument)
 {
   asker* a = argument;
   a->calibration = stratus_calibration_of("test", "part", 1);
-  return stratus_calibrate(host, &a->calibration, tell, a->m) == STRATUS_OK ? NULL : a;
+  return stratus_calibrate(host, &a->calibration, copy_numbers, a->m) == STRATUS_OK ? NULL : a;
 }
 
 static void threads_that_ask_at_once_measure_once(void** state)

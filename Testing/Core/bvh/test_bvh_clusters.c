@@ -259,8 +259,8 @@ static double over_sweep(stratus_bvh_measure measure, const stratus_box* boxes, 
   return ratio;
 }
 
-/* By surface area, clusters of surfaces stay within 1.15 of the sweep, those of even noise do not; bvh_agglomerative.c tells why. Each
- * bound is the greatest ratio of the seeds 1 to 8 and some room. */
+/* By surface area, clusters of surfaces stay within 1.15 of the sweep, clusters of even noise do not; bvh_agglomerative.c says why. Each
+ * bound is the greatest ratio of the seeds 1 to 8, rounded up. */
 static void clusters_of_random_voxels_cost_little_more_than_the_sweeps(void** state)
 {
   enum { NOISE = 6000, RADIUS = 20, SIDE = 2 * RADIUS + 3 };

@@ -185,7 +185,7 @@ static void the_measure_asked_for_is_the_one_merged_by(void** state)
       free(boxes);
     }
   }
-  assert_true(differ > 20); /* else the two measures were not told apart */
+  assert_true(differ > 20); /* else both measures gave equal trees */
 }
 
 static void few_boxes_make_the_greedy_tree_by_ploc_and_k_means(void** state)

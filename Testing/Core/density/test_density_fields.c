@@ -36,7 +36,7 @@ static void exact_field_is_the_density_at_each_voxel(void** state)
   }
 }
 
-/* The bounds are those of density.c and density_cells.c; full bricks are exact. */
+/* Tests the error bounds that density.c and density_cells.c state; full bricks are exact. */
 static void binned_field_errs_no_more_than_it_says(void** state)
 {
   uint32_t random = 5;
@@ -236,7 +236,7 @@ static void check_side(
   assert_near(borders->fall[axis][side], fall, 1e-12 / (h * h * h * h));
 }
 
-/* Four times the bandwidth has no integer square, so that no voxel lies at the kernel's very end, where rounding would decide. */
+/* Four times the bandwidth has no integer square, so that no voxel is at the kernel's very end, where rounding would decide. */
 static void borders_are_where_the_plain_second_derivative_turns(void** state)
 {
   static const double some[] = { 1.037, 1.71, 2.613, 4.137, 9.071, 17.31 };

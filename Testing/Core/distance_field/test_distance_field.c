@@ -83,7 +83,7 @@ static void rows_and_columns_longer_than_a_register_keep_their_ends(void** state
   stratus_context_destroy(context);
 }
 
-/* Fields of a single voxel of `kind`: its place alone gives all distances, so that large grids can be tested. */
+/* Fields of a single voxel of `kind`: its position gives all distances, so that large grids can be tested. */
 static void check_single(stratus_context* context, int64_t nx, int64_t ny, int64_t nz, int64_t seed, int kind)
 {
   test_set s = make_set(nx, ny, nz);

@@ -104,7 +104,7 @@ static uint64_t steps_alone(stratus_context* context, const stratus_tree* tree, 
   return steps;
 }
 
-/* Rays that run side by side go in beams. They hit what each of them hits alone, in fewer steps. */
+/* Rays that run side by side form beams. Beams hit the same voxels as single rays, in fewer steps. */
 static void beams_hit_what_the_walk_hits(void** state)
 {
   (void)state;
@@ -140,7 +140,7 @@ static void beams_hit_what_the_walk_hits(void** state)
       stratus_tree_destroy(tree);
       stratus_voxels_destroy(voxels);
     }
-    print_message("%llu steps, %llu alone\n", (unsigned long long)steps, (unsigned long long)alone);
+    print_message("%llu steps, %llu by single rays\n", (unsigned long long)steps, (unsigned long long)alone);
     assert_true(steps < alone / 2);
     stratus_context_destroy(context);
   }

@@ -195,7 +195,7 @@ static void rays_side_by_side_share_what_they_visit(void** state)
         assert_true(hits[i].visited <= alone[i] + 64 || i == 0); /* the first ray has the remainder, too */
       }
     }
-    print_message("%llu visits, %llu alone\n", (unsigned long long)together, (unsigned long long)apart);
+    print_message("%llu visits, %llu by single rays\n", (unsigned long long)together, (unsigned long long)apart);
     assert_true(apart > 64 * 100 && together < apart / 16);
     stratus_tree_destroy(tree);
     stratus_voxels_destroy(voxels);
@@ -203,7 +203,7 @@ static void rays_side_by_side_share_what_they_visit(void** state)
   }
 }
 
-/* Rays that share a direction but not the way go one by one: each visits what it visits alone. */
+/* Rays that share a direction but not their nodes are traced one by one: each visits as many nodes as a single ray. */
 static void rays_far_from_each_other_make_no_beam(void** state)
 {
   (void)state;

@@ -93,7 +93,7 @@ static void orientation_along_an_axis_is_that_of_integers(void** state)
   assert_true(seen[0] > 1000 && seen[1] > 1000 && seen[2] > 1000);
 }
 
-/* The number 1 + 2^-52 beside 1: rounding alone would call these coplanar. */
+/* Two coordinates differ by the last bit: computed in doubles, these points would be coplanar. */
 static void orientation_sees_the_last_bit(void** state)
 {
   const double a[3] = { 0.0, 0.0, 0.1 }, b[3] = { 1e6, 0.0, 0.1 }, c[3] = { 0.0, 1e6, 0.1 }, d[3] = { 3e5, 3e5, nextafter(0.1, 1.0) },

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Partitions: pieces fill the cells that they were cut from, meet in the same faces, and lie in their leaves. */
+ * Partitions: pieces fill the cells that they were cut from, meet in equal faces, and are in their leaves. */
 #include "stratus.h"
 
 #include "partition_case.h"
@@ -167,7 +167,7 @@ static void nothing_is_cut_where_nothing_is_to_cut(void** state)
   stratus_context_destroy(context);
 }
 
-/* Overlapping cells, cut unevenly: some leaves get no cell at all, and lie beside leaves that are cut. */
+/* Overlapping cells, cut unevenly: some leaves get no cell at all, next to leaves that are cut. */
 static void leaves_without_cells_take_part(void** state)
 {
   stratus_partition_options options = stratus_partition_options_default();

@@ -12,7 +12,7 @@ static void a_grid_is_cut_between_its_cells(void** state)
   (void)state;
   stratus_context* context = mesh_context(1);
   mesh_case mesh = mesh_grid(n, 0.0, 1);
-  for (int64_t i = 0; i < mesh.point_count; ++i) { /* bent, so that planes are left across x alone */
+  for (int64_t i = 0; i < mesh.point_count; ++i) { /* bent, so that only planes across x are left */
     double* p = mesh.points + 3 * i;
     p[1] += 0.3 * sin(p[0] + 0.7 * p[2]);
     p[2] += 0.3 * sin(1.3 * p[0] + p[1]);
@@ -114,7 +114,7 @@ static void a_mesh_that_stands_askew_is_turned_before_it_is_cut(void** state)
   options.depth = 1;
   partition = make_partition(context, &mesh, &options);
   stratus_partition_get(partition, &cut);
-  options.growth = 0.999 * (double)(cut.cell_count - mesh.cell_count) / (double)mesh.cell_count; /* what no plane across an axis meets */
+  options.growth = 0.999 * (double)(cut.cell_count - mesh.cell_count) / (double)mesh.cell_count; /* below every axis plane's growth */
   stratus_partition_destroy(partition);
   partition = make_partition(context, &mesh, &options);
   stratus_partition_get(partition, &cut);

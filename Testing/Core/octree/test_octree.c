@@ -180,8 +180,8 @@ static void random_turned(uint32_t* random, double box[12])
   memcpy(box + 3, edges, sizeof edges);
 }
 
-/* Straight and turned boxes that were moved to turned ones, one by one and many at once, and some back to straight ones: bounds and what is
- * seen are those of boxes that were inserted there. */
+/* Moves straight and turned boxes to turned ones, one by one and many at once, and some back to straight ones: bounds and visible objects
+ * are as if the boxes had been inserted there. */
 static void moved_to_turned_boxes_are_as_if_inserted_there(void** state)
 {
   enum { COUNT = 2000, BACK = COUNT / 4 };
@@ -414,7 +414,7 @@ static void what_is_wholly_in_sight_needs_no_tree(void** state)
     stratus_octree_clear(tree);
     assert_int_equal(stratus_octree_insert(tree, boxes[0], OBJECTS, ids), STRATUS_OK);
     assert_int_equal(stratus_octree_cull(view, &frustum, NULL, &visible), STRATUS_OK);
-    assert_int_equal(visible.splits, 0); /* what was there before clear() is forgotten */
+    assert_int_equal(visible.splits, 0); /* clear() forgets all earlier splits */
     free(boxes);
     free(ids);
     stratus_octree_view_destroy(view);
@@ -479,7 +479,7 @@ static void coverage_is_the_window_s_share(void** state)
   assert_int_equal(visible.count, 3);
   static const float coverage[] = { 0.25f, 0.125f, 1.0f }, depth[] = { 4.0f, 5.0f, 0.0f };
   for (size_t i = 0; i < 3; ++i) {
-    /* The tolerances are those of floats of order one. */
+    /* Tolerances for floats of order one. */
     assert_true(fabsf(visible.coverage[i] - coverage[visible.ids[i]]) < 1e-6f);
     assert_true(fabsf(visible.depth[i] - depth[visible.ids[i]]) < 1e-5f);
   }

@@ -93,7 +93,7 @@ static void test_wavelet_fills_its_cube_face_to_face(void** state)
   stratus_context_destroy(context);
 }
 
-/* No tetrahedron is flat, those of a wedge fill it, and only bed, surface and the four sides are borders. */
+/* No tetrahedron is flat, a wedge's tetrahedra fill it, and only bed, surface and the four sides are borders. */
 static void test_estuary_is_filled_face_to_face(void** state)
 {
   (void)state;

@@ -285,13 +285,13 @@ static void plume2_is_the_plume_in_two_parts(void** state)
     end += q % 512 > 450 ? (int)parts[2 * q + 1] - (int)parts[2 * q] : 0;
   }
   assert_int_equal(wrong, 0);
-  assert_true(begin > 0 && end > 0); /* the first at the source, the second at the end of the way */
+  assert_true(begin > 0 && end > 0); /* the first part is at the source, the second at the plume's end */
   stratus_scene_destroy(context, plume);
   stratus_scene_destroy(context, two);
   stratus_context_destroy(context);
 }
 
-static void names_are_listed_and_an_unknown_one_is_told(void** state)
+static void names_are_listed_and_an_unknown_one_is_refused(void** state)
 {
   (void)state;
   stratus_context* context = open_context(1);
@@ -312,7 +312,7 @@ static void names_are_listed_and_an_unknown_one_is_told(void** state)
   stratus_context_destroy(context);
 }
 
-/* The camera's eye lies at R / sin 15 degrees from the centre, 25 degrees above the plane, and turns by 45 degrees a view. */
+/* The camera's eye is R / sin 15 degrees from the centre, 25 degrees above the plane, and turns by 45 degrees a view. */
 static void cameras_stand_where_the_record_says(void** state)
 {
   (void)state;
@@ -392,7 +392,7 @@ int test_scenes(void)
     cmocka_unit_test(functions_of_skin_stripes_and_labels_jump),
     cmocka_unit_test(transfer_functions_are_those_of_record),
     cmocka_unit_test(plume2_is_the_plume_in_two_parts),
-    cmocka_unit_test(names_are_listed_and_an_unknown_one_is_told),
+    cmocka_unit_test(names_are_listed_and_an_unknown_one_is_refused),
     cmocka_unit_test(cameras_stand_where_the_record_says),
     cmocka_unit_test(wrong_cameras_are_refused_by_their_value),
   };

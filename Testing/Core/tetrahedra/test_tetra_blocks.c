@@ -301,7 +301,7 @@ static void blocks_of_either_hand(void** state)
   end();
 }
 
-/* Gradients at points of a seam are those of all cells there. */
+/* A gradient at a seam's point uses the cells of all blocks there. */
 static void light_crosses_seams(void** state)
 {
   static const double thin[4] = { 0.05, 0.0, 0.5, 1.0 };
@@ -350,7 +350,7 @@ static void components_cross_seams(void** state)
   }
 }
 
-/* Steps of values on the same blocks build values alone; another cut builds all. */
+/* New values on the same blocks build only the values; another cut builds everything. */
 static void steps_of_values(void** state)
 {
   stratus_tetra_caster* caster = NULL;

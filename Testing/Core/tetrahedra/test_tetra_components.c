@@ -10,8 +10,8 @@
 #define STEPS 200
 
 typedef struct several {
-  tetra_case whole;            /* what is drawn: all components */
-  tetra_case part[COMPONENTS]; /* each component alone, for the reference */
+  tetra_case whole;            /* the drawn case: all components */
+  tetra_case part[COMPONENTS]; /* each component as a separate mesh, for the reference */
   float* values[COMPONENTS];
   void* all;
   stratus_transfer transfers[COMPONENTS];

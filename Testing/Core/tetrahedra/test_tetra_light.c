@@ -67,7 +67,7 @@ static void light_is_right(void** state)
       set_matrix(&c);
     }
     if (seed % 7 == 3 &&
-      c.options.mode == STRATUS_TETRA_COMPOSITE) { /* a peak that is narrower than cells: light is that of its place in them */
+      c.options.mode == STRATUS_TETRA_COMPOSITE) { /* a peak that is narrower than cells: light follows its position in them */
       memcpy(c.opacity, (const double[6]){ 0.45, 0.0, 0.5, 0.9, 0.55, 0.0 }, 6 * sizeof(double));
       c.transfer.opacity_count = 3;
     }

@@ -49,7 +49,7 @@ static void eye_in_a_cell_on_a_face_and_on_a_point(void** state)
       tetra_create(&c, 3, 0.0, holes ? 0.3 : 0.0, 9);
       assert_int_equal(stratus_camera_perspective(*state, eyes[i], focal, up, 80.0, 1.2, &c.camera), STRATUS_OK);
       check(*state, &c, "inside");
-      for (int pixel = 0; pixel < TETRA_PIXELS; ++pixel) { /* what begins at the eye does not begin behind it */
+      for (int pixel = 0; pixel < TETRA_PIXELS; ++pixel) { /* a cell that contains the eye begins at the eye */
         assert_true(picture.depth[pixel] >= 0.0f);
       }
       c.camera.near_k = 0.4; /* cells are cut, not dropped */

@@ -89,7 +89,7 @@ static void whatever_the_order_of_cells(void** state)
   stratus_context_destroy(context);
 }
 
-/* Only changed inputs cause a rebuild, and pictures equal those of a new caster. */
+/* Only changed inputs cause a rebuild, and a new caster draws equal pictures. */
 static void from_a_caster_that_drew_before(void** state)
 {
   stratus_context* context = open_context(2);

@@ -180,7 +180,7 @@ static void cells_that_overlap_are_drawn_again(void** state)
   }
   assert_true(most > 64);
   assert_true(projected.report.again > TETRA_PIXELS / 10);
-  /* the march draws one copy's way after the other where they begin, so that the reference alone can judge */
+  /* the march draws the copies one after the other where they begin, so that only the reference can judge */
   assert_true(tetra_error(projected.rgba, reference, &largest) <= RMSE_MOST);
   tetra_destroy(&c);
 }
@@ -239,8 +239,8 @@ static void leaves_change_nothing_but_roundings(void** state)
   tetra_destroy(&c);
 }
 
-/* The costs are given here, so that no timing decides: where all cells show, those of segments decide, and where one value in a thousand
- * shows, those of the order. A camera that stands still keeps one method. */
+/* The tests give the costs, so that no timing decides: if all cells show, the segments' cost decides; if one value in a thousand shows, the
+ * order's cost decides. While the camera does not move, the method stays. */
 static void auto_takes_what_costs_less(void** state)
 {
   tetra_case c;
@@ -271,7 +271,7 @@ static void auto_takes_what_costs_less(void** state)
   tetra_destroy(&c);
 }
 
-/* What is measured is positive, and is measured once: a camera that stands still keeps one method by it, too. */
+/* Measured costs are positive, and are measured once: they also keep one method while the camera does not move. */
 static void costs_are_measured_once(void** state)
 {
   stratus_tetra_costs costs, again;
@@ -281,7 +281,7 @@ static void costs_are_measured_once(void** state)
   assert_memory_equal(&costs, &again, sizeof costs);
 }
 
-/* More numbers of threads than there is room for: the first and the last that were asked for are not measured again. */
+/* More numbers of threads than there is room for: the first and the last number are not measured again. */
 static void costs_of_many_numbers_of_threads_change_no_other_s(void** state)
 {
   enum { MANY = 20 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Values that change on a fixed mesh, as in the steps of a simulation: neighbours and the order of cells stay where points and cells have
- * the content that they had, in whatever memory, and the pictures are those of a new caster. */
+ * Values that change on a fixed mesh, as in the steps of a simulation: neighbours and the order of cells stay while points and cells have
+ * equal content, in any memory, and the pictures equal those from a new caster. */
 #include "tetra_case.h"
 
 #include "faulty_allocator.h"
@@ -101,7 +101,7 @@ static void geometry_survives_other_values(void** state)
   }
 }
 
-/* What changes the borders of what shows, or the geometry, builds the mesh anew. */
+/* Changes of the visible cells' borders, or of the geometry, rebuild the mesh. */
 static void other_geometry_is_built(void** state)
 {
   for (int variant = 0; variant < 2; ++variant) {
@@ -175,7 +175,7 @@ static void leaves_are_compared_by_content(void** state)
   step(&s);
   built(&s, 1, 2, 1);
   assert_ptr_equal(s.caster->projector->order, order);
-  leaf[5] = leaf[5] ? 0 : 1; /* a cell in a leaf that it does not lie in is refused, which shows that the leaves were read again */
+  leaf[5] = leaf[5] ? 0 : 1; /* a cell in a wrong leaf is refused, which shows that the leaves were read again */
   ++s.c.mesh.revision;
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = kept.rgba };
   assert_int_equal(
@@ -205,7 +205,7 @@ static void memory_refused_in_a_step(void** state)
     const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = kept.rgba };
     for (bool reached = true; reached;) {
       s.c.values[7] += 0.01f * (refused & 1 ? -1.0f : 1.0f);
-      s.c.values[9] = 1.5f + 0.01f * (float)refused; /* the end of what the table spans */
+      s.c.values[9] = 1.5f + 0.01f * (float)refused; /* the last value that the table spans */
       ++s.c.mesh.revision;
       allocator.fail_at = allocator.calls + refused + 1;
       const stratus_status status =

@@ -238,7 +238,8 @@ static stratus_volume small_volume(float values[6 * 6 * 6])
   return volume;
 }
 
-/* A tree stands in for what its criterion covers, in the volume that it was made of and in no other. */
+/* A tree of voxels covers only the criterion that it was made by, a tree of cells also narrower ones; both only in the volume that they
+ * were made of. */
 static void a_tree_covers_only_what_it_was_made_of(void** state)
 {
   (void)state;
@@ -349,7 +350,7 @@ static void hybrid_siblings_that_overlap_are_refused(void** state)
   stratus_context_destroy(context);
 }
 
-/* A saved tree tells the method that made it, which `auto` never is. */
+/* A saved tree contains the method that made it, which is never `auto`. */
 static void a_tree_of_no_method_is_refused(void** state)
 {
   stratus_context* context = open_context();

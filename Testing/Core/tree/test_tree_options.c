@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Options of trees: what is out of range is refused, and an option reaches its builder. */
+ * Options of trees: values out of range are refused, and each option reaches its builder. */
 #include "first_hits.h"
 
 #include "bvh.h"
@@ -95,7 +95,8 @@ static void uncorrected_leaves_hold_the_flooded_distances(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* A saved tree keeps that it is uncorrected, so that it never stands in for another; one that claims it of bricks is refused. */
+/* A saved tree records that it is uncorrected, so that it never replaces a corrected one. Bytes that record it for a tree of bricks are
+ * refused. */
 static void a_saved_tree_keeps_that_it_is_uncorrected(void** state)
 {
   const int64_t dimensions[3] = { 20, 20, 20 };
@@ -217,7 +218,7 @@ static void auto_takes_a_cached_field_or_fewer_bytes(void** state)
     stratus_tree *chosen = tree_by(voxels, STRATUS_TREE_AUTO), *octant = tree_by(voxels, STRATUS_TREE_OCTANT);
     stratus_tree* wide = tree_by(voxels, STRATUS_TREE_WIDE);
     const double field = stratus_tree_octant_bytes(voxels), about = STRATUS_WIDE_BYTES * (double)voxels->brick_count;
-    /* The field's bytes are told exactly, but for those of its node and its place; the hierarchy's to a fifth in large sets. */
+    /* The predicted bytes of the field are exact, without its node and place; the hierarchy's are right to a fifth in large sets. */
     assert_int_equal((size_t)field, octant->statistics.bytes - sizeof *octant->nodes - sizeof *octant->fields);
     assert_true(voxels->brick_count < 5000 || fabs((double)wide->statistics.bytes / about - 1.0) < 0.2);
     assert_int_equal(chosen->statistics.method, sets[i].method);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Visibility orders across gaps, compared with rays: cells that share no face also hide one another, even where nearest first alone is
- * wrong. */
+ * Visibility orders across gaps, compared with rays: cells that share no face also hide one another, even where only sorting the nearest
+ * first would be wrong. */
 #include "mesh_case.h"
 #include "visibility_order.h"
 
@@ -108,13 +108,13 @@ static void a_seam_whose_diagonals_do_not_match_is_no_hole_in_the_order(void** s
   const mesh_case other = block(3, 5, 4, (const double[3]){ 3, 5, 0 }, (const double[3]){ 6, 0, 4 }, 0.0, 1);
   mesh = mesh_join(mesh, other);
   mesh_shuffle(&mesh, 8);
-  assert_true(wrong_pairs(&mesh, 2, 0, STRATUS_PEELING_LAYERS) > 0); /* or nothing hangs on the seam */
+  assert_true(wrong_pairs(&mesh, 2, 0, STRATUS_PEELING_LAYERS) > 0); /* else the seam has no effect */
   assert_int_equal(wrong_pairs(&mesh, 2, 0, STRATUS_PEELING_NEAREST), 0);
   assert_int_equal(wrong_pairs(&mesh, 2, 2, STRATUS_PEELING_NEAREST), 0);
   mesh_case_free(&mesh);
 }
 
-/* The middles of a plate's few long cells do not tell where these lie relative to a fine plate. */
+/* A plate's few long cells, whose centres do not show where they are relative to a fine plate. */
 static void long_cells_hide_short_ones_behind_a_gap(void** state)
 {
   (void)state;
@@ -179,7 +179,7 @@ static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
     assert_int_equal(stratus_visibility_order_sort(order, &camera, NULL, STRATUS_PEELING_NEAREST, &result), STRATUS_OK);
     assert_int_equal(result.count, mesh.cell_count);
     assert_int_equal(result.cycles, 1);
-    assert_int_equal(result.overlaps, 1); /* across gaps no cell can tell a ring from cells that overlap */
+    assert_int_equal(result.overlaps, 1); /* across gaps, a ring and overlapping cells look alike */
     assert_int_equal(result.forced, 0);
     assert_int_equal(1u << result.cells[0] | 1u << result.cells[1] | 1u << result.cells[2], 7);
     if (threads == 1) {
@@ -336,7 +336,7 @@ static void only_faces_that_look_at_others_are_gaps(void** state)
   stratus_context_destroy(context);
 }
 
-/* Gaps and orders of a mesh are those of the same mesh in other units: no product of its lengths overflows, and none vanishes. */
+/* Gaps and orders of a mesh do not depend on its unit: no product of its lengths overflows, and none vanishes. */
 static void a_mesh_of_any_size_has_the_same_gaps_and_orders(void** state)
 {
   static const int exponents[] = { 0, 345, 990, -345, -900 }; /* 2^990: some 1e298; 2^345: its third power overflows */

@@ -7,8 +7,8 @@ static int64_t larger(int64_t a, int64_t b)
   return a > b ? a : b;
 }
 
-/* Chebyshev distance from block (i,j,k) to the nearest block of occupancy `target` that lies on the side sides[a] along each axis a (0:
- * both), at most `best`. */
+/* Returns the Chebyshev distance from block (i,j,k) to the nearest block of occupancy `target` on the side sides[a] along each axis a (0:
+ * both sides), at most `best`. */
 static int nearest(const stratus_occupancy* o, int target, const int sides[3], int64_t i, int64_t j, int64_t k, int64_t best)
 {
   for (int64_t z = 0; z < o->blocks[2]; ++z) {
@@ -124,8 +124,8 @@ static void distances_beyond_127_are_told_as_127(void** state)
   stratus_context_destroy(context);
 }
 
-/* One occupied block at the end of a row of 300, along each axis. The paper's map tells distances to 255, the others to 127. */
-static void the_papers_map_tells_distances_to_255(void** state)
+/* One occupied block at the end of a row of 300, along each axis. The paper's map contains distances to 255, the other maps to 127. */
+static void the_papers_map_has_distances_to_255(void** state)
 {
   uint32_t random = 9;
   (void)state;
@@ -208,7 +208,7 @@ static void the_sweeps_and_the_papers_transform_agree_on_larger_grids(void** sta
     assert_int_equal(stratus_distance_map_create(context, o, STRATUS_DISTANCE_FULL, &full), STRATUS_OK);
     assert_int_equal(stratus_distance_map_create(context, o, STRATUS_DISTANCE_PAPER, &paper), STRATUS_OK);
     assert_int_equal(full->bytes_size, paper->bytes_size);
-    for (size_t b = 0; b < full->map_bytes; ++b) { /* the paper's map has 0 for what is occupied */
+    for (size_t b = 0; b < full->map_bytes; ++b) { /* the paper's map has 0 for occupied blocks */
       assert_int_equal(paper->bytes[b] < 127 ? paper->bytes[b] : 127, full->bytes[b] < 128 ? full->bytes[b] : 0);
     }
     stratus_distance_map_destroy(full);
@@ -261,7 +261,7 @@ int test_distance_map(void)
     cmocka_unit_test(every_kind_equals_brute_force_on_small_grids),
     cmocka_unit_test(rows_longer_than_the_pitch_keep_their_ends),
     cmocka_unit_test(distances_beyond_127_are_told_as_127),
-    cmocka_unit_test(the_papers_map_tells_distances_to_255),
+    cmocka_unit_test(the_papers_map_has_distances_to_255),
     cmocka_unit_test(a_deep_block_of_occupied_ones_knows_its_depth),
     cmocka_unit_test(a_solid_box_knows_its_depth_from_every_side),
     cmocka_unit_test(the_sweeps_and_the_papers_transform_agree_on_larger_grids),

@@ -63,8 +63,8 @@ static void find_hulls(void)
   }
 }
 
-/* Makes the points of a function about label k, and the values that it shows: from ends[0] to ends[1], of which closed[] tells which are
- * among them. Of points of one value, the last counts there. */
+/* Makes the points of a function about label k, and the interval ends[0]..ends[1] of visible values; closed[] says which ends belong to it.
+ * Of several points at one value, the last one counts. */
 static size_t make_function(int function, int type, double k, double points[8], double ends[2], bool closed[2])
 {
   const double half = function == WINDOW ? 0.5 : 0.5e-6 * (most[type] - least[type]);

@@ -262,7 +262,7 @@ static bool exact_range(const stratus_volume* v, int size, double bias, const in
   return range[0] <= range[1];
 }
 
-/* True if the value and an end are fetched as the same float, so that the value may lie on either side. */
+/* Returns whether the value and an end are fetched as one float, so that the value may be on either side. */
 static bool is_fetched_as(const stratus_volume* v, double bias, long double value, double end)
 {
   return stratus_type_is_wide(v->type) && (float)((double)value - bias) == (float)(end - bias);

@@ -128,8 +128,8 @@ static float random_value(const random_function* f, const stratus_table_values* 
   return fminf(fmaxf(value, v->lo), v->hi);
 }
 
-/* What is transparent is so in the table; what shows shows, but within a cell of a smooth foot; and opacity is the function's up to a cell.
- */
+/* Compares the table with the function: transparent values are transparent in the table, visible ones are visible except within a cell of a
+ * smooth foot, and opacity is right to a cell. */
 static void tables_take_the_function_at_every_value(void** state)
 {
   uint32_t random = 8;
@@ -153,7 +153,7 @@ static void tables_take_the_function_at_every_value(void** state)
         if (shows && !(rgba[3] > 0.0)) {
           fail_msg("pass %d, sampling %d: %.9g shows, but is transparent", pass, sampling, (double)value);
         }
-        if (!shows && rgba[3] > 0.05) { /* a cell holds no steeper ramp than 1/16 of what is there */
+        if (!shows && rgba[3] > 0.05) { /* a cell contains no ramp steeper than 1/16 of the values */
           fail_msg("pass %d, sampling %d: %.9g does not show, but is %g", pass, sampling, (double)value, rgba[3]);
         }
         if (table->rgba) {
@@ -233,8 +233,8 @@ static void points_at_the_ends_of_doubles_are_joined_by_a_line(void** state)
   stratus_context_destroy(context);
 }
 
-/* Label windows as VTK's functions give them, whose steps lie at the number above the half: their tables are those of steps at the half,
- * and no cell is divided. Floats may have the half itself, so that theirs are divided. */
+/* Label windows as VTK's functions give them, with steps at the next number above the half. Their tables equal those with steps at the
+ * half, and no cell is divided. Floats may equal the half itself, so their cells are divided. */
 static void steps_above_a_half_divide_no_cell_of_whole_numbers(void** state)
 {
   (void)state;

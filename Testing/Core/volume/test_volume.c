@@ -221,7 +221,7 @@ static void the_owned_box_leaves_out_another_pieces_cells(void** state)
   assert_false(stratus_volume_owned(&v, lo, hi));
   assert_memory_equal(lo, ((const int64_t[]){ 0, 0, 0 }), sizeof lo);
   assert_memory_equal(hi, ((const int64_t[]){ 0, 0, 0 }), sizeof hi);
-  /* Points alone: the first two layers along x are another's, the layer between them and ours is shared. */
+  /* Only points: the first two layers along x belong to another block, the layer between them and ours is shared. */
   v.cell_ghosts = NULL;
   v.point_ghosts = points;
   for (int p = 0; p < 60; ++p) {
@@ -253,7 +253,7 @@ static void refuse(stratus_context* context, const stratus_volume* v, stratus_st
 {
   assert_int_equal(stratus_volume_check(context, v), status);
   if (!strstr(stratus_context_message(context), why)) {
-    fail_msg("\"%s\" does not tell of \"%s\"", stratus_context_message(context), why);
+    fail_msg("\"%s\" does not contain \"%s\"", stratus_context_message(context), why);
   }
 }
 

@@ -283,7 +283,7 @@ static void extreme_rays_end(void** state)
   static const int64_t n[3] = { 1 << 18, 3, 1 };
   static const int32_t positions[] = { 0, 0, 0, (1 << 18) - 1, 2, 0 };
   static const stratus_ray rays[] = {
-    { { -1e300, .5, .5 }, { 1e300, 0, 0 }, 0, INFINITY }, /* crosses all planes at once, as far as doubles tell */
+    { { -1e300, .5, .5 }, { 1e300, 0, 0 }, 0, INFINITY }, /* crosses all planes at once, in doubles */
     { { -1, .5, .5 }, { 1e-290, 0, 0 }, 0, INFINITY },    /* the shortest */
     { { -1, .5, .5 }, { 1, 5e-324, 0 }, 0, INFINITY },
     { { 1e18, 1e18, 1e18 }, { -1, -1, -1 }, 0, INFINITY },

@@ -174,7 +174,7 @@ static void every_type_is_compared_exactly(void** state)
   }
 }
 
-/* A value's neighbours beside the ends, where only the last digit tells. */
+/* The floats next to each end, which differ from it only in the last digit. */
 static void ends_of_intervals_are_in_and_feet_of_ramps_are_out(void** state)
 {
   static const double ramp[] = { 0.25, 0.0, 0.5, 1.0, 0.75, 0.0 };
@@ -268,7 +268,7 @@ static void any_number_of_threads_sorts_a_sparse_list_alike(void** state)
   int64_t distinct = 0;
   (void)state;
   for (int b = 0; b < BRICKS; ++b) {
-    /* no two are at the same x; many lie in a row */
+    /* no two are at the same x; many are in a row */
     const int32_t at[3] = { 4 * (b * 21), 4 * (int32_t)random_below(&random, 3), 4 * (int32_t)random_below(&random, 1 << 16) };
     const int voxels = b % 7 ? 1 + (int)random_below(&random, 64) : 64;
     for (int v = 0; v < 2 * voxels; ++v) { /* each is listed twice */
