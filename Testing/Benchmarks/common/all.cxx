@@ -19,14 +19,14 @@ namespace {
 
 const char* const help = R"(stratus-bench all --out FOLDER [options]
 
-  --out FOLDER   tables (CSV), charts (PNG, SVG), index.html and what the parts print (log.txt)
+  --out FOLDER   tables (CSV), charts (PNG, SVG), index.html and the parts' output (log.txt)
   --quick        the same in ten minutes or so: fewer scenes and settings, small windows, one frame a view
   --resume       go on with a run of the same kind and commit that was interrupted, after the last whole scene
   --part P,...   volume, tetra, tree, distance, octree (default: all of them)
 
 Each method runs over its own settings: ours over tolerances, peers over steps, trees over sizes of leaves. A method that cannot be measured
 and a part that crashes are named at the end and on the page, and the exit status is 1. A table is replaced as a whole after each scene.
-stratus-bench compare A B tells what changed between two such folders.
+stratus-bench compare A B reports the changes between two such folders.
 )";
 
 struct options {
@@ -55,11 +55,11 @@ options parse(int argc, char* argv[])
       o.parts = split(argv[++i]);
       for (const std::string& part : o.parts) {
         if (std::find(known.begin(), known.end(), part) == known.end()) {
-          throw failure("unknown part " + part + "; --help tells which there are");
+          throw failure("unknown part " + part + "; --help lists them");
         }
       }
     } else {
-      throw failure(word + " is unknown or lacks its value; --help tells more");
+      throw failure(word + " is unknown or lacks its value; see --help");
     }
   }
   if (o.folder.empty()) {
@@ -230,7 +230,7 @@ std::string run(const options& o, const unit& u, const std::string& whole)
     ", see log.txt";
 }
 
-std::string tell(const unit& u, size_t number, size_t count, double left_ms)
+std::string progress_text(const unit& u, size_t number, size_t count, double left_ms)
 {
   std::string text = u.part + ", scene " + std::to_string(number) + " of " + std::to_string(count);
   return left_ms > 0.0 ? text + ", about " + duration(left_ms) + " left" : text;
@@ -264,9 +264,10 @@ int all_main(int argc, char* argv[])
     std::for_each(spent.begin(), spent.end(), [&](double ms) { sum += ms; });
     const double left = spent.empty() ? 0.0 : sum / static_cast<double>(spent.size()) * static_cast<double>(units.size() - i);
     const double begun = now_ms();
-    const std::string wrong = run(o, u, tell(u, i + 1, units.size(), left));
+    const std::string wrong = run(o, u, progress_text(u, i + 1, units.size(), left));
     spent.push_back(now_ms() - begun);
-    std::fprintf(stderr, "%s; %s, %s\n", tell(u, i + 1, units.size(), left).c_str(), u.scene.c_str(), duration(spent.back()).c_str());
+    std::fprintf(
+      stderr, "%s; %s, %s\n", progress_text(u, i + 1, units.size(), left).c_str(), u.scene.c_str(), duration(spent.back()).c_str());
     if (!wrong.empty()) {
       failures.push_back(wrong);
       std::fprintf(stderr, "FAILED: %s\n", wrong.c_str());

@@ -126,12 +126,12 @@ class progress;
 
 // ---- judge.cxx
 
-// The reference pictures of one scene, which are refined as far as the results that they are compared with ask for. They are drawn at some
-// of the pixels, one of each tile, where that leaves enough in which something shows.
+// The reference pictures of one scene, refined until they are precise enough for the compared results. They are drawn at one pixel of each
+// tile, if enough of these pixels show something.
 class judge
 {
 public:
-  judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache, const progress& told);
+  judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache, const progress& shown);
   ~judge();
   void measure(std::vector<result>& results); // fills errors
   void compare(std::vector<result>& results); // fills differing_pixels
@@ -180,7 +180,7 @@ void check_writable(const std::string& path);
 table read_csv(const std::string& path);
 void print_table(const std::vector<row>& rows);
 
-// ---- curves.cxx: what a chart shows of a table
+// ---- curves.cxx: the curves of a part's charts
 
 // A method at one setting.
 struct curve_point {
@@ -190,12 +190,12 @@ struct curve_point {
 // All points of a part of the bench, and what its axes mean.
 struct curves {
   std::string title, x_title, y_title;
-  std::string beats;    // what a point does that is better by both axes
+  std::string beats;    // a sentence: how a point is better by both axes
   std::string compared; // how a point of ours is compared with a peer's
   std::vector<curve_point> points;
   double exact; // the y of points without any error: the lower edge of the chart
 };
-// Returns the method without its setting: all settings of a method lie on one line.
+// Returns the method without its setting: a method's settings share one curve.
 std::string family_of(const std::string& method);
 bool is_ours(const std::string& method);
 // The curves of a part: volume, tetra, tree (two: primary and random rays), distance, octree.
@@ -222,14 +222,14 @@ std::string color_of(const std::string& family);
 
 // ---- progress.cxx
 
-// Tells on the standard error where a run is: on a terminal a line that is written again and again, elsewhere a line for each scene.
+// Prints the run's progress on the standard error: one line that is overwritten on a terminal, otherwise one line a scene.
 class progress
 {
 public:
   progress(size_t scenes, size_t methods);
   ~progress();
-  void at(const std::string& scene, const std::string& method);       // which is about to be measured
-  void tell(const std::string& scene, const std::string& what) const; // what is done for it
+  void at(const std::string& scene, const std::string& method);       // the next measurement
+  void show(const std::string& scene, const std::string& what) const; // what: the current work
   void end_scene(const std::string& scene);
 
 private:

@@ -42,7 +42,7 @@ const unsigned char ours[][3] = { { 11, 79, 138 }, { 44, 160, 44 }, { 23, 190, 2
 const unsigned char peers[][3] = { { 214, 39, 40 }, { 255, 127, 14 }, { 227, 119, 194 }, { 140, 86, 75 }, { 188, 189, 34 },
   { 127, 127, 127 }, { 165, 15, 21 }, { 253, 174, 97 } };
 
-// Returns the family's number among ours or among peers, in the order in which they were asked for.
+// Returns the family's number among ours or among peers, in the order of the first calls.
 size_t number_of(const std::string& family)
 {
   static std::vector<std::string> seen[2];
@@ -194,8 +194,8 @@ void replace(std::string& line, const std::string& from, const std::string& to)
   }
 }
 
-// The exporter writes the time of day and sizes in points, which this takes out: the same table gives the same file. It names one font, for
-// which others stand in.
+// The exporter writes the time of day and sizes in points. This function removes both, so that equal tables give equal files. It also adds
+// fonts to fall back on.
 void write_svg(vtkContextView* view, const std::string& stem)
 {
   vtkNew<vtkGL2PSExporter> exporter;
@@ -204,7 +204,7 @@ void write_svg(vtkContextView* view, const std::string& stem)
   exporter->CompressOff();
   exporter->SetFilePrefix(stem.c_str());
   {
-    const silence quiet; // GL2PS tells each time that it embeds no image, which no chart here has
+    const silence quiet; // GL2PS reports for each chart that it embeds no image; no chart has one
     exporter->Write();
   }
   std::ostringstream text;

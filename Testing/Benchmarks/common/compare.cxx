@@ -17,9 +17,10 @@ const char* const help = R"(stratus-bench compare A B [--least PERCENT]
 
 A and B are folders that stratus-bench all wrote, A the earlier. Exit status 1 if something of ours got slower or less exact from A to B.
 
-Slower: repeats are compared in pairs, view by view or round by round, at every setting of a method on a scene. The peers of the same scene
-and process tell by how much the machine itself changed, which is taken out. A sign test over the pairs has to reject chance (p <= .01), and
-the median of the ratios has to exceed PERCENT (default 5). Less exact: an error, which no noise changes, grew by more than 2 %.
+Slower: repeats are compared in pairs, view by view or round by round, at every setting of a method on a scene. The change of the peers'
+times in the same scene and process measures the change of the machine; all ratios are divided by it. A sign test over the pairs has to
+reject chance (p <= .01), and the median of the ratios has to exceed PERCENT (default 5). Less exact: an error, which no noise changes, grew
+by more than 2 %.
 )";
 
 constexpr double significance = 0.01;
@@ -157,7 +158,7 @@ int compare_main(int argc, char* argv[])
       throw failure(std::string("--least must be within 0..1000 percent, not ") + argv[5]);
     }
   } else if (argc != 4) {
-    throw failure("compare takes two folders; --help tells more");
+    throw failure("compare needs two folders; see --help");
   }
   run runs[2];
   for (int i = 0; i < 2; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What charts show of a table: each method over its own setting, which points of peers are beaten, and that in a sentence.
+// The curves of a table's charts: each method over its own setting, the peers' points that ours beat, and a sentence on each.
 #include "bench.h"
 
 #include <algorithm>
@@ -96,7 +96,7 @@ curves distance_curves(const std::vector<row>& rows)
 curves octree_curves(const std::vector<row>& rows)
 {
   curves c = { "Culling", "cull, ms", "kept falsely, % (none: .001)", "is faster and keeps less falsely",
-    "at its share of what is kept falsely, ours is faster", {}, 1e-3 };
+    "at its share of falsely kept objects, ours is faster", {}, 1e-3 };
   for (const measured_method& m : methods_of(rows)) {
     add(c, m, m.method, m.at("cull_ms"), m.at("false_keeps"));
     add(c, m, m.method + "/exact", m.at("exact_cull_ms"), m.at("exact_false_keeps"));

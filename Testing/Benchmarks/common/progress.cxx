@@ -8,7 +8,7 @@ namespace bench {
 
 namespace {
 
-// stratus-bench all keeps what its parts print, and gives them the terminal by its number, with what it knows of the whole run.
+// stratus-bench all captures its parts' output. It passes them the terminal's file number and its own progress by these variables.
 const char* const terminal_variable = "STRATUS_BENCH_TERMINAL";
 const char* const whole_variable = "STRATUS_BENCH_WHOLE";
 
@@ -54,10 +54,10 @@ void progress::clear() const
 void progress::at(const std::string& scene, const std::string& method)
 {
   ++this->Method;
-  this->tell(scene, method);
+  this->show(scene, method);
 }
 
-void progress::tell(const std::string& scene, const std::string& what) const
+void progress::show(const std::string& scene, const std::string& what) const
 {
   if (!this->Terminal) {
     return;

@@ -2,7 +2,7 @@
  * stratus-bench-devices [PIXELS [FRAMES]]: pictures of scenes of record on the host and on each OpenCL device. Lines of CSV: milliseconds
  * of the first picture, kernels and structures included; of a frame (the median over FRAMES of the cameras of record); where it was drawn,
  * which is the host if the device refused; and in the last frame, the pixels whose bits differ from the host's and the largest difference
- * of a channel. The build's cache of kernels is that of the environment, STRATUS_CACHE_DIR: an empty one measures the compiler, too. */
+ * of a channel. Kernels are cached in STRATUS_CACHE_DIR: an empty folder measures the compiler, too. */
 #define _POSIX_C_SOURCE 200809L
 #include "stratus/ray_cast.h"
 #include "stratus/scenes.h"

@@ -24,14 +24,14 @@ const char* const help = R"(stratus-bench distance [options]
                       signed too
   --threads N         of the host and of ITK (default 2)
   --csv FILE          tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
-                      the rows before them tell where they come from, as in stratus-bench volume
+                      the comments before them say where they come from, as in stratus-bench volume
   --append            rows of other scenes that the file has stay
   --chart FILE.png    build time against the share of wrong voxels, of the largest size
 
 build_ms: from the set of voxels to the field, median of 7 (floodings and ITK beyond 128 voxels: 1). array_ms: the same, and all
 distances as floats in new memory, which is what ITK's build_ms holds. cpu_ms: processor time of all threads in array_ms, for machines
 that are busy. wrong_percent, max_error and rms_error (voxels): against brute force's equal, stratus:zigzag; unfilled voxels are wrong,
-but in no other error. ITK is judged by what it measures from: the contour.
+but in no other error. ITK's errors are measured against its own target, the contour.
 )";
 
 struct options {
@@ -78,7 +78,7 @@ method parse_method(const std::string& name)
       return m;
     }
   }
-  throw failure("unknown method " + name + "; --help tells more");
+  throw failure("unknown method " + name + "; see --help");
 }
 
 options parse(int argc, char* argv[])
@@ -92,7 +92,7 @@ options parse(int argc, char* argv[])
       continue;
     }
     if (i + 1 == argc) {
-      throw failure(word + " is unknown or lacks its value; --help tells more");
+      throw failure(word + " is unknown or lacks its value; see --help");
     }
     const std::string value = argv[i + 1];
     if (word == "--case") {
@@ -110,7 +110,7 @@ options parse(int argc, char* argv[])
     } else if (word == "--chart") {
       o.chart = value;
     } else {
-      throw failure("unknown option " + word + "; --help tells more");
+      throw failure("unknown option " + word + "; see --help");
     }
   }
   o.sizes = o.sizes.empty() ? std::vector<int64_t>{ 64, 128, 256 } : o.sizes;

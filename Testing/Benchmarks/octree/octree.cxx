@@ -29,19 +29,23 @@ const char* const help = R"(stratus-bench octree [options]
   --frames N           of each path (default 120)
   --threads N          of the host (default 1)
   --csv FILE           tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); a scene is NAME/PATH
-                       the rows before them tell where they come from, as in stratus-bench volume
+                       the comments before them say where they come from, as in stratus-bench volume
   --append             rows of other scenes that the file has stay
   --chart FILE.png     cull_ms against false_keeps
 
-cull_ms: median over a path's frames, from a tree that has not been looked at; cull_worst_ms: the slowest. With one thread both are its
-processor time, else wall clock. exact_cull_ms, exact_false_keeps: with separating axes. update_ms: 1 % of the boxes moved by their own
-size. nodes, bytes, depth: at the path's end; bytes are what the tree adds to a list of the boxes. The static octree is split down to the
-depth that the pixel one reached. visible: mean of the frames. With actors cull_ms is the whole of Cull(), its look for changes included,
-cull_first_ms that of a culler's first frame, and frame_ms the median of up to 24 frames of the path, 512 x 384; frame_best_ms,
-frame_worst_ms: the fastest and the slowest of them; frame_cpu_ms, frame_cpu_worst_ms: processor time of all threads, median and most.
-Methods take turns frame by frame.
-added_bytes: of the tree, in percent of what a list of its objects takes. wrong_culls, false_keeps (percent of what was kept): against
-faces cut by the planes, at 5 frames.
+With one thread, times of culling are its processor time, otherwise wall clock. Methods take turns frame by frame.
+  cull_ms, cull_worst_ms             median and slowest of a path's frames, from a tree without history; with actors the whole of Cull(),
+                                     its search for changes included
+  cull_first_ms                      with actors: a culler's first frame
+  exact_cull_ms, exact_false_keeps   with separating axes
+  update_ms                          1 % of the boxes moved by their own size
+  nodes, bytes, depth                at the path's end; bytes are added to a list of the boxes. The static octree is split down to the
+                                     depth that the pixel one reached
+  added_bytes                        the tree's, in percent of the bytes of a list of its objects
+  visible                            mean of the frames
+  frame_ms, _best_ms, _worst_ms      with actors: median, fastest and slowest of up to 24 frames of the path, 512 x 384
+  frame_cpu_ms, frame_cpu_worst_ms   with actors: processor time of all threads, median and most
+  wrong_culls, false_keeps           against faces cut by the planes, at 5 frames; false_keeps in percent of the kept objects
 )";
 
 struct options {
@@ -90,7 +94,7 @@ stratus_octree_options method_options(const std::string& method)
   } else if (name == "stratus:linear") {
     o.levels = 0;
   } else if (name != "stratus:octree-pixel") {
-    throw failure("unknown method " + method + "; --help tells more");
+    throw failure("unknown method " + method + "; see --help");
   }
   return o;
 }
@@ -234,7 +238,7 @@ void check(options& o, const std::vector<std::string>& sweep)
   o.paths = o.paths.empty() ? path_names() : o.paths;
   for (const std::string& path : o.paths) {
     if (std::count(path_names().begin(), path_names().end(), path) == 0) {
-      throw failure("unknown path " + path + "; --help tells more");
+      throw failure("unknown path " + path + "; see --help");
     }
   }
   if (o.frames < 1 || o.frames > 100000) {
@@ -255,7 +259,7 @@ options parse(int argc, char* argv[])
       continue;
     }
     if (i + 1 == argc) {
-      throw failure(word + " is unknown or lacks its value; --help tells more");
+      throw failure(word + " is unknown or lacks its value; see --help");
     }
     const std::string value = argv[i + 1];
     std::map<std::string, std::vector<std::string>*> lists = { { "--scene", &o.scenes }, { "--path", &o.paths }, { "--method", &o.methods },
@@ -269,7 +273,7 @@ options parse(int argc, char* argv[])
     } else if (files.count(word) > 0) {
       *files[word] = value;
     } else {
-      throw failure("unknown option " + word + "; --help tells more");
+      throw failure("unknown option " + word + "; see --help");
     }
   }
   check(o, sweep);

@@ -97,7 +97,7 @@ struct runner {
   verdict judged;
 };
 
-// Calls `turn` for every runner. The first one is another in each frame, so that none profits from where it stands in the row.
+// Calls `turn` for every runner. Each frame begins with another runner, so that none profits from its place.
 template <class Turn> void take_turns(std::vector<runner>& runners, size_t frame, const Turn& turn)
 {
   for (size_t i = 0; i < runners.size(); ++i) {

@@ -49,9 +49,9 @@ stratus_octree_options options_of(bool on_demand, int levels)
   return o;
 }
 
-struct teller {
+struct row_adder {
   std::vector<row>& rows;
-  void tell(const std::string& scene, const std::string& method, const grown& g) const
+  void add(const std::string& scene, const std::string& method, const grown& g) const
   {
     rows.push_back({ scene, method, "nodes", "1", g.nodes });
     rows.push_back({ scene, method, "bytes", "B", g.bytes });
@@ -67,14 +67,14 @@ struct teller {
 void run_paper(stratus_context* context, std::vector<row>& rows)
 {
   const std::vector<box_bounds> boxes = make_boxes(scene_of_the_paper);
-  const teller to = { rows };
+  const row_adder to = { rows };
   const auto one_view = [&](const std::string& path) { return camera_path(context, path, 1); };
   // Table 1: one view, and many views.
   for (const char* path : { "inside", "turn" }) {
     for (const int views : { 1, frames }) {
       const std::string scene = std::string("paper-table-1/") + path + (views > 1 ? "-path" : "-view");
-      to.tell(scene, "stratus:static", grow(context, boxes, camera_path(context, path, views), options_of(false, 5)));
-      to.tell(scene, "stratus:octree-on-demand", grow(context, boxes, camera_path(context, path, views), options_of(true, 5)));
+      to.add(scene, "stratus:static", grow(context, boxes, camera_path(context, path, views), options_of(false, 5)));
+      to.add(scene, "stratus:octree-on-demand", grow(context, boxes, camera_path(context, path, views), options_of(true, 5)));
     }
   }
   // Table 2: values of C at several distances.
@@ -82,14 +82,14 @@ void run_paper(stratus_context* context, std::vector<row>& rows)
     for (const int c : { 5, 15, 25, 35, 40, 70 }) {
       stratus_octree_options o = options_of(true, 8);
       o.c = c;
-      to.tell(std::string("paper-table-2/") + path, "stratus:octree-paper:" + std::to_string(c), grow(context, boxes, one_view(path), o));
+      to.add(std::string("paper-table-2/") + path, "stratus:octree-paper:" + std::to_string(c), grow(context, boxes, one_view(path), o));
     }
   }
   // Table 3: nodes and memory at the same depth.
   for (int depth = 2; depth <= 7; ++depth) {
     const std::string scene = "paper-table-3/depth-" + std::to_string(depth);
-    to.tell(scene, "stratus:static", grow(context, boxes, one_view("inside"), options_of(false, depth)));
-    to.tell(scene, "stratus:octree-on-demand", grow(context, boxes, one_view("inside"), options_of(true, depth)));
+    to.add(scene, "stratus:static", grow(context, boxes, one_view("inside"), options_of(false, depth)));
+    to.add(scene, "stratus:octree-on-demand", grow(context, boxes, one_view("inside"), options_of(true, depth)));
   }
 }
 } // namespace bench

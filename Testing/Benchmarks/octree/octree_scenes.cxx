@@ -25,7 +25,7 @@ std::vector<box_bounds> make_boxes(const std::string& name)
 {
   const long count = name.rfind("boxes-", 0) == 0 ? std::atol(name.c_str() + 6) : 0;
   if (count < 1 || count > 100000000) {
-    throw failure("unknown scene " + name + "; --help tells more");
+    throw failure("unknown scene " + name + "; see --help");
   }
   generator random;
   std::vector<box_bounds> boxes(static_cast<size_t>(count));

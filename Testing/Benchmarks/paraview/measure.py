@@ -86,7 +86,7 @@ def orbit(method, shown=None):
     frames, spent, of_ranks, samples, differences = [], [], [], [], []
     for number in range(VIEWS):
         place_camera(number)
-        draw()  # what the camera alone changes (clipping range, peeling) is in each repeat anyway
+        draw()  # changes by the camera itself (clipping range, peeling) are in each repeat anyway
         several = [timed(draw) for _ in range(repeats)]
         frames.append(statistics.median(wall for wall, _ in several))
         spent.append(statistics.median(sum(cpu) for _, cpu in several))
@@ -141,7 +141,7 @@ def run(method, representation):
     reader = simple.XMLUnstructuredGridReader(FileName=[scene["path"]]) if cells else simple.XMLImageDataReader(FileName=[scene["path"]])
     reader.UpdatePipeline()
     shown = simple.Show(reader, view, "UnstructuredGridRepresentation" if cells else "UniformGridRepresentation")
-    shown.SetRepresentationType("Outline")  # what a view does first is no method's
+    shown.SetRepresentationType("Outline")  # so that the view's own first work counts for no method
     simple.ColorBy(shown, ("POINTS", scene["array"]))
     look, fade = simple.GetColorTransferFunction(scene["array"]), simple.GetOpacityTransferFunction(scene["array"])
     look.ColorSpace, look.UseLogScale = "RGB", 0

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench paraview: "Stratus Volume" beside ParaView's own "Volume" on 1 and more ranks. ParaView has a VTK of its own, so that the
-// pictures are drawn by pvbatch and the script measure.py. This file writes the scenes for it, runs it, and collects its rows.
+// stratus-bench paraview: "Stratus Volume" compared with ParaView's own "Volume" on one and more ranks. ParaView has its own VTK, so
+// pvbatch draws the pictures by the script measure.py. This file writes the scenes for it, runs it, and collects its rows.
 #include "paraview_bench.h"
 #include "tetra_bench.h"
 
@@ -27,34 +27,39 @@ namespace {
 
 const char* const help = R"(stratus-bench paraview [options]
 
-  --paraview FOLDER     what has bin/pvbatch (default /usr); mpiexec is the first on the path
+  --paraview FOLDER     the folder that contains bin/pvbatch (default /usr); mpiexec is the first on the path
   --plugin FILE         Stratus.so of the plugin (default: ParaView loads it by itself)
   --scene NAME|FILE,... cloud, plume, cloud-N and other scenes of stratus-bench volume of one component, bluntfin, post, or an image or a
                         grid of tetrahedra (.vtu); default: cloud, plume, ../shared/data/isabel_02.vti, bluntfin, post
   --ranks N,...         (default 1,2,4)
   --size N              N x N pixels (default 512)
-  --pieces N            measure in place of all this one rank that draws the N x N x N pieces of each image, one after the other, N within
-                        2..8: what so many ranks would have to do
+  --pieces N            instead, measure the work of N^3 ranks: one rank draws the N x N x N pieces of each image, one after the other,
+                        N within 2..8
   --repeats N           frames of each view (default 3)
   --csv FILE            tidy rows as in stratus-bench volume (default: the standard output)
   --append              rows of other scenes that the file has stay
   --pictures FOLDER     keep each view's picture
 
 Methods: stratus@N and paraview:volume@N on N ranks, one after the other in one process a rank, paraview:empty@N with nothing shown. A view
-is black, without FXAA, axes and annotation; a frame is a whole Render() to its end. frame_ms: median over the 8 views of record, each the
-median of its repeats; first_ms: from the choice of the representation; edit_ms: from a change of the opacity function to the next picture,
-median over the views. frame_cpu_ms and edit_cpu_ms: processor time, user and system, of all ranks together, and rank_cpu_ms/R of rank R
-alone in a frame; a waiting rank spins, which counts. samples: a frame's over all ranks, median (cells: segments), rank_samples/R of rank R
-alone, the median over the views; most_rank_samples and most_rank_cpu_ms of the rank with the most in each view. rank_difference255: the
-largest difference of any channel in any view to one rank's picture, if 1 is among the ranks, which come in rising order; load: of the
-machine in the last minute before, per core.
+is black, without FXAA, axes and annotation; a frame is a whole Render() to its end. Ranks come in rising order. A waiting rank spins, which
+counts as processor time.
+  frame_ms                     median over the 8 views of record, each the median of its repeats
+  first_ms                     from the choice of the representation to the first picture
+  edit_ms                      from a change of the opacity function to the next picture, median over the views
+  frame_cpu_ms, edit_cpu_ms    processor time, user and system, of all ranks together
+  rank_cpu_ms/R                processor time of rank R in a frame
+  samples, rank_samples/R      a frame's samples (cells: segments) over all ranks, and rank R's; median over the views
+  most_rank_samples,
+  most_rank_cpu_ms             of the rank with the most in each view
+  rank_difference255           the largest difference of any channel in any view to one rank's picture, if 1 is among the ranks
+  load                         of the machine in the last minute before, per core
 
-stratus:pieces-N: N pieces, each drawn alone with a step of one voxel. whole_, sum_ and most_ of samples, cpu_ms and pixels_sent (the
-rectangle that holds what shows, 8 bytes a pixel over ranks): of the whole, all pieces together, and the piece with the most, medians over
-the views. pieces_that_show: median.
+stratus:pieces-N: N pieces, each drawn by itself with a step of one voxel. whole_, sum_ and most_ of samples, cpu_ms and pixels_sent (the
+rectangle of the pixels that show something, 8 bytes a pixel over ranks): of the whole, of all pieces together, and of the piece with the
+most, medians over the views. pieces_that_show: median.
 
-Functions of grids of tetrahedra are `ramp` of stratus-bench tetra, and half as opaque after the edit. Each rank has its share of the cores
-as threads (OMP_NUM_THREADS, LP_NUM_THREADS of software OpenGL), at least one. A scene whose file is absent is left out, which is told. A
+Functions of grids of tetrahedra are `ramp` of stratus-bench tetra, and half as opaque after the edit. Each rank uses its share of the cores
+as threads (OMP_NUM_THREADS, LP_NUM_THREADS of software OpenGL), at least one. A scene whose file is absent is left out with a message. A
 method that cannot be measured has a row `failed`, and the exit status is 1.
 )";
 
@@ -86,7 +91,7 @@ options parse(int argc, char* argv[])
       continue;
     }
     if (i + 1 == argc) {
-      throw failure(word + " is unknown or lacks its value; --help tells more");
+      throw failure(word + " is unknown or lacks its value; see --help");
     }
     const std::string value = argv[++i];
     if (word == "--scene") {
@@ -111,7 +116,7 @@ options parse(int argc, char* argv[])
     } else if (word == "--pictures") {
       o.pictures = value;
     } else {
-      throw failure("unknown option " + word + "; --help tells more");
+      throw failure("unknown option " + word + "; see --help");
     }
   }
   if (access((o.paraview + "/bin/pvbatch").c_str(), X_OK) != 0) {
@@ -277,7 +282,7 @@ void measure(const options& o, const written_scene& s, int ranks, const std::str
     rows.push_back({ s.name, "paraview:empty@" + count, "load", "1", load / cores });
   }
   std::fprintf(stderr, "%s on %d rank%s\n", s.name.c_str(), ranks, ranks > 1 ? "s" : "");
-  // Open MPI binds one or two ranks to a core each unless it is told otherwise.
+  // By default, Open MPI binds one or two ranks to a core each.
   const int status = run_program({ "mpiexec", "--bind-to", "none", "--oversubscribe", "-n", count, o.paraview + "/bin/pvbatch", "--sym",
                                    STRATUS_BENCH_PARAVIEW_SCRIPT, o.plugin.empty() ? "-" : std::filesystem::absolute(o.plugin).string(),
                                    s.path, out, pictures, std::to_string(o.size), std::to_string(o.repeats), std::to_string(o.cuts) },

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * stratus-bench-several [PIXELS [FRAMES]]: a picture of several volumes that overlap beside the sum of their single pictures, over groups
- * of scenes of record. Lines of CSV: processor milliseconds of a frame (medians), of all volumes together, of each alone with default
- * options, and of each alone by the rule and step that it has together; their ratios; and root mean square errors over the lit pixels at a
- * quarter of the size, against the reference in double, of the picture and of the single pictures laid over one another. */
+ * stratus-bench-several [PIXELS [FRAMES]]: a picture of several volumes that overlap, compared with the sum of their single pictures, over
+ * groups of scenes of record. Lines of CSV contain: median processor milliseconds of a frame, of all volumes together, of each single
+ * volume with default options, and of each single volume by the rule and step that it has together; their ratios; and root mean square
+ * errors over the lit pixels at a quarter of the size, against the reference in double, of the picture and of the single pictures blended
+ * over one another. */
 #define _POSIX_C_SOURCE 200809L
 #include "reference_several.h"
 
@@ -169,7 +170,7 @@ static void measure(stratus_context* context, const char* const group[MEMBERS], 
     const double all = together(context, m, count, &camera, size, rgba, reports);
     for (int n = 0; n < count; ++n) {
       stratus_ray_cast_options alike = m[n].options;
-      if (reports[n].sampling != STRATUS_SAMPLING_LOCAL) { /* which cannot be asked for */
+      if (reports[n].sampling != STRATUS_SAMPLING_LOCAL) { /* options cannot request rule local */
         alike.sampling = reports[n].sampling;
         alike.sample_distance = reports[n].sample_distance;
       }

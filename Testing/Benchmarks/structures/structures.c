@@ -189,7 +189,7 @@ static void measure(stratus_context* context, const view* v, const settings* s, 
   for (int way = 0; way < count; ++way) {
     least = fmin(least, still[way].cpu);
   }
-  /* the first frame builds, and is itself alone; those that are drawn behind it are equal parts of the rest */
+  /* The first frame builds, and counts for itself; the later ones that are drawn stand for equal parts of the rest. */
   const int stride = s->frames > STRIDE ? STRIDE : s->frames > 1 ? s->frames - 1 : 1;
   const double weight = s->frames > 1 ? (double)(s->frames - 1) / ((s->frames - 1) / stride) : 0.0;
   for (int frame = 0; frame < s->frames; ++frame) {

@@ -34,7 +34,7 @@ const char* const help = R"(stratus-bench tetra [options]
   --repeats N               frames a view and method (default 3); rounds of sorters
   --rays N                  N x N rays a view ask orders for wrong pairs, 24 views; 0: none (default 160)
   --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
-                            the rows before them tell where they come from, as in stratus-bench volume
+                            the comments before them say where they come from, as in stratus-bench volume
   --append                  rows of other scenes that the file has stay, so that meshes can be run one by one
   --chart FILE.png          frame time against error, of all rows
   --cache FOLDER            keep the mesh that TetGen makes
@@ -42,16 +42,21 @@ const char* const help = R"(stratus-bench tetra [options]
   --pictures FOLDER         each method's window in the first view, and the reference, as PNG
   --no-error                times and orders only
 
-frame_ms: whole Render() with WaitForCompletion(), median over the 8 views of record, each the median of its repeats, methods in turns;
-before each the camera moves, so that no order is the last one's. rmse255 (of float pixels) and rmse255_8bit (of the window read back):
-root mean square of RGBA in 0..255 over the pixels that either shows, against a march in double precision through the cells;
-reference_rmse255: by how much that changes with steps of four times the length. sort_ms: median over the 8 views, signs and cut cells
-included, build_ms (neighbours; VTK: centres) apart. wrong_visible_pairs: of visible_pairs of cells that follow one another on rays, over
-24 views: 6 directions (3 along axes) x parallel, perspective, near, inside. cycles are the sum over those. bytes: the core's own after
-the first picture or order, peak_bytes: at most until then; of images their values. resample_ms: what vtkResampleToImage took, which no
-frame counts; points beside the mesh are transparent, and errors there and of the resampling count.
-VTK's mappers of tetrahedra take opacity for attenuation: they are given
-functions that mean the same to them.
+Methods take turns; before each frame the camera moves, so that no order is the last one's.
+  frame_ms              whole Render() with WaitForCompletion(), median over the 8 views of record, each the median of its repeats
+  rmse255               of float pixels: root mean square of RGBA in 0..255 over the pixels that either picture lights, against a march in
+                        double precision through the cells
+  rmse255_8bit          of the window read back in 8 bits
+  reference_rmse255     change of the reference with steps of four times the length
+  sort_ms               median over the 8 views, signs and cut cells included
+  build_ms              neighbours (VTK: centres)
+  wrong_visible_pairs   of visible_pairs of cells that follow one another on rays, over 24 views: 6 directions (3 along axes) x parallel,
+                        perspective, near, inside
+  cycles                sum over those views
+  bytes, peak_bytes     the core's own after the first picture or order, and at most until then; of images their values
+  resample_ms           vtkResampleToImage, which no frame counts; points outside the mesh are transparent, and errors there and of the
+                        resampling count
+VTK's mappers of tetrahedra use opacity as attenuation: they get functions with the same meaning.
 )";
 
 struct options {
@@ -79,12 +84,12 @@ void check(options& o)
   }
   for (const std::string& method : o.methods) {
     if (!has(known, method) && !is_tetra_mapper(method)) {
-      throw failure("unknown method " + method + "; --help tells more");
+      throw failure("unknown method " + method + "; see --help");
     }
   }
   for (const std::string& function : o.functions) {
     if (!has(tetra_functions(), function)) {
-      throw failure("unknown function " + function + "; --help tells more");
+      throw failure("unknown function " + function + "; see --help");
     }
   }
   if (o.size < 16 || o.size > 4096) {
@@ -109,7 +114,7 @@ options parse(int argc, char* argv[])
       continue;
     }
     if (i + 1 == argc) {
-      throw failure(word + " is unknown or lacks its value; --help tells more");
+      throw failure(word + " is unknown or lacks its value; see --help");
     }
     const std::string value = argv[++i];
     std::map<std::string, std::vector<std::string>*> lists = { { "--mesh", &o.meshes }, { "--function", &o.functions },
@@ -124,7 +129,7 @@ options parse(int argc, char* argv[])
     } else if (files.count(word) > 0) {
       *files[word] = value;
     } else {
-      throw failure("unknown option " + word + "; --help tells more");
+      throw failure("unknown option " + word + "; see --help");
     }
   }
   check(o);
@@ -226,7 +231,7 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
   for (const std::string& method : o.methods) {
     (is_tetra_mapper(method) ? mappers : sorters).push_back(method);
   }
-  std::vector<std::string> needed = sorters; // the sorters asked for, and those that pictures depend on
+  std::vector<std::string> needed = sorters; // the requested sorters, and the sorters that pictures depend on
   for (const std::string& mapper : mappers) {
     if (!sorter_of(mapper).empty() && !has(needed, sorter_of(mapper))) {
       needed.push_back(sorter_of(mapper));
@@ -260,7 +265,7 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
       add_more(scene, r.method, r.more, rows);
       if (!sorter_of(r.method).empty()) {
         sorter_metrics order = orders[sorter_of(r.method)];
-        for (const auto& m : r.more) { // a picture's own metrics replace those of its order
+        for (const auto& m : r.more) { // a picture's own metrics replace its order's metrics
           order.erase(m.first);
         }
         add_more(scene, r.method, order, rows);

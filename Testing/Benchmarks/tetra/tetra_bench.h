@@ -82,8 +82,8 @@ std::map<std::string, sorter_metrics> run_sorters(
 
 // ---- tetra_resample.cxx
 
-// Resamples a mesh to an image of along^3 points over its bounds and draws that, as Stratus or by VTK's FixedPoint in steps of half a
-// voxel. *ms: what the resampling took.
+// Resamples a mesh to an image of along^3 points over its bounds and draws the image by Stratus, or by VTK's FixedPoint in steps of half a
+// voxel. *ms: the resampling's time.
 vtkSmartPointer<vtkAbstractVolumeMapper> make_resampled(const tetra_mesh& mesh, bool ours, int along, double* ms);
 // The function for it: points beside the mesh have a value below all others, which is transparent.
 transfer transfer_of_image(const tetra_mesh& mesh, const transfer& t);

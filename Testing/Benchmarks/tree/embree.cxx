@@ -30,7 +30,7 @@ struct brick {
   int32_t at[3]; // in voxels
 };
 
-// What a ray is asked with: Embree 4 takes arguments that name the context, Embree 3 the context itself.
+// The arguments of a query: Embree 4 needs arguments that name the context, Embree 3 the context itself.
 #if RTC_VERSION_MAJOR >= 4
 using query_context = RTCRayQueryContext;
 class query

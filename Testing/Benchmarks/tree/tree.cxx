@@ -25,21 +25,23 @@ const char* const help = R"(stratus-bench tree [options]
                      openvdb (default: all; stratus:hybrid-paper, hybrid-paper-raw, ac, ac-edges, dpc and kmeans grow faster than n log n
                      and take sets of up to 35,000 voxels)
   --curves           methods over their settings; --quick-curves: without the slow ones
-  --device NAME      ours alone on the host and on this OpenCL device (an index or a part of its name): builds stage by stage, ms, share
+  --device NAME      only ours, on the host and on this OpenCL device (an index or a part of its name): builds stage by stage, ms, share
                      and kernels; rays, ns, and hits missed or late (default methods: stratus:hybrid|
                      hybrid-paper|hybrid-paper-raw|distance|octant|lbvh|ploc|wide)
   --rounds N         measurements of each method, one after the other in turn (default 5; 2 for 10M)
   --csv FILE         tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
-                     the rows before them tell where they come from, as in stratus-bench volume
+                     the comments before them say where they come from, as in stratus-bench volume
   --append           rows of other scenes that the file has stay
   --chart FILE.png   tracing against building
 
-build_ms: from the list of voxels to what can be traced, by the wall clock, 2 threads, median. primary_ns, random_ns: a ray, one thread, its
-processor time, median; 512 x 512 rays of record each. bytes: what the tree holds of memory (Embree: as its monitor tells after the build,
-without the list of voxels that its callbacks read). wrong_hits: among both kinds of rays, against a walk from voxel to voxel in double
-precision; grazing_hits: those that differ where a voxel is met for less than 1e-9 of the numbers around, or two at once. missed_hits and
-late_hits, in place of wrong_hits of stratus:hybrid-paper-raw, whose leaves keep flooded distances as they come out: the wrong ones that
-find no voxel, or one behind the walk's.
+build_ms                  wall clock from the list of voxels to a tree that rays can use, 2 threads, median
+primary_ns, random_ns     processor time a ray, one thread, median; 512 x 512 rays of record each
+bytes                     the tree's memory (Embree: as its monitor reports after the build, without the list of voxels that its
+                          callbacks read)
+wrong_hits                among both kinds of rays, against a walk from voxel to voxel in double precision
+grazing_hits              hits that differ where a ray meets a voxel for less than 1e-9 of the numbers around, or two at once
+missed_hits, late_hits    in place of wrong_hits of stratus:hybrid-paper-raw, whose leaves keep raw flooded distances: the wrong hits
+                          that find no voxel, or one behind the walk's
 With --device: host_ms, device_ms, kernels of METHOD and of "METHOD STAGE", medians of the rounds; a failure if the two trees differ.
 )";
 
@@ -245,7 +247,7 @@ void check_names(const std::vector<std::string>& names, const std::vector<std::s
 {
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw failure(std::string("unknown ") + what + " " + name + "; --help tells which there are");
+      throw failure(std::string("unknown ") + what + " " + name + "; --help lists them");
     }
   }
 }
@@ -264,7 +266,7 @@ options parse(int argc, char* argv[])
       continue;
     }
     if (i + 1 == argc) {
-      throw failure(word + " is unknown or lacks its value; --help tells more");
+      throw failure(word + " is unknown or lacks its value; see --help");
     }
     const std::string value = argv[i + 1];
     if (word == "--scene") {
@@ -283,7 +285,7 @@ options parse(int argc, char* argv[])
     } else if (word == "--chart") {
       o.chart = value;
     } else {
-      throw failure("unknown option " + word + "; --help tells more");
+      throw failure("unknown option " + word + "; see --help");
     }
   }
   std::vector<std::string> scenes;
@@ -294,7 +296,7 @@ options parse(int argc, char* argv[])
   check_names(o.scenes, scenes, "scene");
   for (const std::string& method : o.methods) {
     if (!is_tree_method(method)) {
-      throw failure("unknown method " + method + "; --help tells which there are");
+      throw failure("unknown method " + method + "; --help lists them");
     }
   }
   if (!o.device.empty()) {

@@ -66,8 +66,8 @@ std::unique_ptr<first_hits> make_hits(const voxel_set& set, const std::string& m
 std::unique_ptr<first_hits> make_embree_hits(const voxel_set& set, const std::string& kind);
 // ---- openvdb_tree.cxx
 std::unique_ptr<first_hits> make_openvdb_hits(const voxel_set& set);
-// ---- tree_judge.cxx: counts hits that differ from the plain walk's; grazing: those that rounding decides; wrong:
-// all others; missed, late: those of the wrong that find no voxel, or one behind the walk's
+// ---- tree_judge.cxx: counts hits that differ from the plain walk's. grazing: decided by rounding; wrong: all others; missed, late: wrong
+// hits that find no voxel, or one behind the walk's
 struct wrong_count {
   int64_t wrong = 0, grazing = 0, missed = 0, late = 0;
 };

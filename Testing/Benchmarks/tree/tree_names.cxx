@@ -13,7 +13,7 @@ namespace {
 const char* const peers[] = { "embree:low", "embree:medium", "embree:high", "embree:packet:low", "embree:packet", "embree:packet:high",
   "embree:bricks:low", "embree:bricks", "embree:bricks:high", "openvdb" };
 
-// Whether a method's leaves are of bricks; those of the others are of voxels.
+// Returns whether a method's leaves contain bricks; other leaves contain voxels.
 bool has_bricks(stratus_tree_method m)
 {
   return m == STRATUS_TREE_HYBRID || m == STRATUS_TREE_HYBRID_PAPER;

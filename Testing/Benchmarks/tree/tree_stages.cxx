@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench tree --device: what a tree is built of, stage by stage, and rays through it, on the host and on an OpenCL device, in turn.
-// The set is a volume of bytes, 1 in its voxels, so that the search for voxels is a stage, too; a set of more than 2^30 places is a list.
+// stratus-bench tree --device: builds of trees, stage by stage, and rays through them, on the host and on an OpenCL device, in turn. The
+// set is a volume of bytes, 1 in its voxels, so that the search for voxels is a stage, too; a set of more than 2^30 places is a list.
 #include "tree_methods.h"
 
 #include <algorithm>
@@ -95,7 +95,7 @@ std::vector<uint8_t> bytes_of(const stratus_tree* tree)
   return bytes;
 }
 
-// Rays of one kind, and the hits that every exact tree has: those of an octant field.
+// Rays of one kind, and the exact hits, found in an octant field.
 struct ray_set {
   std::vector<stratus_ray> rays;
   std::vector<stratus_hit> exact;
@@ -159,12 +159,12 @@ void run_rays(const context_pointer contexts[2], const tree_pointer trees[2], bo
 
 void take_report(const stratus_context* c, int side, stages& all)
 {
-  stratus_build_stage told[STRATUS_BUILD_STAGES_MAX];
-  const int count = std::min(stratus_context_get_build_report(c, told, STRATUS_BUILD_STAGES_MAX), STRATUS_BUILD_STAGES_MAX);
+  stratus_build_stage report[STRATUS_BUILD_STAGES_MAX];
+  const int count = std::min(stratus_context_get_build_report(c, report, STRATUS_BUILD_STAGES_MAX), STRATUS_BUILD_STAGES_MAX);
   std::map<std::string, double> ms; // a stage may be done at both places
   for (int i = 0; i < count; ++i) {
-    ms[told[i].name] += told[i].ms;
-    all.of(told[i].name).kernels += side ? told[i].kernels : 0;
+    ms[report[i].name] += report[i].ms;
+    all.of(report[i].name).kernels += side ? report[i].kernels : 0;
   }
   for (const auto& one : ms) {
     all.of(one.first.c_str()).ms[side].push_back(one.second);
@@ -188,10 +188,10 @@ void print(const std::string& scene, const std::string& method, const std::strin
   const auto line = [&](const std::string& name, double host, double there, double kernels) {
     std::fprintf(stderr, "%-20s %10.3f %6.3f %10.3f %6.3f %7.0f %7.2f\n", name.c_str(), host, host / whole[0], there, there / whole[1],
       kernels, there / host);
-    const std::string told = name == whole_build ? method : method + " " + name;
-    rows.push_back({ scene, told, "host_ms", "ms", host });
-    rows.push_back({ scene, told, "device_ms", "ms", there });
-    rows.push_back({ scene, told, "kernels", "1", kernels });
+    const std::string label = name == whole_build ? method : method + " " + name;
+    rows.push_back({ scene, label, "host_ms", "ms", host });
+    rows.push_back({ scene, label, "device_ms", "ms", there });
+    rows.push_back({ scene, label, "kernels", "1", kernels });
   };
   double kernels = 0.0;
   for (const stage& s : all.all) {

@@ -202,7 +202,7 @@ struct judge::state {
   const scene& Scene;
   effort How;
   references Source;
-  const progress& Told;
+  const progress& Shown;
   double Step; // of Fine; 0: nothing is drawn yet
   std::vector<std::vector<float>> Coarse, Fine;
   double Agreement; // dB, of Fine with Coarse
@@ -215,7 +215,7 @@ double judge::state::draw(double step)
 {
   error self;
   for (int view = 0; view < views; ++view) {
-    this->Told.tell(this->Scene.name,
+    this->Shown.show(this->Scene.name,
       "reference in steps of 1/" + std::to_string(std::lround(1.0 / step)) + " voxel, view " + std::to_string(view + 1) + " of " +
         std::to_string(views));
     const size_t v = static_cast<size_t>(view);
@@ -229,8 +229,8 @@ double judge::state::draw(double step)
   return self.psnr();
 }
 
-judge::judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache, const progress& told)
-    : State(new state{ context, s, how, references(context, s, how.size, cache), told, 0.0, {}, {}, 0.0 })
+judge::judge(stratus_context* context, const scene& s, const effort& how, const std::string& cache, const progress& shown)
+    : State(new state{ context, s, how, references(context, s, how.size, cache), shown, 0.0, {}, {}, 0.0 })
 {
   this->State->Coarse.resize(views);
   this->State->Fine.resize(views);

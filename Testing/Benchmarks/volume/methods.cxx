@@ -21,7 +21,7 @@ namespace {
 
 const char* const structures[] = { "auto", "none", "block", "distance", "octant", "hybrid" };
 
-// Splits NAME+WINDOW, and tells what the window shows besides the volume. Returns false for other windows.
+// Splits NAME+WINDOW into the name and the window's other contents. Returns false for other windows.
 bool parse_dress(const std::string& whole, std::string& name, dress& d)
 {
   const size_t plus = whole.find('+');
@@ -101,7 +101,7 @@ vtkSmartPointer<vtkVolumeMapper> make_stratus(const stratus_method& m, double fi
 struct peer_method {
   std::string name;
   double step = 1.0; // in voxels
-  int image = 1;     // pixels from ray to ray; of peers, vtk:fixedpoint alone has another than 1
+  int image = 1;     // pixels from ray to ray; among peers, only vtk:fixedpoint has values other than 1
 };
 
 // Returns false for other names.

@@ -154,7 +154,7 @@ void openvdb_mapper::inside::trace(intersector& hits,
   float left = 1.0f;
   double from = 0.0;
   double to = 0.0;
-  // Times are world lengths, because the direction in voxels is that of one world unit.
+  // Times are world lengths, because the direction in voxels corresponds to one world unit.
   ray r(eye, direction, 1e-6, 1e30);
   const openvdb::Vec3d last(
     double(this->volume.dimensions[0] - 1), double(this->volume.dimensions[1] - 1), double(this->volume.dimensions[2] - 1));
@@ -243,7 +243,7 @@ void openvdb_mapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   const int* size = renderer->GetSize();
   this->In->cast(view_of(renderer), size[0], size[1]);
   // Draw each texel on its pixel. vtkRayCastImageDisplayHelper would stretch the picture by up to a pixel, an error that is not OpenVDB's.
-  // Nothing lies behind, so neither blending nor a depth test is needed.
+  // Nothing is behind it, so neither blending nor a depth test is needed.
   auto* target = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
   vtkOpenGLState* state = target->GetState();
   vtkOpenGLState::ScopedglEnableDisable blend(state, GL_BLEND);

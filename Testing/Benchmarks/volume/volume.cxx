@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// stratus-bench volume: compares Stratus' pictures and times with those of existing volume renderers, in one process.
+// stratus-bench volume: compares pictures and times of Stratus and of existing volume renderers, in one process.
 #include "bench.h"
 #include "rate.h"
 
@@ -37,19 +37,21 @@ const char* const help = R"(stratus-bench volume [options]
   --no-error                times and differing pixels only
   --no-update               transfer functions do not change
 
-Every frame is a whole Render() with WaitForCompletion(). frame_ms is the median over the 8 views of record, each the median of its repeats,
-and frame_ms/V that of view V. A window is black, without multisampling, unless told otherwise. update_ms: from a change of the transfer
-function to the next picture, median over the views. psnr_db is of float pixels, psnr8_db of the window read back in 8 bits, max_error of
-floats where a method has them; they are of one pixel in each tile of 8 x 8, 4 x 4 or 2 x 2, where that leaves 16,384 in which something
-shows. samples: a frame's, median. A method that cannot be measured has a row `failed`, and the exit status is 1. Needs a display; without
-one it starts itself under xvfb-run.
+Every frame is a whole Render() with WaitForCompletion(). A window is black, without multisampling, unless its method names another.
+A method that cannot be measured has a row `failed`, and the exit status is 1. Needs a display; without one it starts itself under xvfb-run.
+  frame_ms               median over the 8 views of record, each the median of its repeats; frame_ms/V: view V
+  update_ms              from a change of the transfer function to the next picture, median over the views
+  psnr_db, max_error     of float pixels, if the method has them
+  psnr8_db               of the window read back in 8 bits
+  samples                of a frame, median
+Errors are measured at one pixel of each tile of 8 x 8, 4 x 4 or 2 x 2, if 16,384 of these pixels show something.
 
 floor_ms is an estimate, not a bound: the samples with alpha > 0, one a voxel until a ray is opaque, at the rate of a tight loop that sets
 up, skips and tests nothing. A method can take fewer samples than floor counts.
 
 stratus-bench all --out FOLDER measures everything, stratus-bench compare A B compares two such runs.
-stratus-bench distance --help tells of distance fields, octree --help of culling, tetra --help of tetrahedra, tree --help of first hits,
-paraview --help of the plugin in ParaView.
+stratus-bench distance --help describes distance fields, octree --help culling, tetra --help tetrahedra, tree --help first hits, and
+paraview --help the plugin in ParaView.
 )";
 
 struct options {
@@ -75,7 +77,7 @@ options parse(int argc, char* argv[])
       continue;
     }
     if (i + 1 == argc) {
-      throw bench::failure(word + " is unknown or lacks its value; --help tells more");
+      throw bench::failure(word + " is unknown or lacks its value; see --help");
     }
     const std::string value = argv[++i];
     if (word == "--scene") {
@@ -95,7 +97,7 @@ options parse(int argc, char* argv[])
     } else if (word == "--reference-cache") {
       o.cache = value == "none" ? "" : value;
     } else {
-      throw bench::failure("unknown option " + word + "; --help tells more");
+      throw bench::failure("unknown option " + word + "; see --help");
     }
   }
   if (o.how.size < 16 || o.how.size > 4096) {
@@ -222,9 +224,9 @@ int bench::volume_main(int argc, char* argv[])
 {
   const bool asked = argc > 2 && std::strcmp(argv[2], "--help") == 0;
   if (argc < 2 || std::strcmp(argv[1], "volume") != 0 || asked) {
-    const bool told = asked || (argc > 1 && std::strcmp(argv[1], "--help") == 0);
-    std::fputs(help, told ? stdout : stderr);
-    return told ? 0 : 2;
+    const bool wanted = asked || (argc > 1 && std::strcmp(argv[1], "--help") == 0);
+    std::fputs(help, wanted ? stdout : stderr);
+    return wanted ? 0 : 2;
   }
   const options o = parse(argc, argv);
   ensure_display(argv);

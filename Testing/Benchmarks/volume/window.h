@@ -13,7 +13,7 @@
 
 namespace bench {
 
-// What a window shows besides the volume. A bare one is black, without multisampling or another prop.
+// The contents of a window, in addition to the volume. A bare window is black, without multisampling or another prop.
 struct dress {
   bool gradient = false; // background
   bool samples = false;  // 8 a pixel, VTK's default
