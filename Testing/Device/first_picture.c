@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * stratus-first-picture DEVICE [SCENE [MODE [lit]]]: what the first picture on a device costs, compiler and children included, beside the
- * second. One line of CSV. The caches of programs are those of the environment: STRATUS_CACHE_DIR for ours, POCL_CACHE_DIR for PoCL's. */
+ * stratus-first-picture DEVICE [SCENE [MODE [lit]]]: the cost of the first picture on a device, compiler and child processes included,
+ * compared with the second. Prints one line of CSV. STRATUS_CACHE_DIR and POCL_CACHE_DIR name the folders of our and PoCL's program
+ * caches. */
 #include "stratus/ray_cast.h"
 #include "stratus/scenes.h"
 

@@ -75,7 +75,7 @@ static void neighbours_of_random_cells_are_the_hosts(void** state)
 }
 
 /* The most bits that a point's number has: 31 of the first point, 31 of the second. The points themselves are not read. */
-static void point_numbers_of_31_bits_are_told_apart(void** state)
+static void point_numbers_of_31_bits_are_distinct(void** state)
 {
   static const int32_t high = INT32_MAX - 8;
   int32_t vertices[4 * 40];
@@ -158,7 +158,7 @@ int test_adjacency_device(void)
   }
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(neighbours_of_random_cells_are_the_hosts),
-    cmocka_unit_test(point_numbers_of_31_bits_are_told_apart),
+    cmocka_unit_test(point_numbers_of_31_bits_are_distinct),
     cmocka_unit_test(large_meshes_go_to_the_device),
   };
   return cmocka_run_group_tests(tests, open_device, close_device);

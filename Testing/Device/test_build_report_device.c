@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The report of building, on the host and on a device that is taken for a GPU: which stages there are, where each was done, by how many
- * kernels, and the bytes of what it made, which are the same at both. */
+ * The build report, on the host and on a device that is taken for a GPU: its stages, the place and the number of kernels of each, and the
+ * bytes that each stage made, which are equal on both. */
 #include "structures.h"
 
 #include "device.h"
@@ -10,7 +10,7 @@
 #include "mesh_case.h"
 #include "tree.h"
 
-/* What the device does by kernels. */
+/* Numbers of kernels in a stage. */
 #define HOST 0
 #define SOME -1 /* one or more kernels, else exactly so many */
 
@@ -168,29 +168,29 @@ static void meshes(stratus_context* context)
   mesh_case_free(&mesh);
 }
 
-static void stages_of_blocks_are_told(void** state)
+static void stages_of_blocks_are_reported(void** state)
 {
   (void)state;
   maps_of_blocks(host_context);
   maps_of_blocks(device);
 }
 
-static void stages_of_trees_are_told(void** state)
+static void stages_of_trees_are_reported(void** state)
 {
   (void)state;
   trees(host_context);
   trees(device);
 }
 
-static void stages_of_meshes_are_told(void** state)
+static void stages_of_meshes_are_reported(void** state)
 {
   (void)state;
   meshes(host_context);
   meshes(device);
 }
 
-/* A kernel that does not start is no launch, and the stage that fails is not told; the next call is. */
-static void a_stage_on_a_lost_device_is_not_told(void** state)
+/* A kernel that does not start is no launch, and the report leaves out a stage that fails; the next call is reported. */
+static void a_stage_on_a_lost_device_is_not_reported(void** state)
 {
   (void)state;
   uint32_t random = 3;
@@ -215,10 +215,10 @@ int test_build_report_device(void)
     return TEST_SKIPPED;
   }
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(stages_of_blocks_are_told),
-    cmocka_unit_test(stages_of_trees_are_told),
-    cmocka_unit_test(stages_of_meshes_are_told),
-    cmocka_unit_test(a_stage_on_a_lost_device_is_not_told),
+    cmocka_unit_test(stages_of_blocks_are_reported),
+    cmocka_unit_test(stages_of_trees_are_reported),
+    cmocka_unit_test(stages_of_meshes_are_reported),
+    cmocka_unit_test(a_stage_on_a_lost_device_is_not_reported),
   };
   return cmocka_run_group_tests(tests, open_device_as_gpu, close_device);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Morton codes, hierarchies and layouts made by an OpenCL device, equal to the bit to the host's; and a device that fails on the way.
- * A device on a CPU is taken for a GPU, and then for what it is. */
+ * Morton codes, hierarchies and layouts made by an OpenCL device, equal to the bit to the host's; and a device that fails in between. A
+ * device on a CPU runs twice: as a GPU, and as a CPU. */
 #include "boxes.h"
 
 #include "device_pair.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The first contexts of a process, made by several threads at once. What a platform does in its first use happens once a process, so each
- * try is a process of its own: this program, run by itself. */
+ * The first contexts of a process, made by several threads at once. A platform's first use happens once a process, so each try is a
+ * separate process: this program, run by itself. */
 #define _POSIX_C_SOURCE 200809L
 #include "small_scene.h"
 #include "testing.h"

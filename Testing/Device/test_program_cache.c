@@ -193,7 +193,7 @@ static void a_damaged_file_is_built_anew_and_replaced(void** state)
   }
   assert_true(places > 1000);
   stratus_context_destroy(context);
-  for (size_t at = 0; at < size; at += size / 3) { /* and the whole way, kernel included */
+  for (size_t at = 0; at < size; at += size / 3) { /* and the whole sequence, kernel included */
     memcpy(changed, bytes, size);
     changed[at] ^= 1;
     write_bytes(path, changed, size);
@@ -266,7 +266,7 @@ static void a_folder_that_cannot_be_used_costs_the_building_only(void** state)
   snprintf(deep, sizeof deep, "%.100s/a/b", folder); /* it is made */
   assert_int_equal(run(deep, "1.5f"), 0);
   assert_int_equal(run(deep, "1.5f"), 1);
-  assert_int_equal(chmod(deep, S_IRUSR | S_IXUSR), 0); /* what is there can be read */
+  assert_int_equal(chmod(deep, S_IRUSR | S_IXUSR), 0); /* programs in the folder can still be read */
   assert_int_equal(run(deep, "1.5f"), 1);
   assert_int_equal(run(deep, "2.5f"), 0);
   if (geteuid() != 0) { /* root writes anywhere */
@@ -335,7 +335,7 @@ static void the_folder_keeps_what_was_used_last(void** state)
   assert_int_equal(run(folder, "2.5f"), 0);
   assert_int_equal(find_file(path), 2);
   assert_int_equal(run(folder, "3.5f"), 1);
-  /* what a writer left half written goes once it is old; files of others stay */
+  /* Half-written files are deleted once they are old; other files stay. */
   char half[PATH], fresh[PATH], other[PATH];
   snprintf(half, sizeof half, "%.100s/0.program.abcdef", folder);
   snprintf(fresh, sizeof fresh, "%.100s/1.program.abcdef", folder);
@@ -400,7 +400,7 @@ static void pictures_of_loaded_programs_have_the_same_bits(void** state)
     stratus_ray_caster_destroy(caster);
     stratus_context_get_programs(context, &statistics);
     programs = pass ? programs : (int)statistics.built;
-    assert_true(programs > 0); /* the picture's, and those of its structures */
+    assert_true(programs > 0); /* the picture's program, and its structures' programs */
     assert_int_equal(statistics.built, pass ? 0 : programs);
     assert_int_equal(statistics.loaded, pass ? programs : 0);
     stratus_context_destroy(context);
@@ -408,7 +408,7 @@ static void pictures_of_loaded_programs_have_the_same_bits(void** state)
   assert_memory_equal(&built, &loaded, sizeof built);
 }
 
-/* PoCL keeps programs itself, so that nothing of ours is kept for it where nobody asks for that. */
+/* PoCL keeps programs itself, so by default our cache keeps none for it. */
 static void the_default_folder_is_the_cache_s_and_none_for_pocl(void** state)
 {
   stratus_context* context = open_context("");

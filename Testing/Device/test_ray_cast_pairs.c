@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * A device without double: the set-up of rays in pairs of floats. The device that is here is told to have no double, and its pictures are
- * held against the host's, from near and from a million voxels away, where plain floats would shake by a sixteenth of a voxel. */
+ * A device without double: rays are set up in pairs of floats. The test marks the present device as without double, and compares its
+ * pictures with the host's, from near and from a million voxels away, where plain floats would shake by a sixteenth of a voxel. */
 #include "picture_case.h"
 #include "testing.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Volumes that are larger than the device's largest allocation, which is pretended to be small: the pictures from pages equal those of the
- * whole volume to the bit, in every rule and mode; pages are sent once, and anew where more blocks show; what does not fit is drawn on the
- * host, and the report says why. Run with the argument `--tiny` it draws a few rays: enough for a simulator to see the kernels. */
+ * Volumes that are larger than the device's largest allocation, which the test sets to a small number. Pictures from pages equal the whole
+ * volume's to the bit, in every rule and mode. Pages are sent once, and again only if more blocks show. The host draws volumes that do not
+ * fit, and the report says why. With the argument `--tiny` the test draws a few rays: enough for a simulator to see the kernels. */
 #include "picture_case.h"
 #include "structures.h"
 
@@ -18,7 +18,7 @@
 static picture whole, paged;
 static uint8_t labels[VALUES];
 
-/* What one picture of the pages' test has. */
+/* One picture of the pages' test. */
 typedef struct page_case {
   const char* name;
   stratus_type type;
@@ -258,7 +258,7 @@ static void pages_are_sent_once_and_anew_where_more_shows(void** state)
   stratus_context_start_build_report(device);
   assert_int_equal(draw_both(caster, &c, largest, "another view"), 0);
   assert_int_equal(count_stage("pages of values"), 0);
-  c.options.sample_distance = 9.0; /* segments end farther from what shows; the table of sums serves */
+  c.options.sample_distance = 9.0; /* segments end farther from visible blocks; the table of sums serves */
   assert_true(draw_both(caster, &c, largest, "longer segments") >= 2);
   assert_int_equal(count_stage("pages of values"), 1);
   c.options.sample_distance = 0.8;
@@ -315,8 +315,8 @@ static void what_does_not_fit_is_drawn_on_the_host(void** state)
   case_destroy(&c);
 }
 
-/* Calls of OpenCL fail, one a try and all behind it. What the device has no memory for the host draws; any other failure is an error; and
- * the next picture has the pages again. */
+/* In each try one call of OpenCL and all later calls fail. If the device has no memory for a picture, the host draws it; any other failure
+ * is an error; and the next picture has the pages again. */
 static void pages_survive_a_device_that_fails(void** state)
 {
   static const int errors[] = { CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_DEVICE_NOT_AVAILABLE };

@@ -149,7 +149,7 @@ static void compare(compared what, bool one_ray)
     assert_int_equal(differing(), 0);
     assert_int_equal(on_device.report.differing_pixels, 0);
     assert_true(on_device.report.samples > 0);
-    if (what == PLAIN || (!one_ray && case_counts_agree())) { /* packets count all their rays where the window of what shows cuts them */
+    if (what == PLAIN || (!one_ray && case_counts_agree())) { /* a packet counts all its rays if the visible window cuts it */
       assert_int_equal(on_device.report.rays, on_host.report.rays);
     }
     assert_null(strstr(on_device.report.why, "drawn on the host"));
@@ -211,7 +211,7 @@ static void what_did_not_change_stays_on_the_device(void** state)
   assert_int_equal(reports[0].uploads, first[0]);
   print_message("             uploads %d, then %d\n", (int)first[1], (int)reports[1].uploads);
   assert_true(reports[1].uploads > first[1] && reports[1].uploads <= first[1] + 3);
-  /* another step changes the layers alone */
+  /* another step changes only the layers */
   const uint64_t second = reports[1].uploads;
   m.of[0].options.sample_distance = m.of[1].options.sample_distance = 0.3;
   assert_int_equal(several_draw_with(&casters, &m, &on_device, reports), STRATUS_OK);

@@ -168,8 +168,8 @@ static void occupancy_equals_the_hosts(void** state)
   }
 }
 
-/* How many kernels make a map. A processor sweeps planes, then along z; then it joins rows, or marks those of the box of occupied blocks
- * and sweeps octants. A GPU sums along each axis, and searches each map. */
+/* Returns the number of kernels that make a map. A processor sweeps planes, then along z; then it joins rows, or marks rows of the box of
+ * occupied blocks and sweeps octants. A GPU sums along each axis, and searches each map. */
 static uint64_t kernels_of_map(int kind, bool processor, bool has_box)
 {
   if (kind == STRATUS_DISTANCE_PAPER) {

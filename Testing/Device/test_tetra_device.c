@@ -219,7 +219,7 @@ static void auto_goes_by_the_costs_of_the_host(void** state)
   stratus_context_destroy(device);
 }
 
-/* What the device keeps is replaced when it has to be, and pictures are those of a new caster. */
+/* The device's data are replaced only if they change, and a new caster draws equal pictures. */
 static void draw_with_changes(stratus_context* device, int cell_values)
 {
   stratus_tetra_caster* caster = NULL;

@@ -45,7 +45,7 @@ static void assert_same_voxels(const stratus_voxels* here, const stratus_voxels*
   assert_memory_equal(&there->origin, &here->origin, sizeof here->origin);
 }
 
-/* kernels: what the device is to launch, 0 if it leaves the volume to the host. */
+/* kernels: the expected launches on the device, 0 if the host scans the volume. */
 static void compare_voxels(const stratus_volume* volume, const stratus_criterion* criterion, int kernels)
 {
   stratus_voxels *here = NULL, *there = NULL;
@@ -293,15 +293,15 @@ static void sums_beyond_whole_doubles_are_the_hosts(void** state)
   stratus_voxels_destroy(voxels);
 }
 
-/* What becomes of a tree and of voxels when the device fails at a call: without memory, or, where "auto" took the device, whatever the
- * reason, the host makes them; else the call is an error that says so, makes nothing, and the next one is right. */
-typedef struct failing_way {
+/* A failure of the device at one call, and its effect on a tree and voxels. If the device is out of memory, or if "auto" chose the device
+ * and it fails for any reason, the host builds them. Otherwise the call reports the error and makes nothing, and the next call is right. */
+typedef struct failure_case {
   bool named;
   int error;
   bool handed_back;
-} failing_way;
+} failure_case;
 
-static void fail_at_each_call(const failing_way* way, const stratus_voxels* voxels, const stratus_volume* volume)
+static void fail_at_each_call(const failure_case* way, const stratus_voxels* voxels, const stratus_volume* volume)
 {
   const stratus_criterion criterion = stratus_criterion_default();
   stratus_tree_options options = stratus_tree_options_default();
@@ -361,7 +361,7 @@ static void fail_at_each_call(const failing_way* way, const stratus_voxels* voxe
 
 static void the_host_takes_over_or_the_call_fails(void** state)
 {
-  static const failing_way ways[] = { { true, CL_DEVICE_NOT_AVAILABLE, false }, { true, CL_MEM_OBJECT_ALLOCATION_FAILURE, true },
+  static const failure_case ways[] = { { true, CL_DEVICE_NOT_AVAILABLE, false }, { true, CL_MEM_OBJECT_ALLOCATION_FAILURE, true },
     { true, CL_OUT_OF_RESOURCES, true }, { false, CL_DEVICE_NOT_AVAILABLE, true }, { false, CL_BUILD_PROGRAM_FAILURE, true } };
   uint32_t random = 8;
   sample_volume v = make_volume(STRATUS_UINT8, 9, 9, 9, 1, &random);

@@ -48,7 +48,7 @@ static void refuse(faulty_allocator* allocator, int64_t n)
   allocator->fail_at = n ? allocator->calls + n : 0;
 }
 
-/* Whether a request was refused. What only saves time may be refused, and the picture is drawn without it. */
+/* Returns whether a request was refused. A request that only saves time may be refused, and the picture is drawn without it. */
 static int has_refused(const faulty_allocator* allocator)
 {
   return allocator->fail_at && allocator->calls >= allocator->fail_at;

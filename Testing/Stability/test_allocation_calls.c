@@ -6,7 +6,7 @@
 #include "testing.h"
 
 #define REQUESTS_MAX 2000 /* for one call: far more than any needs, so that a loop which never succeeds ends */
-#define MARK 0x5a         /* each byte of what a call is to fill */
+#define MARK 0x5a         /* each byte of a call's output before the call */
 #define OBJECTS 40        /* of an octree */
 
 static void* saved; /* a tree's bytes */
@@ -119,7 +119,7 @@ static stratus_status compare_tree(stratus_context* context, int number, uint64_
     assert_int_equal(covers, 1);
     *sum = 1;
   } else {
-    assert_int_equal(covers, 0); /* what cannot be told is not taken */
+    assert_int_equal(covers, 0); /* a call that fails reports that the tree covers nothing */
   }
   return status;
 }

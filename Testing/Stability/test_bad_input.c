@@ -69,7 +69,7 @@ static void assert_refused_as(fixture* f, const inputs* in, stratus_status expec
     fail_msg("line %d: %s instead of %s; message: %s", line, stratus_status_name(status), stratus_status_name(expected), message);
   }
   if (!strstr(message, part)) {
-    fail_msg("line %d: \"%s\" does not tell %s", line, message, part);
+    fail_msg("line %d: \"%s\" does not contain %s", line, message, part);
   }
   memset(&f->picture, 0xff, sizeof f->picture);
   assert_int_equal(draw(f, &f->good), STRATUS_OK);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The only file that the core writes, that of measured costs, on a disk that is full from byte n on, for every n, and in folders that take
- * no file. Readers find the old file or the new one, nothing is left beside it, and what was asked for is measured. */
+ * The file of measured costs, the only file that the core writes, on a disk that is full from byte n on, for every n, and in folders that
+ * accept no file. Readers find the old file or the new one, no other file is left, and the requested costs are measured. */
 #define _XOPEN_SOURCE 700
 #include "calibration.h"
 #include "testing.h"

@@ -25,7 +25,7 @@ static stratus_ray_cast_options options_of(stratus_sampling sampling, double ste
   return options;
 }
 
-/* Draws the product, which grids hold exactly, so that the step alone errs. The broken method takes each segment at its front. */
+/* Draws the product, which grids hold exactly, so that only the step errs. The broken method samples each segment at its front. */
 static void judge_steps(stratus_context* context, stratus_sampling sampling, const char* what)
 {
   static float rgba[4 * CONVERGENCE_PIXELS];
@@ -58,8 +58,9 @@ static void preintegrated_steps_have_order_2(void** state)
   judge_steps(*state, STRATUS_SAMPLING_PREINTEGRATED, "pre-integrated, by steps");
 }
 
-/* A piece departs from a straight line by its curvature times the square of its length, so that the error falls with what it may depart. */
-static void pieces_of_cells_have_order_1_in_what_they_may_depart(void** state)
+/* A piece departs from a straight line by its curvature times the square of its length, so that the error falls with the allowed
+ * departure. */
+static void pieces_of_cells_have_order_1_in_the_allowed_departure(void** state)
 {
   static float rgba[4 * CONVERGENCE_PIXELS];
   static double truth[4 * CONVERGENCE_PIXELS];
@@ -73,12 +74,12 @@ static void pieces_of_cells_have_order_1_in_what_they_may_depart(void** state)
     options.cell_error = 0.02 / (1 << level);
     analytic_draw(*state, &s, &volume, &options, CONVERGENCE_SIDE, rgba, NULL);
     errors[level] = convergence_rms(rgba, truth, 4 * CONVERGENCE_PIXELS);
-    options.cell_error = 0.02; /* a rule that does not listen */
+    options.cell_error = 0.02; /* a rule that ignores the allowed departure */
     analytic_draw(*state, &s, &volume, &options, CONVERGENCE_SIDE, rgba, NULL);
     worse[level] = convergence_rms(rgba, truth, 4 * CONVERGENCE_PIXELS);
   }
   free((void*)volume.values);
-  convergence_judge("cells, by what a piece may depart", errors, 1.0, "pieces that do not change", worse);
+  convergence_judge("cells, by the allowed departure", errors, 1.0, "pieces that do not change", worse);
 }
 
 /* Trilinear interpolation errs by the square of a cell. The broken method has its values half a cell off, as one that takes values of cells
@@ -212,7 +213,7 @@ int test_convergence(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(midpoint_steps_have_order_2),
     cmocka_unit_test(preintegrated_steps_have_order_2),
-    cmocka_unit_test(pieces_of_cells_have_order_1_in_what_they_may_depart),
+    cmocka_unit_test(pieces_of_cells_have_order_1_in_the_allowed_departure),
     cmocka_unit_test(grid_cells_have_order_2),
     cmocka_unit_test(pixels_have_order_2),
     cmocka_unit_test(entries_of_tables_have_order_2),

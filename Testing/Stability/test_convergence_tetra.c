@@ -13,7 +13,7 @@ typedef struct cube_mesh {
   float* values;
 } cube_mesh;
 
-/* n^3 boxes of six cells each about the box's diagonal in the unit cube. constant: a value for each cell, that of its first corner. */
+/* n^3 boxes of six cells each about the box's diagonal in the unit cube. constant: a cell's value is its first corner's. */
 static cube_mesh cube_of(analytic_field field, int n, bool constant)
 {
   static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };

@@ -166,7 +166,7 @@ static void steps_are_those_of_the_method(void** state)
   stratus_context_destroy(context);
 }
 
-/* AJFA: each step at least half the one before, the slower fall exactly after passes that were good; and what the passes tell adds up. */
+/* AJFA: each step is at least half the one before, the slower fall comes exactly after good passes, and the passes' numbers add up. */
 static void the_adaptive_steps_follow_what_the_passes_did(void** state)
 {
   static const int64_t fills[] = { 3, 100, 2000, 60000 };
@@ -214,7 +214,7 @@ static void the_first_passes_numbers_are_those_of_equations_6_and_7(void** state
   double *before = malloc((size_t)total * sizeof(double)), *after = malloc((size_t)total * sizeof(double));
   assert_non_null(before);
   assert_non_null(after);
-  /* Step 1 first: what a voxel learns is the distance to a neighbour; then step 5, of which only E1 is asked. */
+  /* Step 1 first: a voxel learns the distance to a neighbour. Then step 5, of which only E1 is checked. */
   double updated = 0.0;
   for (int64_t v = 0; v < total; ++v) {
     double best = INFINITY;

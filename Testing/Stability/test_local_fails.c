@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Memory that runs out while rule local is measured, and while a caster that has measured it is asked for another rule: nothing leaks, no
- * other rule is drawn by the map of rough blocks, and the next picture is right. */
+ * Memory runs out while rule local is measured, and while a caster that has measured it draws with another rule. Nothing leaks, no other
+ * rule uses the map of rough blocks, and the next picture is right. */
 #include "faulty_allocator.h"
 #include "picture_case.h"
 
@@ -66,7 +66,7 @@ static void each_allocation_may_fail(void** state)
     assert_int_equal(allocator.live, live);
   }
   more = 1;
-  for (int64_t n = 1; more; ++n) { /* while another rule is asked for */
+  for (int64_t n = 1; more; ++n) { /* while the caster changes to another rule */
     stratus_status status;
     assert_true(n < REQUESTS_MAX);
     assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);

@@ -30,14 +30,14 @@ static void remember(const char* call)
   snprintf(called[calls++], sizeof *called, "%.*s", (int)strcspn(call, "("), call);
 }
 
-static void check_refused(const char* call, stratus_status status, bool told, int line)
+static void check_refused(const char* call, stratus_status status, bool names_null, int line)
 {
   remember(call);
   if (status != STRATUS_INVALID_ARGUMENT) {
     fail_msg("line %d: %s: %s", line, call, stratus_status_name(status));
   }
-  if (told && !strstr(context->message, "NULL") && !strstr(context->message, "(null)")) {
-    fail_msg("line %d: %s: \"%s\" tells nothing of NULL", line, call, context->message);
+  if (names_null && !strstr(context->message, "NULL") && !strstr(context->message, "(null)")) {
+    fail_msg("line %d: %s: \"%s\" does not name NULL", line, call, context->message);
   }
   if (untouched) {
     fail_msg("line %d: %s: made something", line, call);

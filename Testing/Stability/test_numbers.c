@@ -51,8 +51,8 @@ static void scale_values(picture_case* c, double factor)
   }
 }
 
-/* From denormal floats and doubles to the largest: drawn as the reference draws them, or refused with a number. First hits have no
- * table of colours, but are coloured by the same floats: where these tell no values apart, both refuse by the same words. */
+/* From denormal floats and doubles to the largest: drawn as the reference draws them, or refused with a number. First hits have no table of
+ * colours, but are coloured by the same floats: if two values are equal as floats, both modes refuse with equal words. */
 static void values_of_any_size_are_drawn_or_refused(void** state)
 {
   static const double scales[] = { 1e-310, 1e-300, 1e-45, 1e-42, 1e-40, 1e-38, 1e-30, 1e-20, 1e20, 1e30, 1e36, 1e37, 1e100, 1e300 };
@@ -60,7 +60,7 @@ static void values_of_any_size_are_drawn_or_refused(void** state)
     for (int wide = 0; wide < 2; ++wide) {
       picture_case c;
       case_create(*state, &c, wide ? STRATUS_FLOAT64 : STRATUS_FLOAT32, 14, 15, 16, 3);
-      if (wide) { /* values about 1e6 hold no field of any size: those of floats do */
+      if (wide) { /* values about 1e6 are no field of any size; floats' values are */
         for (int64_t v = 0; v < 14 * 15 * 16; ++v) {
           ((double*)c.values)[v] = (((double*)c.values)[v] - 1e6) * 3000.0 - 20.0;
         }
@@ -97,7 +97,7 @@ static void values_of_any_size_are_drawn_or_refused(void** state)
   }
 }
 
-/* A constant volume with holes of one fill value is drawn as it ever was: only values that differ must be told apart. */
+/* Draws a constant volume with holes of one fill value: only values that differ must stay distinct. */
 static void a_fill_value_beyond_floats_is_a_hole(void** state)
 {
   picture_case c;
@@ -117,7 +117,7 @@ static void a_fill_value_beyond_floats_is_a_hole(void** state)
   case_destroy(&c);
 }
 
-/* -0 is 0, in every mode, for functions whose points lie at either. */
+/* -0 is 0, in every mode, for functions with points at either. */
 static void zeros_have_no_sign(void** state)
 {
   for (int mode = STRATUS_MODE_COMPOSITE; mode <= STRATUS_MODE_ISOSURFACE; ++mode) {
@@ -202,7 +202,7 @@ static void lengths_of_any_size_show_the_same(void** state)
   }
 }
 
-/* Edges of 1e-20 and 1e20 in one voxel, places that no double tells apart: drawn without a number that is none, or refused. */
+/* Edges of 1e-20 and 1e20 in one voxel, positions that are equal in doubles: drawn with finite numbers only, or refused. */
 static void lengths_that_do_not_go_together_are_drawn_or_refused(void** state)
 {
   static const double edges[][6] = { { 1e-20, 1, 1e20, 0, 0, 0 }, { 1e-20, 1e-20, 1, 0, 0, 0 }, { 1, 1, 1, 1e20, 0, 0 },
@@ -336,7 +336,7 @@ static void volumes_of_one_voxel_are_cubes_or_nothing(void** state)
   }
 }
 
-/* All 26 directions through middles of faces, edges and corners: rays lie in planes of the grid. */
+/* All 26 directions through middles of faces, edges and corners: rays are in planes of the grid. */
 static void views_along_axes_edges_and_diagonals_are_right(void** state)
 {
   double worst = INFINITY;

@@ -272,7 +272,7 @@ static void objects_on_a_cell_s_border(void** state)
         right += boxes[i][0] <= x && x <= boxes[i][1];
       }
       assert_true(right >= 81);
-      assert_int_equal(seen(&s, &frustum, 1), right); /* of no volume: what touches the plane */
+      assert_int_equal(seen(&s, &frustum, 1), right); /* a frustum without volume sees the boxes that touch its plane */
     }
     close_scene(&s);
   }

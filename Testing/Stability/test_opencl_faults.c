@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Every call of OpenCL fails, once each, in everything that the core does on a device. A layer below the loader refuses the call, every
- * call from there on, or lets the device vanish: what is enqueued then seems to succeed, and nothing comes of it. Each fault gives an error
- * with OpenCL's name for it, leaves no command running and holds no object, and the next try gives the same bits.
+ * Every call of OpenCL fails, once each, in everything that the core does on a device. A layer below the loader refuses the call, or every
+ * call from there on, or lets the device vanish: later commands then seem to succeed, but have no effect. Each fault gives an error with
+ * OpenCL's name for it, leaves no command running and holds no object, and the next try gives equal bits.
  *
  * Testing/run takes some calls of each job, STRATUS_LONG=1 all of them. */
 #define _GNU_SOURCE
@@ -57,7 +57,7 @@ static void close_kept(const device_job* job, void** kept)
   }
 }
 
-static void assert_told(const char* job, const char* message, stratus_status status)
+static void assert_message(const char* job, const char* message, stratus_status status)
 {
   const int64_t n = faults->first;
   assert_true(n >= 0); /* a vanished device that nobody waited for would leave the picture undrawn */
@@ -72,7 +72,7 @@ static void assert_told(const char* job, const char* message, stratus_status sta
   }
 }
 
-/* What the device has no memory for is done on the host: the bits are the same. What only saves time the ray caster may draw without
+/* Work for which the device has no memory is done on the host, with equal bits. The ray caster may leave out work that only saves time
  * (ray_trial.c, ray_probe.c). */
 static bool done_on_host(stratus_status status)
 {
@@ -102,7 +102,7 @@ static bool try_job(stratus_context* context, const device_job* job, opencl_faul
   without_it += on_host;
   assert_true(!on_host || without || sum == right);
   if (met && !on_host) {
-    assert_told(job->name, stratus_context_message(context), status);
+    assert_message(job->name, stratus_context_message(context), status);
   }
   if (met) {
     if (job->before) {
@@ -177,8 +177,8 @@ static void every_job_survives_a_fault_at_any_call(void** state)
   assert_int_equal(allocator.live, 0);
 }
 
-/* Once there is a queue, what a device is called is only asked to keep a program on disk; without an answer it is not kept. */
-static bool asks_for_a_key(int64_t n)
+/* Once there is a queue, the device's name is read only to keep a program on disk; without the name it is not kept. */
+static bool reads_a_key(int64_t n)
 {
   bool queue = false;
   for (int64_t c = 0; c < n; ++c) {
@@ -218,12 +218,12 @@ static void a_context_is_made_and_draws_or_says_what_failed(void** state)
       }
       const bool without = met && n >= 0 && kept && draws_without(job, status);
       if (failed) {
-        assert_told("context", message, status);
+        assert_message("context", message, status);
       } else {
         /* The device's name is for people: where it cannot be had, the device is an unnamed one. A device may not know of doubles. */
         const bool known = strcmp(stratus_context_device(context), "unnamed device") == 0 ||
           (faults->error == CL_INVALID_VALUE && !context->device->has_double);
-        if (n >= 0 && met && !known && !without && !asks_for_a_key(n)) {
+        if (n >= 0 && met && !known && !without && !reads_a_key(n)) {
           fail_msg("fault %d at call %d (%s) goes unnoticed", fault, (int)n, faults->trace[n]);
         }
       }
@@ -243,7 +243,7 @@ static void a_context_is_made_and_draws_or_says_what_failed(void** state)
   }
 }
 
-/* Where the compiler refuses a program, its log is asked for; that may fail, too. */
+/* If the compiler refuses a program, the core reads its log; that may fail, too. */
 static void a_program_that_does_not_compile_says_so(void** state)
 {
   (void)state;
@@ -318,7 +318,7 @@ static void a_device_that_fails_is_left_out_by_auto(void** state)
   stratus_calibration_forget();
 }
 
-/* Every picture is drawn and read; then the device is gone, which only the end of its queue tells. */
+/* Every picture is drawn and read; then the device is gone, which only the end of its queue reports. */
 static void a_device_lost_behind_its_measurement_is_left_out_by_auto(void** state)
 {
   stratus_context* context = open_slow_host();
@@ -342,7 +342,7 @@ static void each_function_that_the_core_calls_has_failed(void** state)
   (void)state;
   int functions = 0;
   for (; functions < NAMES_MAX && seen[functions]; ++functions) {
-    /* clFinish() only clears up after another call that failed, which is the error that is told. */
+    /* clFinish() only clears up after another call that failed, and that call's error is reported. */
     if (!refused[functions] && strcmp(seen[functions], "clFinish") != 0) {
       fail_msg("%s never failed", seen[functions]);
     }

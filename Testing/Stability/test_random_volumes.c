@@ -127,7 +127,7 @@ static void no_structure_changes_a_bit(void** state)
         c.options.sampling = (stratus_sampling)(STRATUS_SAMPLING_MIDPOINT + case_random(&random) % 3);
         c.options.sample_distance = c.volume.spacing[0] * case_uniform(&random, 0.3, 3.0);
       }
-    } else if (kind == 3) { /* what becomes rule local */
+    } else if (kind == 3) { /* scenes for rule local */
       case_create_local(*state, seeds.seed, &c);
     } else { /* any type, NaN, ghosts, planes, the eye inside */
       case_create_random(*state, seeds.seed, &c);

@@ -20,7 +20,7 @@
 #define SAMPLES_MAX 4000
 #define GROWTH_PAGES 2048 /* that the allocator's fragments may take, 8 MiB */
 
-/* What the process holds after a round, with its casters destroyed. */
+/* The process's resources after a round, with its casters destroyed. */
 typedef struct holding {
   int64_t edits, pages, files, threads, entries, live;
 } holding;
@@ -47,7 +47,7 @@ static holding look(int64_t edits, const faulty_allocator* allocator)
   assert_non_null(file);
   assert_int_equal(fscanf(file, "%*d %ld", &pages), 1);
   fclose(file);
-  /* The open file is that of the listing itself. */
+  /* The listing itself has one file open. */
   return (holding){ edits, pages, entries_of("/proc/self/fd") - 1, entries_of("/proc/self/task"), entries_of(folder), allocator->live };
 }
 
@@ -185,7 +185,7 @@ static double seconds_asked(void)
   return value ? strtod(value, NULL) : long_run() ? 3600.0 : 0.0;
 }
 
-static void tell(const holding* h)
+static void print_holding(const holding* h)
 {
   print_message("%9lld edits: %6.1f MiB, %lld files open, %lld threads, %lld files in the folder, %lld allocations\n", (long long)h->edits,
     (double)h->pages * (double)sysconf(_SC_PAGESIZE) / 1048576.0, (long long)h->files, (long long)h->threads, (long long)h->entries,
@@ -206,9 +206,9 @@ static int64_t median_pages(const holding* from, int count)
   return sorted[count / 2].pages;
 }
 
-/* Whether pages tell of growth. A few edits are not over what libraries make once, and the address sanitizer holds back what was freed;
- * the counts of allocations, files and threads tell in any case. */
-static bool pages_tell(void)
+/* Returns whether pages show growth. A few edits do not exceed the libraries' own set-up, and the address sanitizer holds back freed
+ * memory; the counts of allocations, files and threads show growth in any case. */
+static bool pages_show_growth(void)
 {
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -232,7 +232,7 @@ static void assert_no_growth(int count)
     assert_true(holdings[i].files <= most.files && holdings[i].threads <= most.threads && holdings[i].entries <= most.entries);
   }
   const int64_t early = median_pages(holdings + quarter, quarter), late = median_pages(holdings + count - quarter, quarter);
-  if (pages_tell() && late > early + GROWTH_PAGES) {
+  if (pages_show_growth() && late > early + GROWTH_PAGES) {
     fail_msg("%lld pages in the second quarter, %lld in the last", (long long)early, (long long)late);
   }
 }
@@ -269,7 +269,7 @@ static void nothing_grows(void** state)
   stratus_context_destroy(s.context);
   assert_int_equal(allocator.live, 0);
   for (int i = 0; i < 9; ++i) {
-    tell(holdings + (count - 1) * i / 8);
+    print_holding(holdings + (count - 1) * i / 8);
   }
   assert_no_growth(count);
 }

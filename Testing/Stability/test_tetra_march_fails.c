@@ -7,7 +7,7 @@
 static tetra_picture picture;
 static double reference[4 * TETRA_PIXELS];
 
-/* A transfer function that is constant, so that alpha tells the thickness. */
+/* A constant transfer function, so that alpha measures the thickness. */
 static void make_plain(tetra_case* c, double opacity)
 {
   for (int i = 0; i < 4; ++i) {
@@ -40,7 +40,7 @@ static void views_along_faces_edges_and_points(void** state)
       tetra_create(&c, 4, 0.0, 0.0, 1);
       make_plain(&c, 0.2);
       eye[axis] += back ? 9 : -9;
-      /* pixels are 1/11.25 wide and 1/9.25 high: with an odd number each way they stand on the grid's lines again and again */
+      /* pixels are 1/11.25 wide and 1/9.25 high: with odd numbers of them, many are exactly on the grid's lines */
       assert_int_equal(stratus_camera_parallel(*state, eye, focal, ups[axis], TETRA_HEIGHT / 24.0, 45.0 / 37.0, &c.camera), STRATUS_OK);
       tetra_draw(*state, &c, &picture);
       const double alpha = 1.0 - pow(0.8, 4.0);
@@ -118,7 +118,7 @@ static void slivers_and_flat_cells(void** state)
   }
 }
 
-/* Flat cells at the border, between two others, and alone; a cell that names a point twice. */
+/* Flat cells at the border, between two others, and separate; a cell that names a point twice. */
 static void flat_cells_at_the_border(void** state)
 {
   static const double points[6][3] = { { 0, 0, 0 }, { 3, 0, 0 }, { 0, 3, 0 }, { 3, 3, 0 }, { 1, 1, 3 }, { 5, 5, 0 } };
@@ -137,7 +137,7 @@ static void flat_cells_at_the_border(void** state)
   tetra_destroy(&c);
 }
 
-/* A point pulled through the opposite face inverts cells. What lies over others is still drawn, and nothing is lost or endless. */
+/* A point pulled through the opposite face inverts cells. Overlapping parts are still drawn, no part is lost, and every ray ends. */
 static void inverted_cells(void** state)
 {
   for (uint32_t seed = 0; seed < 20; ++seed) {

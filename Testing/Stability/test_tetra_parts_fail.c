@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Meshes whose parts hide one another in every way: a ring of cells that has no order, parts that interleave or lie in one another's
- * hollows, cells that share no point, unused points, a few inverted cells among many, a seam of faces that differ. Each method gives the
- * reference's picture. */
+ * Meshes whose parts hide one another in every way: a ring of cells that has no order, parts that interleave or fill one another's hollows,
+ * cells that share no point, unused points, a few inverted cells among many, a seam of faces that differ. Each method gives the reference's
+ * picture. */
 #include "tetra_parts.h"
 
 #define CLOSE 0.025 /* greatest RMSE of 255: half of the bar of record for functions with peaks */
@@ -39,7 +39,7 @@ static void three_cells_in_a_ring(void** state)
       }
       tetra_add_cell(&c, 4 * bar, 4 * bar + 1, 4 * bar + 2, 4 * bar + 3);
     }
-    c.transfer.unit_distance = 0.1; /* nearly opaque: what is behind hardly counts */
+    c.transfer.unit_distance = 0.1; /* nearly opaque: parts behind hardly count */
     tetra_camera(*state, &c, 4, view % 8, view & 1);
     if (view == 8) { /* along the axis, where the ring is one */
       const double eye[3] = { 2, 2, 12 }, focal[3] = { 2, 2, 2 }, up[3] = { 0, 1, 0 };
@@ -143,8 +143,8 @@ static void few_inverted_cells_among_many(void** state)
   }
 }
 
-/* A flat cell, and cells on the same side of it: no ray leads from one through the flat cell into the other. The colour is uniform, as
- * order does not matter. chain: a second flat cell lies behind the first. */
+/* A flat cell, and cells on one side of it: no ray leads from one through the flat cell into the other. The colour is uniform, so that
+ * order does not matter. chain: there is a second flat cell behind the first. */
 static void a_flat_cell_between_cells_that_overlap(void** state)
 {
   for (int view = 0; view < 16; ++view) {

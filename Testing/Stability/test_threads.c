@@ -79,7 +79,7 @@ typedef struct worker {
   pthread_t thread;
   int number, rounds;
   int64_t cancelled;
-  char wrong[1200]; /* what went wrong first; assertions are for the thread of the test */
+  char wrong[1200]; /* the first failure; assertions are for the test's thread */
 } worker;
 
 static pthread_barrier_t begin;
@@ -173,7 +173,7 @@ static void* ask_for_costs(void* argument)
   return NULL;
 }
 
-/* Threads that ask for the same cost at once: one measures, and the others take its numbers. */
+/* Threads that need a cost at the same time: one measures it, and the others use its numbers. */
 static void costs_are_measured_once(void** state)
 {
   pthread_t threads[CONTEXTS];

@@ -8,7 +8,7 @@
 
 typedef enum box_set {
   BOXES_RANDOM,   /* of any size, overlapping */
-  BOXES_UNIT,     /* voxels in a small grid: many coincide, and many lie at equal distances */
+  BOXES_UNIT,     /* voxels in a small grid: many coincide, and many are at equal distances */
   BOXES_ONE,      /* all coincide */
   BOXES_LINE,     /* voxels along y */
   BOXES_PLANE,    /* voxels in z = 5 */

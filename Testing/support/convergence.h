@@ -237,7 +237,7 @@ static inline bool convergence_holds(double slope, double order)
   return fabs(slope - order) <= CONVERGENCE_BAND; /* false for NaN */
 }
 
-/* Fails unless errors fall as theory says, and unless those of a method that is broken on purpose fall otherwise. */
+/* Fails unless the errors fall as theory says, and unless the errors of a method that is broken on purpose fall otherwise. */
 static inline void convergence_judge(const char* what, const double errors[], double order, const char* broken, const double worse[])
 {
   const double slope = convergence_slope(what, errors), other = convergence_slope(broken, worse);
@@ -245,7 +245,7 @@ static inline void convergence_judge(const char* what, const double errors[], do
     fail_msg("%s: order %.2f, not %g", what, slope, order);
   }
   if (convergence_holds(other, order)) {
-    fail_msg("%s: order %.2f, which the test cannot tell from %g", broken, other, order);
+    fail_msg("%s: order %.2f is too close to %g for the test", broken, other, order);
   }
 }
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Everything that the core does on a device or on the host, as jobs: what a job makes is one number that depends on every bit of its
- * result. */
+ * All work of the core on a device or on the host, as jobs: a job returns one number that depends on every bit of its result. */
 #ifndef STRATUS_TESTING_DEVICE_JOBS_H
 #define STRATUS_TESTING_DEVICE_JOBS_H
 
@@ -14,7 +13,7 @@
 
 #define JOB_RAYS 40
 
-/* What all jobs work on, made on the host. */
+/* The jobs' input, made on the host. */
 typedef struct job_data {
   stratus_context* host;
   small_scene scene;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a file of float channels with OpenEXR's own library, to check the files that Stratus writes. What is no such file is refused.
+// Reads a file of float channels with OpenEXR's own library, to check the files that Stratus writes. Other files are refused.
 #ifndef exr_reading_h
 #define exr_reading_h
 
@@ -20,7 +20,7 @@ struct ExrPicture {
   std::map<std::string, std::vector<float>> Channels; // rows from top to bottom
 };
 
-// Whether a chunk is what its place asks for: the picture's rows from `top` on, all channels of floats, each pixel with a value.
+// Returns whether a chunk has the expected content: the picture's rows from `top` on, all channels of floats, each pixel with a value.
 inline bool IsPlainExrChunk(const exr_decode_pipeline_t& pipeline, int top, const ExrPicture& picture)
 {
   const exr_chunk_info_t& chunk = pipeline.chunk;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Random voxels and rays, and a comparison of a tree's first hits with those of the plain walk. */
+ * Random voxels and rays, and a comparison of a tree's first hits with the plain walk's. */
 #ifndef STRATUS_TESTING_FIRST_HITS_H
 #define STRATUS_TESTING_FIRST_HITS_H
 
@@ -37,7 +37,7 @@ static inline double unit_random(uint32_t* state)
   return next_random(state) / 16777216.0;
 }
 
-/* fill: share of the voxels, 0..1, that are effective. cluster > 0: these lie in four random cubes of that half edge. */
+/* fill: share of the voxels, 0..1, that are effective. cluster > 0: these are in four random cubes of that half edge. */
 static inline stratus_voxels* random_voxels(
   stratus_context* context, const int64_t dimensions[3], double fill, int cluster, uint32_t* random)
 {

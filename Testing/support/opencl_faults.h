@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a test tells the OpenCL layer of opencl_faults.c, and what the layer counts. The layer lies between the loader and every platform,
- * so each call of OpenCL passes through it, in the core's own build without any hook. */
+ * A test's settings for the OpenCL layer of opencl_faults.c, and the layer's counts. The layer is between the loader and every platform, so
+ * each call of OpenCL passes through it, in the core's own build without any hook. */
 #ifndef STRATUS_TESTING_OPENCL_FAULTS_H
 #define STRATUS_TESTING_OPENCL_FAULTS_H
 

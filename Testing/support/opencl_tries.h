@@ -17,7 +17,7 @@
 
 static opencl_faults* faults;
 static const char* seen[NAMES_MAX]; /* functions of OpenCL that were called */
-static bool refused[NAMES_MAX];     /* those of them that failed at least once */
+static bool refused[NAMES_MAX];     /* functions that failed at least once */
 static int64_t tries;
 
 /* The calls of a run without fault. */

@@ -23,8 +23,8 @@ typedef struct reference_scene {
   double crop_bounds[6];
   int clip_plane_count;
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4];
-  const stratus_shading* shading;    /* NULL: unlit, but for what materials say */
-  const stratus_material* materials; /* as in stratus_ray_cast_options; the lights are those of shading */
+  const stratus_shading* shading;    /* NULL: unlit, unless materials say otherwise */
+  const stratus_material* materials; /* as in stratus_ray_cast_options; shading has the lights */
   int dependent;                     /* as in stratus_ray_cast_options, as the next two */
   int mean_components;
   double gradient_distance;

@@ -8,10 +8,10 @@
 
 #include <math.h>
 
-/* Where a place lies among the values of an axis. */
+/* The position of a place among the values of an axis. */
 typedef struct reference_spot {
   int64_t cell;    /* the values before and behind are cell and cell + 1, as far as there is one */
-  double fraction; /* of the way between them, 0..1 */
+  double fraction; /* position between them, 0..1 */
   int64_t nearest; /* the value whose box the place is in */
 } reference_spot;
 

@@ -188,7 +188,7 @@ static void point_on(const line* l, double t, double p[3])
 
 /* ---- the modes that sample */
 
-/* Cuts a ray at the crop's planes, so that no sample's interval lies on both sides of one. Returns the number of pieces. */
+/* Cuts a ray at the crop's planes, so that each sample's interval is on one side of each plane. Returns the number of pieces. */
 static int cut_line(const scene* s, const line* l, double cut[CUTS])
 {
   int count = 0;
@@ -211,7 +211,7 @@ static int cut_line(const scene* s, const line* l, double cut[CUTS])
   return count;
 }
 
-/* Iterates over the samples of a ray. Each lies in the middle of its interval. */
+/* Iterates over the samples of a ray. Each sample is at the middle of its interval. */
 typedef struct samples {
   double cut[CUTS], step, t, length;
   int pieces, piece;
@@ -339,7 +339,7 @@ static int cross_cell(const scene* s, const line* l, double from, double to, dou
   int count = 0;
   const double begin = field_on(s, l, from);
   if (!isnan(*before) && !isnan(begin) && (*before < contour) != (begin < contour)) {
-    found[count++] = (crossing){ from, contour }; /* the contour lies on the border of the cells */
+    found[count++] = (crossing){ from, contour }; /* the contour is at the border of the cells */
   }
   *before = field_on(s, l, to);
   for (int part = 0; part < PARTS; ++part) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Composites exactly but for rounding and quadrature. Between two grid planes the field along a ray is a cubic. It is cut where it crosses
- * a point of the transfer function, so that opacity and colour are linear in the value on each piece and vertical steps lie between pieces.
+ * a point of the transfer function, so that opacity and colour are linear in the value on each piece and vertical steps are between pieces.
  * Collocation at three Gauss points, of order 6, integrates a piece. */
 #include "reference_pieces.h"
 
@@ -183,7 +183,8 @@ static void add_piece(const cubic* q, const ramp* r, double a, double b, double 
     }
     return;
   }
-  /* Colours are weighted by what each point sends out of the piece. Their sum is scaled to the opacity, which is known better. */
+  /* A colour's weight is the light that its point sends out of the piece. The weights' sum is scaled to the opacity, which is more
+   * precise. */
   for (int n = 0; n < 3; ++n) {
     const double before = h * (partial[n][0] * density[0] + partial[n][1] * density[1] + partial[n][2] * density[2]);
     const double sent = isfinite(total) ? weights[n] * density[n] * exp(-before) : n == 0 ? 1.0 : 0.0;

@@ -21,7 +21,7 @@ typedef struct reference_line {
   double begin, end;
 } reference_line;
 
-/* What a ray has gathered. */
+/* A ray's light so far. */
 typedef struct reference_light {
   double left;   /* transparency, at first 1 */
   double rgb[3]; /* premultiplied, at first 0 */

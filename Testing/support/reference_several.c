@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The optical depth of a unit of what has opacity 1. */
+/* Optical depth per unit length for opacity 1. */
 #define WALL 1e9
-/* By how much of 1 a part of a ray may show otherwise than its halves, and how often one is halved: edges of functions are sharp. */
+/* Largest difference, of 1, between a part of a ray and its halves, and the largest number of halvings: edges of functions are sharp. */
 #define PARTS_AGREE 1e-6
 #define HALVINGS_MOST 24
 
@@ -193,7 +193,7 @@ static int ascending(const void* a, const void* b)
   return (x > y) - (x < y);
 }
 
-/* A ray's places: what it passes, and where that begins and ends. */
+/* A ray's media and cells, and where each begins and ends. */
 typedef struct passage {
   medium* media;
   int count;
@@ -202,7 +202,7 @@ typedef struct passage {
   double* cuts;
 } passage;
 
-/* A part of a ray, taken as even: what its middle has per length. */
+/* A part of a ray, taken as even: values per length at its middle. */
 typedef struct part {
   double middle, length, tau, glow[3];
 } part;
@@ -223,7 +223,7 @@ static part part_about(const passage* p, const line* r, double middle, double le
   return at;
 }
 
-/* What has been composited so far. */
+/* The composited light so far. */
 typedef struct composited {
   double color[3], left, first;
 } composited;

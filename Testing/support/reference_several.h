@@ -20,7 +20,7 @@ typedef struct reference_mesh {
   const double (*clip_planes)[4]; /* world: points with a x + b y + c z + d >= 0 show */
 } reference_mesh;
 
-/* What a picture of volumes and meshes is drawn of: at least one of them. */
+/* The input of a picture of volumes and meshes: at least one of them. */
 typedef struct reference_mixture {
   const reference_scene* scenes; /* their cameras and opaque depths are not read */
   int count;                     /* 0..8 */

@@ -23,7 +23,7 @@ typedef struct reference_place {
   double world[3];                /* world position */
   double at[3];                   /* the same among places */
   double direction[3];            /* of the ray, in the world, of length 1 */
-  double to_index[3][3];          /* world vectors to those of places (reference_axis.h) */
+  double to_index[3][3];          /* from world vectors to vectors of places (reference_axis.h) */
   reference_gradients* gradients; /* one for each component, which the ray keeps */
 } reference_place;
 

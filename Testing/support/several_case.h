@@ -7,12 +7,12 @@
 #include "reference_several.h"
 
 typedef struct several_case {
-  picture_case of[STRATUS_SEVERAL_MAX];                   /* camera and opaque depth are those of the first */
+  picture_case of[STRATUS_SEVERAL_MAX];                   /* the first one's camera and opaque depth are used */
   const stratus_transfer* transfers[STRATUS_SEVERAL_MAX]; /* of components or labels; NULL: the case's own */
   int count;
 } several_case;
 
-/* Rows of colours that tell volumes apart: value, red, green, blue. */
+/* Rows of colours that differ from volume to volume: value, red, green, blue. */
 static inline void several_color(picture_case* c, int n)
 {
   static const double rgb[4][3] = { { 0.9, 0.15, 0.1 }, { 0.1, 0.2, 0.95 }, { 0.2, 0.9, 0.2 }, { 0.9, 0.9, 0.8 } };
@@ -22,7 +22,7 @@ static inline void several_color(picture_case* c, int n)
   memcpy(c->color, color, sizeof color);
 }
 
-/* Turns, stretches and moves a volume of about 30 units so that it overlaps those of other seeds, which lie about the origin. */
+/* Turns, stretches and moves a volume of about 30 units so that it overlaps other seeds' volumes, which are about the origin. */
 static inline void several_place(picture_case* c, uint32_t seed)
 {
   uint32_t s = seed * 2654435u + 3u;

@@ -144,7 +144,7 @@ static inline uint64_t small_mix(uint64_t sum, uint64_t value)
   return (sum ^ value) * 0x100000001b3u;
 }
 
-/* Builds every structure alone; *sum depends on all their contents. Everything is released, even after a failure. */
+/* Builds each structure separately; *sum depends on all their contents. Everything is released, even after a failure. */
 static inline stratus_status small_structures(stratus_context* context, const small_scene* scene, uint64_t* sum)
 {
   stratus_value_range* ranges = NULL;

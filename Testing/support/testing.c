@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * main() of each test program. PROGRAM TEST [--WORD...] [CASE...] runs one test, or those of its cases that match a pattern CASE.
- * --seed=N runs one seed of random cases.
+ * main() of each test program. PROGRAM TEST [--WORD...] [CASE...] runs one test, or only the cases that match a pattern CASE. --seed=N runs
+ * one seed of random cases.
  *
  * The linker redirects cmocka's group runner and skip() to this file, so that test files stay plain cmocka. cmocka returns 0 if cases were
  * skipped, and if a group's tear-down failed. This file reports the first as ctest's skip, the second as a failure. */
@@ -27,9 +27,9 @@ void __wrap__skip(const char* file, int line);
 static char** words;
 static size_t cases, skipped, failed_teardowns;
 static CMFixtureFunction group_teardown;
-static const struct CMUnitTest* originals; /* what runs now, with the functions that are wrapped here */
+static const struct CMUnitTest* originals; /* the running group, with its functions before they are wrapped */
 static size_t original;
-static bool seed_runs; /* a seed was begun, and the next was not asked for */
+static bool seed_runs; /* a seed has begun, and test_next() was not called since */
 static uint32_t seed;
 
 int test_skip(const char* why)
@@ -69,7 +69,7 @@ const char* test_program(void)
   return words[0];
 }
 
-/* What follows --seed= on the command line, NULL if nothing does. */
+/* Returns the number after --seed= on the command line, or NULL. */
 static const char* given_seed(void)
 {
   for (char** w = words + 2; *w; ++w) {
@@ -125,7 +125,7 @@ static int tear_down_case(void** state)
 {
   const struct CMUnitTest* test = &originals[original++];
   if (seed_runs) {
-    fprintf(stderr, "Seed %u failed. To repeat it alone: %s %s --seed=%u %s\n", seed, words[0], words[1], seed, test->name);
+    fprintf(stderr, "Seed %u failed. To repeat it: %s %s --seed=%u %s\n", seed, words[0], words[1], seed, test->name);
     seed_runs = false;
   }
   return test->teardown_func ? test->teardown_func(state) : 0;

@@ -15,9 +15,9 @@ int test_skip(const char* why);
 /* Whether the command line holds this word, such as "--tiny". */
 bool test_option(const char* word);
 
-/* Random cases by seed: `for (test_seeds s = test_seeds_of(TEST_SOME(10000), 10000); test_next(&s);)` runs its body with s.seed 0, 1, 2
- * and so on. There are `quick` of them, a third of these where few_run(), `all` if the environment has STRATUS_LONG=1, or the one that
- * --seed=N on the command line names. Where a body fails, how to repeat its seed alone is printed. */
+/* Random cases by seed: `for (test_seeds s = test_seeds_of(TEST_SOME(10000), 10000); test_next(&s);)` runs its body with s.seed 0, 1, 2 and
+ * so on. There are `quick` of them, a third of these where few_run(), `all` if the environment has STRATUS_LONG=1, or the one that --seed=N
+ * on the command line names. If a body fails, the command that repeats its seed is printed. */
 typedef struct test_seeds {
   uint32_t seed, end;
   bool begun;
@@ -41,14 +41,14 @@ typedef struct test_seeds {
 
 test_seeds test_seeds_of(uint32_t quick, uint32_t all);
 bool test_next(test_seeds* seeds);
-/* Whether at least so many seeds run, enough for what must hold in their mean. */
+/* Returns whether at least `least` seeds run, enough for a bound on their mean. */
 bool test_many(const test_seeds* seeds, uint32_t least);
 
-/* Whether all cases are asked for, which take minutes: the environment variable STRATUS_LONG is set, and not 0. */
+/* Returns whether all cases run, which takes minutes: the environment variable STRATUS_LONG is set, and not 0. */
 bool long_run(void);
 
-/* Whether some cases are enough, of a test that has many like one another: the environment variable STRATUS_FEW is set, and not 0, or the
- * command line has --few. The presets quick and dev set it. */
+/* Returns whether some cases are enough, of a test that has many like one another: the environment variable STRATUS_FEW is set, and not 0,
+ * or the command line has --few. The presets quick and dev set it. */
 bool few_run(void);
 
 /* Returns the path of the running program, for a test that runs itself. */

@@ -408,7 +408,7 @@ static inline void tetra_sum(
   for (size_t i = 0; i < count; ++i) {
     const tetra_stretch* s = met + i;
     double begin = 0.0, end = 1.0;
-    if (mean) { /* where values lie in the range */
+    if (mean) { /* only the parts with values in the range */
       const double rise = s->last - s->first, low = c->options.average_range[0], high = c->options.average_range[1];
       const double a = (low - s->first) / rise, b = (high - s->first) / rise;
       const bool level = rise == 0.0, counts = s->first >= low && s->first <= high;

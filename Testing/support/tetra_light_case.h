@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The reference of tetrahedra that are lit or thinned by the gradient, written from the contract in stratus/tetrahedra.h in doubles. It
- * works in the world: gradients are those of the moved and stretched mesh, so that no matrix is inverted or transposed. */
+ * works in the world: gradients come from the moved and stretched mesh, so that no matrix is inverted or transposed. */
 #ifndef STRATUS_TESTING_TETRA_LIGHT_CASE_H
 #define STRATUS_TESTING_TETRA_LIGHT_CASE_H
 
@@ -139,7 +139,7 @@ static inline void tetra_unit(double v[3])
   }
 }
 
-/* What a colour of opacity 1 becomes at the place p of a ray. */
+/* Computes the lit colour for a colour of opacity 1 at the place p of a ray. */
 static inline void tetra_illuminate(const tetra_case* c, const double p[3], const double along[3], const double g[3], double rgb[3])
 {
   const stratus_shading* s = &c->options.shading;

@@ -14,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#define FINDINGS_MOST 40 /* findings of one kind after which the run stops, since more tell nothing new */
+#define FINDINGS_MOST 40 /* findings of one kind after which the run stops, since more add no information */
 
 typedef struct run {
   const char *program, *device;
@@ -118,7 +118,7 @@ static int usage(void)
   }
   fprintf(stderr,
     "\n  SECONDS 0: until count=N cases of each kind are done\n"
-    "  case=N: that case alone, in this process, for a debugger\n"
+    "  case=N: only that case, in this process, for a debugger\n"
     "  device=NAME: of the contexts; default host\n"
     "Exit status: 0 without a finding, 1 with one, 2 for other arguments.\n");
   return 2;

@@ -23,7 +23,7 @@ typedef struct fuzz_tally {
   uint64_t cases, calls, pictures;
   uint64_t objects;                   /* ranges, maps, voxels, fields, trees, octrees, partitions, orders, casters */
   uint64_t byte_strings;              /* saved trees that were changed and offered */
-  uint64_t compared;                  /* results compared with those of another method, or of a second run */
+  uint64_t compared;                  /* results compared with another method's, or with a second run's */
   uint64_t buffers;                   /* buffers at a guard page */
   uint64_t refused_memory, cancelled; /* calls refused memory or cancelled on purpose */
   uint64_t statuses[FUZZ_STATUSES];
@@ -123,7 +123,7 @@ void fuzz_finding(fuzz* f, const char* format, ...) __attribute__((format(printf
       fuzz_finding(f, __VA_ARGS__);                                                                                                        \
     }                                                                                                                                      \
   } while (0)
-/* fuzz_note() adds an odd number, and fuzz_about() a description, to what the case's findings print. */
+/* fuzz_note() and fuzz_about() add an odd number and a description, which the case's findings print. */
 void fuzz_note(fuzz* f, double number);
 void fuzz_about(fuzz* f, const char* format, ...) __attribute__((format(printf, 2, 3)));
 /* A call that creates an object at `place`, which is at times NULL. After a failure the place must be unchanged. */

@@ -182,7 +182,7 @@ static void mark(fuzz* f, const uint32_t* of, size_t objects, const uint32_t* id
     while (at < objects && of[at] != ids[n]) {
       ++at;
     }
-    EXPECT(at < objects && !marks[at], "id %u is told, %s", ids[n], at < objects ? "twice" : "and is no object's");
+    EXPECT(at < objects && !marks[at], "id %u is listed, %s", ids[n], at < objects ? "twice" : "and is no object's");
     marks[at] = 1;
   }
 }
@@ -194,7 +194,7 @@ static void check_equal(
   mark(f, p->ids, p->count, ids, count, marks);
   mark(f, p->list_ids, p->count, list_ids, list_count, list_marks);
   for (size_t i = 0; i < p->count; ++i) {
-    EXPECT(marks[i] == list_marks[i], "%s: object %zu is told %d, by the list %d", what, i, marks[i], list_marks[i]);
+    EXPECT(marks[i] == list_marks[i], "%s: object %zu is %d, by the list %d", what, i, marks[i], list_marks[i]);
   }
   ++f->tally->compared;
 }
@@ -294,7 +294,7 @@ static void look_inside(fuzz* f, const pair* p)
   stratus_octree_statistics* s = fuzz_output(f, sizeof *s);
   EXPECT(STATUS(stratus_octree_check(p->tree)) == STRATUS_OK, "%s", stratus_context_message(f->context));
   CALL(stratus_octree_get_statistics(p->tree, s));
-  EXPECT(s->objects == p->count && CALL(stratus_octree_count(p->tree)) == p->count, "%zu objects, told %zu", p->count, s->objects);
+  EXPECT(s->objects == p->count && CALL(stratus_octree_count(p->tree)) == p->count, "%zu objects, got %zu", p->count, s->objects);
   stratus_octree_node* nodes = fuzz_output(f, s->nodes * sizeof *nodes);
   stratus_frustum frustum = { .planes = { { 1, 0, 0, 0.5 * p->width }, { -1, 0.3, 0, p->width } }, .eye = { 0, 0, p->width } };
   const stratus_frustum* seen = fuzz_chance(f, 0.5) ? NULL : FUZZ_INPUT(f, frustum);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Ray casts of volumes: every mode, structure, sampling and interpolation. One caster draws them in sequence, and each picture must equal
- * that of a new caster. */
+ * the one that a new caster draws. */
 #include "fuzz.h"
 
 #include "volume.h"
@@ -54,7 +54,7 @@ static void choose_mask(fuzz* f, stratus_ray_cast_options* o, const picture_case
   free(mask);
 }
 
-/* A surface through the volume, and a function of two variables of as many entries as its numbers tell. */
+/* Chooses a surface through the volume, and a function of two variables of columns x rows entries. */
 static void choose_surface_and_function(fuzz* f, stratus_ray_cast_options* o, const picture_case* c)
 {
   const fuzz_field* field = &c->field;

@@ -45,7 +45,7 @@ static void check_block(fuzz* f, const fuzz_field* field, const stratus_value_ra
     EXPECT(gaps == 1, "block %lld has a value that is not finite, and no gap", (long long)block);
   } else {
     const double allowed = slack(least, most);
-    EXPECT(fabs(low - least) <= allowed && fabs(high - most) <= allowed, "block %lld is %.17g..%.17g, told %.17g..%.17g", (long long)block,
+    EXPECT(fabs(low - least) <= allowed && fabs(high - most) <= allowed, "block %lld is %.17g..%.17g, got %.17g..%.17g", (long long)block,
       least, most, low, high);
   }
 }
@@ -111,9 +111,9 @@ static uint8_t* check_occupancy(fuzz* f, const stratus_occupancy* occupancy, con
       tight_hi[axis] = at[axis] + 1 > tight_hi[axis] ? at[axis] + 1 : tight_hi[axis];
     }
   }
-  EXPECT(CALL(stratus_occupancy_count(occupancy)) == count, "%lld blocks are occupied, told otherwise", (long long)count);
+  EXPECT(CALL(stratus_occupancy_count(occupancy)) == count, "%lld blocks are occupied, the count is another", (long long)count);
   for (int axis = 0; axis < 3; ++axis) {
-    EXPECT(lo[axis] == (count ? tight_lo[axis] : 0) && hi[axis] == tight_hi[axis], "occupied bounds %lld..%lld, told %lld..%lld",
+    EXPECT(lo[axis] == (count ? tight_lo[axis] : 0) && hi[axis] == tight_hi[axis], "occupied bounds %lld..%lld, got %lld..%lld",
       (long long)tight_lo[axis], (long long)tight_hi[axis], (long long)lo[axis], (long long)hi[axis]);
   }
   ++f->tally->compared;
@@ -155,9 +155,9 @@ static void check_map(fuzz* f, const stratus_occupancy* occupancy, const uint8_t
   EXPECT(CALL(stratus_distance_map_bytes(map)) > 0, "a map of no bytes");
   for (int64_t b = 0; b < 8 * blocks_of(g); ++b) {
     const int64_t q = b / 8, at[3] = { q % g->n[0], q / g->n[0] % g->n[1], q / (g->n[0] * g->n[1]) };
-    const int octant = (int)(b % 8), told = CALL(stratus_distance_map_get(map, octant, at[0], at[1], at[2]));
+    const int octant = (int)(b % 8), distance = CALL(stratus_distance_map_get(map, octant, at[0], at[1], at[2]));
     const int truth = true_distance(occupied, g, kind, octant, at);
-    EXPECT(told == truth, "kind %d, octant %d, block %lld: distance %d, told %d", (int)kind, octant, (long long)q, truth, told);
+    EXPECT(distance == truth, "kind %d, octant %d, block %lld: distance %d, got %d", (int)kind, octant, (long long)q, truth, distance);
   }
   ++f->tally->compared;
   CALL(stratus_distance_map_destroy(map));
@@ -179,8 +179,8 @@ static stratus_occupancy* make_between(fuzz* f, const fuzz_field* field, const s
     double low, high;
     stratus_value_range_block(ranges, at[0], at[1], at[2], &low, &high, NULL);
     const int wanted = low <= high && low <= upper && high >= lower;
-    EXPECT(!exact || stratus_occupancy_get(occupancy, at[0], at[1], at[2]) == wanted,
-      "block %lld of %.17g..%.17g is told %d for %.17g..%.17g", (long long)b, low, high, !wanted, lower, upper);
+    EXPECT(!exact || stratus_occupancy_get(occupancy, at[0], at[1], at[2]) == wanted, "block %lld of %.17g..%.17g is %d for %.17g..%.17g",
+      (long long)b, low, high, !wanted, lower, upper);
   }
   return occupancy;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pictures of tetrahedra by march and by projection, compared with each other and with those of a new caster. */
+ * Pictures of tetrahedra by march and by projection, compared with each other and with a new caster's pictures. */
 #include "fuzz.h"
 
 #include <stdlib.h>
@@ -18,7 +18,7 @@ typedef struct tetra_case {
   stratus_leaves leaves;
 } tetra_case;
 
-/* Whether the gradient decides what is seen, which is marched alone. */
+/* Returns whether the gradient affects the picture; only the march draws such pictures. */
 static bool is_lit(const tetra_case* c)
 {
   return c->options.shade || (c->transfer->gradient_count > 0 && c->options.mode == STRATUS_TETRA_COMPOSITE);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Trees for first hits: their hits against those of the plain walk, trees as bytes, and invalid bytes. */
+ * Trees for first hits: their hits compared with the plain walk's, trees as bytes, and invalid bytes. */
 #include "stratus.h"
 #include "tree.h"
 
@@ -115,7 +115,7 @@ static void choose_rays(fuzz* f, const tree_case* c, stratus_ray* rays, size_t c
   }
 }
 
-/* Returns whether the tree's rays may step past voxels, as was asked for. */
+/* Returns whether the tree was made without correction, so that its rays may step past voxels. */
 static bool is_uncorrected(fuzz* f, const stratus_tree* tree)
 {
   stratus_tree_statistics s;
@@ -191,7 +191,7 @@ static void load_changed(fuzz* f, const tree_case* c, const unsigned char* saved
   if (fuzz_chance(f, 0.8) && cut > 24) {
     const uint64_t length = fuzz_chance(f, 0.9) ? cut : size;
     stratus_tree_seal(bytes, cut);
-    memcpy(bytes + 8, &length, sizeof length); /* the checksum is of what comes behind it */
+    memcpy(bytes + 8, &length, sizeof length); /* the checksum covers the bytes behind it */
   }
   const void* given = fuzz_input(f, bytes, cut);
   free(bytes);

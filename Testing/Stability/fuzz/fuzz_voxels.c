@@ -33,9 +33,9 @@ static void check_set(fuzz* f, voxel_set* s)
     }
     count += s->is[q];
   }
-  EXPECT(s->count == count, "%lld voxels, told %lld", (long long)count, (long long)s->count);
+  EXPECT(s->count == count, "%lld voxels, got %lld", (long long)count, (long long)s->count);
   for (int axis = 0; axis < 3; ++axis) {
-    EXPECT(lo[axis] == (count ? tight_lo[axis] : 0) && hi[axis] == tight_hi[axis], "bounds %lld..%lld, told %lld..%lld",
+    EXPECT(lo[axis] == (count ? tight_lo[axis] : 0) && hi[axis] == tight_hi[axis], "bounds %lld..%lld, got %lld..%lld",
       (long long)tight_lo[axis], (long long)tight_hi[axis], (long long)lo[axis], (long long)hi[axis]);
   }
   EXPECT(CALL(stratus_voxels_get(s->voxels, fuzz_odd_integer(f) | INT64_MIN, 0, 0)) == 0, "a voxel beyond the dimensions");
@@ -77,7 +77,7 @@ static void check_against_values(fuzz* f, const voxel_set* s, const stratus_volu
   for (int64_t q = 0; q < size_of(s); ++q) {
     const double value = fuzz_value_of(v, (size_t)q);
     const bool meets = isfinite(value) && value >= criterion->lower && value <= criterion->upper;
-    EXPECT(meets == s->is[q], "voxel %lld of value %.17g is told %d for %.17g..%.17g", (long long)q, value, s->is[q], criterion->lower,
+    EXPECT(meets == s->is[q], "voxel %lld of value %.17g is %d for %.17g..%.17g", (long long)q, value, s->is[q], criterion->lower,
       criterion->upper);
   }
   ++f->tally->compared;
@@ -149,16 +149,16 @@ static int64_t nearest(const voxel_set* s, int64_t q, int wanted)
   return best;
 }
 
-static void check_distance(fuzz* f, const voxel_set* s, const stratus_field_options* o, int64_t q, double told)
+static void check_distance(fuzz* f, const voxel_set* s, const stratus_field_options* o, int64_t q, double result)
 {
   const bool inside = o->is_signed && s->is[q];
   const int64_t square = nearest(s, q, inside ? 0 : 1);
   const double truth = square < 0 ? INFINITY : sqrt((double)square);
-  const double positive = inside ? -told : told;
+  const double positive = inside ? -result : result;
   const bool exact = o->method <= STRATUS_FIELD_ENVELOPE;
   EXPECT(exact ? fabs(positive - truth) <= 1e-6 * truth || positive == truth : positive >= truth * (1.0 - 1e-6),
-    "method %d, signed %d, voxel %lld: distance %.9g, told %.9g", (int)o->method, o->is_signed, (long long)q, inside ? -truth : truth,
-    told);
+    "method %d, signed %d, voxel %lld: distance %.9g, got %.9g", (int)o->method, o->is_signed, (long long)q, inside ? -truth : truth,
+    result);
 }
 
 static void ask_field(fuzz* f, const voxel_set* s)
@@ -189,14 +189,14 @@ static void ask_field(fuzz* f, const voxel_set* s)
   const stratus_status named = STATUS(stratus_field_rgba(field, s->voxels, rgba));
   EXPECT(named == STRATUS_OK, "%s", stratus_context_message(f->context));
   for (int64_t q = 0; q < size_of(s); ++q) {
-    const double told = stratus_field_get(field, q % s->n[0], q / s->n[0] % s->n[1], q / (s->n[0] * s->n[1]));
+    const double result = stratus_field_get(field, q % s->n[0], q / s->n[0] % s->n[1], q / (s->n[0] * s->n[1]));
     const float *p = rgba + 4 * q, nowhere[4] = { -1.0f, -1.0f, -1.0f, INFINITY };
-    EXPECT((float)told == distances[q], "voxel %lld: %g and %g", (long long)q, told, (double)distances[q]);
-    EXPECT(isinf(told) ? p[0] == -1.0f : p[3] == (float)told, "voxel %lld: %g and %g", (long long)q, told, (double)p[3]);
+    EXPECT((float)result == distances[q], "voxel %lld: %g and %g", (long long)q, result, (double)distances[q]);
+    EXPECT(isinf(result) ? p[0] == -1.0f : p[3] == (float)result, "voxel %lld: %g and %g", (long long)q, result, (double)p[3]);
     EXPECT(p[0] == nowhere[0] || (p[0] >= 0.0f && p[0] < (float)s->n[0] && p[2] >= 0.0f && p[2] < (float)s->n[2]), "nearest at %g",
       (double)p[0]);
     if (q % 7 == 0 || voxels < 200) {
-      check_distance(f, s, &o, q, told);
+      check_distance(f, s, &o, q, result);
     }
   }
   ++f->tally->compared;

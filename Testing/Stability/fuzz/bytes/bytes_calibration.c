@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The file of measured costs: whatever it holds, what is read from it is in order, and what is added to it is read back. */
+ * The file of measured costs: any content gives only valid numbers, and numbers that are added are read back. */
 #define _XOPEN_SOURCE 700
 #include "bytes.h"
 #include "calibration.h"

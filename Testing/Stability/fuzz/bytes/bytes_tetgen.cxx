@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TetGen's files: the first byte tells which of them the reader is given, the rest are files, each a byte that tells its ending, then its
-// text, up to a byte 0x1e. What is read names points that are there, and reads the same once it is written.
+// TetGen's files: the first byte selects the file that the reader opens. Then each file follows: a byte that selects its ending, and its
+// text up to a byte 0x1e. A mesh that is read refers only to points that exist, and comes back equal after it is written.
 #include "bytes.h"
 
 #include "vtkStratusTetGenReader.h"
@@ -51,7 +51,7 @@ void WriteFiles(const uint8_t* data, size_t size)
   }
 }
 
-// Whether it was read; what was not is told once, and is empty.
+// Returns whether the mesh was read. A refused one gives one error and an empty output.
 bool Read(vtkStratusTetGenReader* reader, const std::string& path)
 {
   vtkNew<Counter> errors, silence;

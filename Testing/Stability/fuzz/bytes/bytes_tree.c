@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Saved trees: the input is a tree's bytes, or edits of a tree that is built here. What is let in must be safe to use, and saves as it
- * was loaded. */
+ * Saved trees: the input is a tree's bytes, or edits of a tree that is built here. A tree that is accepted must be safe to use, and is
+ * saved as the same bytes. */
 #include "bytes.h"
 #include "stratus.h"
 #include "tree.h"

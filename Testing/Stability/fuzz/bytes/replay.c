@@ -24,7 +24,7 @@ static void give(const char* path)
     exit(EXIT_FAILURE);
   }
   fclose(file);
-  fprintf(stderr, "%s\n", path); /* the last line tells which file ended the process */
+  fprintf(stderr, "%s\n", path); /* the last line names the file that ended the process */
   (void)LLVMFuzzerTestOneInput(data, size);
   free(data);
   ++files;
