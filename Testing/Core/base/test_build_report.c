@@ -85,7 +85,7 @@ static void stages_are_summed_by_name_and_place_until_the_next_start(void** stat
   stratus_context_destroy(context);
 }
 
-static void a_stage_that_failed_is_not_told(void** state)
+static void a_stage_that_failed_is_not_reported(void** state)
 {
   (void)state;
   stratus_context* context = make_host();
@@ -120,7 +120,7 @@ int test_build_report(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_stage_leaves_out_the_stages_within_it),
     cmocka_unit_test(stages_are_summed_by_name_and_place_until_the_next_start),
-    cmocka_unit_test(a_stage_that_failed_is_not_told),
+    cmocka_unit_test(a_stage_that_failed_is_not_reported),
     cmocka_unit_test(a_full_report_and_none_are_harmless),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -304,7 +304,7 @@ static void a_name_may_hold_anything(void** state)
   }
 }
 
-static void a_measurement_that_fails_is_told_and_not_stored(void** state)
+static void a_measurement_that_fails_is_reported_and_not_stored(void** state)
 {
   measured m = { .count = 1, .status = STRATUS_DEVICE_ERROR };
   stratus_calibration calibration = stratus_calibration_of("test", "part", 1);
@@ -420,7 +420,7 @@ int test_calibration(void)
     cmocka_unit_test_setup_teardown(what_is_no_file_of_ours_is_not_read, begin, end),
     cmocka_unit_test_setup_teardown(the_file_does_not_grow_without_end, begin, end),
     cmocka_unit_test_setup_teardown(a_name_may_hold_anything, begin, end),
-    cmocka_unit_test_setup_teardown(a_measurement_that_fails_is_told_and_not_stored, begin, end),
+    cmocka_unit_test_setup_teardown(a_measurement_that_fails_is_reported_and_not_stored, begin, end),
     cmocka_unit_test_setup_teardown(writers_at_once_leave_a_whole_file, begin, end),
     cmocka_unit_test_setup_teardown(threads_that_ask_at_once_measure_once, begin, end),
     cmocka_unit_test_setup_teardown(calibrations_of_the_host_are_by_instruction_set_and_threads, begin, end),

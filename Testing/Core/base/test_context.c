@@ -214,7 +214,7 @@ static void the_callers_allocator_serves_everything_and_gets_it_back(void** stat
   assert_int_equal(allocator.live, 0);
 }
 
-static void sizes_that_overflow_are_told_not_wrapped(void** state)
+static void sizes_that_overflow_are_reported_not_wrapped(void** state)
 {
   (void)state;
   stratus_context* context = NULL;
@@ -263,7 +263,7 @@ int test_context(void)
     cmocka_unit_test(auto_takes_a_gpu_or_says_that_the_host_draws),
     cmocka_unit_test(progress_rises_and_can_cancel_at_every_report_without_a_leak),
     cmocka_unit_test(the_callers_allocator_serves_everything_and_gets_it_back),
-    cmocka_unit_test(sizes_that_overflow_are_told_not_wrapped),
+    cmocka_unit_test(sizes_that_overflow_are_reported_not_wrapped),
     cmocka_unit_test(every_status_and_type_has_its_name_or_size),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

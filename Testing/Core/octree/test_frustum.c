@@ -45,7 +45,7 @@ static void planes_hold_what_the_camera_s_rays_reach(void** state)
   stratus_context_destroy(context);
 }
 
-static void a_box_that_is_seen_is_never_told_as_outside(void** state)
+static void a_visible_box_is_never_outside(void** state)
 {
   static const double scales[] = { 1e-6, 1.0, 1e8 };
   uint32_t random = 2;
@@ -84,9 +84,9 @@ static void planes_that_are_none_or_let_nothing_through(void** state)
 {
   (void)state;
   stratus_frustum frustum = { 0 };
-  const double bounds[6] = { -1, 1, -1, 1, -1, 1 }, endless[6] = { -INFINITY, 1, -1, 1, -1, 1 }, nothing[6] = { NAN, NAN, 0, 1, 0, 1 };
+  const double bounds[6] = { -1, 1, -1, 1, -1, 1 }, infinite[6] = { -INFINITY, 1, -1, 1, -1, 1 }, nothing[6] = { NAN, NAN, 0, 1, 0, 1 };
   assert_int_equal(stratus_frustum_side(&frustum, bounds, 1), STRATUS_SIDE_INSIDE);
-  assert_int_equal(stratus_frustum_side(&frustum, endless, 1), STRATUS_SIDE_CROSSING);
+  assert_int_equal(stratus_frustum_side(&frustum, infinite, 1), STRATUS_SIDE_CROSSING);
   assert_int_equal(stratus_frustum_side(&frustum, nothing, 0), STRATUS_SIDE_CROSSING);
   frustum.planes[5][3] = -1e-300;
   assert_int_equal(stratus_frustum_side(&frustum, bounds, 0), STRATUS_SIDE_OUTSIDE);
@@ -149,7 +149,7 @@ int test_frustum(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(planes_hold_what_the_camera_s_rays_reach),
-    cmocka_unit_test(a_box_that_is_seen_is_never_told_as_outside),
+    cmocka_unit_test(a_visible_box_is_never_outside),
     cmocka_unit_test(planes_that_are_none_or_let_nothing_through),
     cmocka_unit_test(a_frustum_of_no_volume_sees_what_touches_it),
     cmocka_unit_test(what_is_no_frustum_is_refused_with_the_value),

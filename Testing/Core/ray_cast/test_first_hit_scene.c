@@ -50,7 +50,7 @@ static void structures_and_threads_change_no_bit(void** state)
   stratus_context_destroy(contexts[1]);
 }
 
-static void bytes_and_window_tell_the_same_picture(void** state)
+static void bytes_and_window_have_the_same_picture(void** state)
 {
   (void)state;
   static uint8_t bytes[4 * CASE_PIXELS];
@@ -391,7 +391,7 @@ int test_first_hit_scene(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(structures_and_threads_change_no_bit),
-    cmocka_unit_test(bytes_and_window_tell_the_same_picture),
+    cmocka_unit_test(bytes_and_window_have_the_same_picture),
     cmocka_unit_test(only_what_changed_is_built_anew),
     cmocka_unit_test(a_tree_that_comes_with_the_data_is_used),
     cmocka_unit_test(a_tree_that_does_not_serve_is_not_used),

@@ -367,7 +367,7 @@ static void what_is_hidden_is_not_drawn(void** state)
   case_destroy(&c);
 }
 
-static void what_is_no_cut_volume_is_told(void** state)
+static void uncut_volumes_are_refused(void** state)
 {
   stratus_ray_cast_report reports[BLOCKS_MOST];
   picture_case c;
@@ -405,7 +405,7 @@ int test_ray_blocks(void)
     cmocka_unit_test(blocks_with_layers_of_others_draw_the_whole_lit),
     cmocka_unit_test(other_modes_draw_the_whole),
     cmocka_unit_test(what_is_hidden_is_not_drawn),
-    cmocka_unit_test(what_is_no_cut_volume_is_told),
+    cmocka_unit_test(uncut_volumes_are_refused),
   };
   return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
 }

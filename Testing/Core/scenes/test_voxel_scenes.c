@@ -111,7 +111,7 @@ static void sets_and_rays_are_those_of_record(void** state)
   stratus_context_destroy(context);
 }
 
-static void unknown_names_and_kinds_are_told(void** state)
+static void unknown_names_and_kinds_are_refused(void** state)
 {
   static const int64_t n[3] = { 1, 1, 1 };
   static const int32_t position[3] = { 0, 0, 0 };
@@ -144,7 +144,7 @@ int test_voxel_scenes(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(sets_and_rays_are_those_of_record),
-    cmocka_unit_test(unknown_names_and_kinds_are_told),
+    cmocka_unit_test(unknown_names_and_kinds_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -192,7 +192,7 @@ static void assert_all_in_range(void)
 
 /* Cells without volume beside others that are drawn: they name a point twice, three or four times, have points in one place or one plane
  * under different numbers, or values that are not finite. */
-static void cells_without_volume_show_nothing_and_are_told(void** state)
+static void cells_without_volume_show_nothing_and_are_counted(void** state)
 {
   for (uint32_t seed = 0; seed < 24; ++seed) {
     tetra_case c;
@@ -406,7 +406,7 @@ int test_tetra_march(void)
     cmocka_unit_test(the_maximum),
     cmocka_unit_test(matrices_and_far_away_places),
     cmocka_unit_test(a_camera_far_away),
-    cmocka_unit_test(cells_without_volume_show_nothing_and_are_told),
+    cmocka_unit_test(cells_without_volume_show_nothing_and_are_counted),
     cmocka_unit_test(lengths_of_any_size_are_drawn_or_refused),
     cmocka_unit_test(windows_narrower_than_floats_are_refused),
     cmocka_unit_test(depths_beyond_doubles_are_refused),

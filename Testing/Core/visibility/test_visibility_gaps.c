@@ -156,7 +156,7 @@ static void parts_within_hollows_of_others_are_in_order(void** state)
 }
 
 /* Three cells, each over the next one and under the one before: no order is right, and any number of threads gives the same one. */
-static void cells_that_hide_one_another_in_a_ring_are_told(void** state)
+static void cells_that_hide_one_another_in_a_ring_are_counted(void** state)
 {
   static const double corners[4][3] = { { -3.0, 0.8, -1.2 }, { -3.0, 1.4, -1.2 }, { 3.0, 1.1, 1.0 }, { 3.0, 1.1, 1.4 } };
   (void)state;
@@ -216,7 +216,7 @@ static mesh_case soup(int64_t cells, bool flat)
 
 /* No order is right. The result is some order, the same at any number of threads, and reports that cells overlap. It takes a limited number
  * of tests for each cell; following every ring would take thousands, and more with more cells. */
-static void cells_that_overlap_take_bounded_work_and_are_told(void** state)
+static void cells_that_overlap_need_bounded_work_and_are_counted(void** state)
 {
   (void)state;
   for (int flat = 0; flat < 2; ++flat) {
@@ -383,8 +383,8 @@ int test_visibility_gaps(void)
     cmocka_unit_test(a_seam_whose_diagonals_do_not_match_is_no_hole_in_the_order),
     cmocka_unit_test(long_cells_hide_short_ones_behind_a_gap),
     cmocka_unit_test(parts_within_hollows_of_others_are_in_order),
-    cmocka_unit_test(cells_that_hide_one_another_in_a_ring_are_told),
-    cmocka_unit_test(cells_that_overlap_take_bounded_work_and_are_told),
+    cmocka_unit_test(cells_that_hide_one_another_in_a_ring_are_counted),
+    cmocka_unit_test(cells_that_overlap_need_bounded_work_and_are_counted),
     cmocka_unit_test(scattered_cells_and_points_come_in_order),
     cmocka_unit_test(only_faces_that_look_at_others_are_gaps),
     cmocka_unit_test(a_mesh_of_any_size_has_the_same_gaps_and_orders),

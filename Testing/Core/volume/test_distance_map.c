@@ -110,7 +110,7 @@ static void rows_longer_than_the_pitch_keep_their_ends(void** state)
   stratus_context_destroy(context);
 }
 
-static void distances_beyond_127_are_told_as_127(void** state)
+static void distances_beyond_127_are_127(void** state)
 {
   static const int64_t sizes[][3] = { { 300, 2, 1 }, { 1, 290, 2 }, { 2, 1, 280 } };
   uint32_t random = 3;
@@ -260,7 +260,7 @@ int test_distance_map(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_kind_equals_brute_force_on_small_grids),
     cmocka_unit_test(rows_longer_than_the_pitch_keep_their_ends),
-    cmocka_unit_test(distances_beyond_127_are_told_as_127),
+    cmocka_unit_test(distances_beyond_127_are_127),
     cmocka_unit_test(the_papers_map_has_distances_to_255),
     cmocka_unit_test(a_deep_block_of_occupied_ones_knows_its_depth),
     cmocka_unit_test(a_solid_box_knows_its_depth_from_every_side),

@@ -683,7 +683,7 @@ static stratus_status make_one(stratus_context* context, int which, const stratu
   }
 }
 
-static void memory_refused_at_any_request_is_told_and_leaves_nothing(void** state)
+static void memory_refused_at_any_request_is_reported_and_leaves_nothing(void** state)
 {
   static const double points[] = { -1.0, 0.0, 0.5, 1.0 };
   uint32_t random = 6;
@@ -734,7 +734,7 @@ int test_voxels(void)
     cmocka_unit_test(any_change_of_the_content_changes_the_hash),
     cmocka_unit_test(what_is_out_of_range_is_refused_by_its_value),
     cmocka_unit_test(a_set_whose_matrix_has_no_inverse_is_refused),
-    cmocka_unit_test(memory_refused_at_any_request_is_told_and_leaves_nothing),
+    cmocka_unit_test(memory_refused_at_any_request_is_reported_and_leaves_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

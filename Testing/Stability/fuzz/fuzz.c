@@ -40,7 +40,7 @@ static void work(const run* r, const char* kind, fuzz_tally* tally, uint64_t fir
   free(f.blocks);
 }
 
-static void tell_death(const run* r, const char* kind, fuzz_tally* tally, int status)
+static void report_death(const run* r, const char* kind, fuzz_tally* tally, int status)
 {
   ++tally->findings;
   if (!tally->told) {
@@ -77,7 +77,7 @@ static void supervise(const run* r, const char* kind, fuzz_tally* tally, double 
     if (WIFEXITED(status) && WEXITSTATUS(status) == EXIT_SUCCESS) {
       return;
     }
-    tell_death(r, kind, tally, status);
+    report_death(r, kind, tally, status);
     first = tally->number + 1;
     if (r->seconds > 0.0 && now() >= until) {
       return;
