@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Tests that build something anew, each one line of ctest's summary. What they need must be there, but for Oclgrind, which Debian 13 has not.
+# Tests that build something anew, each one line of ctest's summary. Their programs must be installed, except Oclgrind, which Debian 13
+# lacks.
 find_program(CLANG clang REQUIRED)
 find_program(OCLGRIND oclgrind)
 
@@ -8,7 +9,7 @@ find_program(CLANG_TIDY NAMES clang-tidy-14 clang-tidy REQUIRED)
 stratus_add_test(tidy style "${PROJECT_SOURCE_DIR}/Testing/tidy" "${CLANG_TIDY}" "${CMAKE_BINARY_DIR}")
 stratus_test_needs(tidy NOTHING)
 
-# ---- the core alone, without VTK: under sanitizers, and with clang
+# ---- only the core, without VTK: under sanitizers, and with clang
 # stratus_add_core_build(NAME CTEST_OPTIONS CONFIGURE_OPTION...)
 function (stratus_add_core_build name ctest_options)
   stratus_add_test(${name} builds "${CMAKE_CTEST_COMMAND}" --build-and-test "${PROJECT_SOURCE_DIR}" "${CMAKE_BINARY_DIR}/${name}"
@@ -27,11 +28,11 @@ stratus_add_core_build(core_under_sanitizers
   "--exclude-regex;^test_(opacity_one|opacity_one_device|ray_cast_beyond_32_bits|scenes|ray_pages_device|exact_functions_device)$"
   -DCMAKE_C_COMPILER=${CLANG} -DSTRATUS_ISAS=portable "-DSTRATUS_SANITIZE=address,undefined" -DCMAKE_BUILD_TYPE=Debug
   "-DCMAKE_C_FLAGS_DEBUG=-O1 -g -march=native -Wno-pass-failed")
-# Two instruction sets, so that they are compared; AVX-512 by clang is left to who builds with it. Devices have compilers of their own, so
-# that their tests would tell little here that they do not tell of gcc's build.
+# Two instruction sets, so that they are compared; whoever builds with clang tests AVX-512. Devices have their own compilers, so their tests
+# would show little that gcc's build does not show.
 stratus_add_core_build(core_by_clang "--label-exclude;^Device$" -DCMAKE_C_COMPILER=${CLANG} -DCMAKE_BUILD_TYPE=Release -DSTRATUS_ISAS=avx2)
 
-# ---- consumers of what was installed: the core that clang built without VTK, and everything
+# ---- consumers of installed builds: the core that clang built without VTK, and everything
 function (stratus_add_installation name folder)
   stratus_add_test(${name} consumers "${CMAKE_COMMAND}" --install "${folder}" --prefix "${CMAKE_BINARY_DIR}/${name}")
   if (NOT folder STREQUAL CMAKE_BINARY_DIR)

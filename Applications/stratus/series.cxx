@@ -330,7 +330,7 @@ size_t series::find(const std::string& time) const
       throw usage("--time: '" + text.substr(word) + "' is no unit of time: ms, s, min, h, d, weeks");
     }
     if (own == 0.0) {
-      throw usage("--time: '" + this->Path + "' does not tell the unit of its time (it has '" + this->Units + "'): give " + time +
+      throw usage("--time: '" + this->Path + "' does not give the unit of its time (it has '" + this->Units + "'): give " + time +
         " as a number or as step:N");
     }
     wanted *= given / own;

@@ -165,7 +165,7 @@ std::string stratus::judge_parts(vtkMultiProcessController* controller, const do
       overlap = common > 1e-6 * (other[2 * axis + 1] - other[2 * axis]);
     }
     if (overlap) {
-      overlaps += (overlaps.empty() ? "its part of the data overlaps that of rank " : ", ") + std::to_string(rank);
+      overlaps += (overlaps.empty() ? "its part of the data overlaps the part of rank " : ", ") + std::to_string(rank);
     }
   }
   if (!overlaps.empty()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// compare-pictures A B [DB]: tells by how much two pictures over black differ, and fails where that is more than DB decibels allow, where
-// their sizes differ, or where there is nothing in them. Each is a PNG file, or an OpenEXR file, whose floats count as they are. The metric
-// is the renderers' own: the mean square over the pixels that show anything in either, here of R, G and B.
+// compare-pictures A B [DB]: compares two pictures over black. Fails if they differ by more than DB decibels allow, if their sizes differ,
+// or if nothing is in them. Each is a PNG file, or an OpenEXR file, whose floats count as they are. The metric is the renderers' own: the
+// mean square over the pixels that show anything in either, here of R, G and B.
 #include "Testing/support/exr_reading.h"
 
 #include <vtkImageData.h>

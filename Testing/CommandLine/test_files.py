@@ -225,7 +225,7 @@ def test_collections():
     if picture("step3.vti") != open("three.png", "rb").read() or picture("step3.vti") == open("one.png", "rb").read():
         fail("a step of a collection is not its file's picture")
     expect(2, "within 0..3", "render", "steps.pvd", "-o", "no.png", "--time", "step:4")
-    expect(2, "does not tell the unit", "render", "steps.pvd", "-o", "no.png", "--time", "3h")
+    expect(2, "does not give the unit", "render", "steps.pvd", "-o", "no.png", "--time", "3h")
     expect(2, "'fortnight' is no unit", "render", "steps.pvd", "-o", "no.png", "--time", "3 fortnight")
     expect(2, "has no time", "render", "step0.vti", "-o", "no.png", "--time", "3")
     collection("back.pvd", [(0, 0, "step0.vti"), (2, 0, "step1.vti"), (1, 0, "step2.vti")])
@@ -251,7 +251,7 @@ def test_films():
     words = ("--time", "all", "--frames", "film-%03d.png", *LOOK)
     said = expect(0, "frames +4, film-%03d.png", "render", "steps.pvd", *words)
     if said.count("s left") != 4 or not re.search(r"frame +film-002.png, step 2 of 4, at 3, ", said):
-        fail("a film on a pipe does not tell of each frame:\n" + said)
+        fail("a film on a pipe does not report each frame:\n" + said)
     for step in range(4):
         if picture(f"step{step}.vti", "--time", "first") != open(f"film-00{step}.png", "rb").read():
             fail(f"frame {step} is not that step's picture")
@@ -351,7 +351,7 @@ def test_annotations():
     for words in (("--axes",), ("--color-bar",), ("--caption", "at {time}")):
         if not 200 < drawn("image.vti", *clear, "--size", "300x200", *words).max():
             fail(f"{words[0]} draws nothing")
-    # The far edges of the box are behind the volume, the near ones before it: through an opaque box the latter alone are seen.
+    # The far edges of the box are behind the volume, the near ones before it: through an opaque box only the near ones are visible.
     solid = ("--opacity", "0:1", "--color", "0:1:0:0", "--background", "black", "--size", "300x200", "--parallel", "--axes")
     box = drawn("image.vti", *clear, "--size", "300x200", "--parallel", "--axes")
     both = drawn("image.vti", *solid)

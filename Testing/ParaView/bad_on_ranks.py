@@ -105,7 +105,7 @@ for name, make, kind in CASES:
     else:
         scene.put(make())
     lines.append(f"{name} {scene.lit(name)}")
-    scene.lit(name)  # what was told is not told again
+    scene.lit(name)  # a message is not repeated
     if name.endswith("all-lack"):  # the array that they have can be chosen
         say(f"case {name}-chosen")
         scene.color("dale")

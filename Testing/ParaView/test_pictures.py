@@ -41,11 +41,11 @@ def pixels(path):
 
 
 def translucent(shown, view):
-    """A sheet across the view before, within and behind the volume: ParaView peels volumes. What lies before the sheet within is told by
-    opaque sheets in its place."""
+    """A sheet across the view before, within and behind the volume: ParaView peels volumes. Opaque sheets in the place of the sheet within
+    show the part of the volume before it."""
     alone = shot(view, "cloud-on-black")
     view.Background = [1, 1, 1]
-    clear = shot(view, "cloud-on-white") - alone  # what the volume lets through
+    clear = shot(view, "cloud-on-white") - alone  # the part of the background that the volume lets through
     view.Background = [0, 0, 0]
     eye, focus = numpy.array(view.CameraPosition), numpy.array(view.CameraFocalPoint)
     forward = (focus - eye) / numpy.linalg.norm(focus - eye)

@@ -138,7 +138,7 @@ def record():
             item = smtrace.PropertiesModified(proxy)
             for key, value in values.items():
                 setattr(proxy, key, value)
-            if proxy is shown:  # what the panel tells of the picture changes, too
+            if proxy is shown:  # the panel's report of the picture changes, too
                 simple.Render(view)
             item.finalize()
             del item

@@ -101,18 +101,18 @@ drawn = subprocess.run([sys.executable, "-c", "import sys; sys.modules['vtkmodul
                        env=dict(os.environ, PYTHONPATH=other), capture_output=True, text=True)
 check(drawn.stdout.split() == 4 * ["True"], f"cvista's grids in stratus_volume: {drawn}")
 
-# The core and VTK share one OpenMP runtime. A second one would have threads of its own beside the first one's.
+# The core and VTK share one OpenMP runtime. A second one would have its own threads in addition to the first one's.
 with open("/proc/self/maps", encoding="utf-8") as file:
     maps = {line.split(maxsplit=5)[5].strip() for line in file if len(line.split(maxsplit=5)) == 6}
 runtimes = {path for path in maps if re.search(r"/lib(g|i|)omp[-.0-9]", path)}
 check(len(runtimes) == 1 and "cvista.libs" in runtimes.pop(), f"OpenMP's runtimes in this process: {sorted(path for path in maps if 'omp' in path)}")
 
-# Each library is there once, under the name by which others ask for it.
+# Each library is there once, under the name by which others need it.
 package = os.path.dirname(stratus.__file__)
 names = [name.split(".so")[0] for name in os.listdir(package) if name.startswith("lib")]
 check(len(names) == len(set(names)) > 8, f"no copies of libraries: {sorted(names)}")
 
-# A machine without OpenCL: a name that is nowhere stands in for its loader's.
+# A machine without OpenCL: a name that does not exist replaces its loader's.
 copy = os.path.join(folder, "without", "stratus")
 shutil.rmtree(os.path.dirname(copy), ignore_errors=True)
 shutil.copytree(package, copy, ignore=shutil.ignore_patterns("__pycache__"))

@@ -32,7 +32,7 @@ def scene(volume, size=(160, 120), solid=True, parallel=False, shape=(1, 1), **l
         mapper = actor.mapper
         mapper.SetAutoAdjustSampleDistances(0)
         mapper.SetImageSampleDistance(1)
-        mapper.SetSampleDistance(0.1)  # its default, a voxel and a half, errs by more than what is tested here
+        mapper.SetSampleDistance(0.1)  # its default, a voxel and a half, errs by more than this test's limits
     plotter.camera_position = [(70, -60, 55), (0, 0, 0), (0, 0, 1)]
     if parallel:
         plotter.enable_parallel_projection()
@@ -131,7 +131,7 @@ def words():
             dict(cmap=["red", "white", "blue"]):
         stratus, vtk = scene("stratus", **more), scene("vtk", **more)
         lit = numpy.abs(vtk - plain).max(axis=2) > 8
-        # Without the outline, which is a part of a pixel elsewhere by VTK's mapper: what is opaque and dark ends sharply there.
+        # Without the outline, which is a part of a pixel elsewhere by VTK's mapper: opaque and dark parts end sharply there.
         inside = lit & numpy.roll(lit, 1, 0) & numpy.roll(lit, -1, 0) & numpy.roll(lit, 1, 1) & numpy.roll(lit, -1, 1)
         apart = numpy.abs(stratus - vtk).mean(axis=2)
         check(inside.sum() > 500 and apart[inside].mean() < 6 and apart[~lit].mean() < 1.5,
@@ -139,10 +139,10 @@ def words():
 
 
 def reacts():
-    """What pyvista's table, property and mapper are changed to shows in the next frame, and nothing is left of it all."""
+    """Changes of pyvista's table, property and mapper show in the next frame, and the last frame has no trace of them."""
     def picture(change=None, **look):
         plotter = pyvista.Plotter(off_screen=True, window_size=(120, 90))
-        # A table that tells the smallest differences apart.
+        # A table whose colours differ for the smallest differences.
         volume = plotter.stratus.add_volume(grid, show_scalar_bar=False, **{**dict(opacity="foreground", cmap="flag"), **look})
         plotter.camera_position = [(70, -60, 55), (0, 0, 0), (0, 0, 1)]
         plotter.renderer.reset_camera_clipping_range()

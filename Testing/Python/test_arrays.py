@@ -39,7 +39,7 @@ def types():
     for name in "int8 uint8 int16 uint16 int32 uint32 int64 uint64 float16 float32 float64 >f8 >f4 >f2 >i2 >u4 >i8 <f2".split():
         own = (100 * field).round().astype(name)
         picture = render(own, opacity=[(0, 0), (20, 0), (100, 0.6)], **exact)
-        # Tables of whole numbers have an entry for each, those of floats have other entries.
+        # Tables of whole numbers have an entry for each number, tables of floats have other entries.
         check(apart(picture, wanted) < 5e-4, f"{name} gives the same picture: {apart(picture, wanted)}")
     solid = render(field > 0.5, opacity=[(0, 0), (1, 0.6)], **exact)
     check(apart(solid, render((field > 0.5).astype(numpy.uint8), opacity=[(0, 0), (1, 0.6)], **exact)) == 0, "bool")
@@ -175,7 +175,7 @@ def reasons():
     check("no ray" in reason(field, camera=dict(position=(10, 9, 60), focal_point=(10, 9, 90), view_up=(0, 1, 0))), "a camera that looks away")
     check("no ray" in reason(field, crop=(100, 120, 0, 1, 0, 1)), "a crop beside the volume")
     check("mode minimum" in reason(field, mode="minimum"), "the smallest value of each ray is transparent")
-    # What shows gives no warning.
+    # Visible pictures give no warning.
     sparse = numpy.zeros((40, 40, 40))
     sparse[20:22, 20:22, 20:22] = 1
     few = numpy.zeros((12, 12, 12))

@@ -276,7 +276,7 @@ def missing():
             copy = os.path.join(folder, other, "stratus_volume")
             linked = False
             shutil.copytree(own, copy, ignore=shutil.ignore_patterns("__pycache__"))
-            if os.path.isdir(own + ".libs"):  # what auditwheel put beside it
+            if os.path.isdir(own + ".libs"):  # libraries that auditwheel added next to it
                 shutil.copytree(own + ".libs", copy + ".libs")
             for part in "_core.py", "libstratus-core.so", os.path.join("no_opencl", "libOpenCL.so.1"):
                 path = os.path.join(copy, part)

@@ -74,7 +74,8 @@ with tempfile.TemporaryDirectory() as folder:
         same |= numpy.isnan(results[0]) & numpy.isnan(results[1])  # log of negative numbers is a NaN of either sign
         check(same.all(), f"{name} of {x[~same][:3]} {y[~same][:3]}")
 
-# A new call of what glibc got after 2.28 goes into the header, or is left out. These have other names in Debian 11, which makes the wheel.
+# A new call of a function that is younger than glibc 2.28 goes into the header, or is left out. These functions have other names in Debian
+# 11, which makes the wheel.
 RENAMED = {"stat", "lstat", "fstat", "fstatat", "pthread_once"}
 core = versions(os.path.join(os.path.dirname(stratus_volume.__file__), "libstratus-core.so"))
 check(len(core) > 50, f"of the core, {len(core)} functions are seen")

@@ -94,15 +94,15 @@ def components():
     refuse(ValueError, "5)", render, numpy.zeros((4, 4, 4, 5)))
     refuse(ValueError, "2 components", distance_field, several)
     refuse(Unsupported, "component", render, several, mode="isosurface", contours=[0.5], **host)
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         render(several, opacity=[[(0, 0), (1, 0)]] * 2, **host)
-    check(len(told) == 1 and told[0].category is NothingShown and "component 0" in str(told[0].message) and told[0].filename == __file__,
-          f"one warning: {[str(one.message) for one in told]}")
+    check(len(caught) == 1 and caught[0].category is NothingShown and "component 0" in str(caught[0].message) and caught[0].filename == __file__,
+          f"one warning: {[str(one.message) for one in caught]}")
 
 
 def ramps(masked):
-    """The opacities of a number, 0.5: a ramp away from the most frequent value of each component, as render tells it."""
+    """The opacities of a number, 0.5: a ramp away from the most frequent value of each component, as render describes it."""
     from stratus_volume._values import opacity_at, opacity_points, Spread
     shown = masked.data[~masked.mask.any(axis=3)]
     spreads = [Spread(shown[:, c]) for c in range(2)]
@@ -179,7 +179,7 @@ def surfaces():
     field = random.random((9, 10, 11)).astype(numpy.float32)
     grey = dict(mode="slice", color=[(0, 0, 0, 0), (1, 1, 1, 1)], device="host", size=(37, 31), tolerance=0)
     across = dict(position=(5, -20, 4), focal_point=(5, 0, 4), view_up=(0, 0, 1), parallel_scale=4)
-    # Behind a surface the ray's point is known from the depth: it lies on it, and has the value that is linear between the voxels there.
+    # The depth gives the ray's point on a surface: it is on the surface, and has the value that is linear between the voxels there.
     for surface, on in [(dict(center=(5, 4.3, 4), normal=(0, -2, 0)), lambda p: p[..., 1] - 4.3),
                         (dict(center=(5, 4.3, 4), normal=(0.4, 1, 0.3)), lambda p: (p - (5, 4.3, 4)) @ (0.4, 1, 0.3)),
                         (dict(center=(5, 4, 4), radius=3), lambda p: numpy.linalg.norm(p - (5, 4, 4), axis=-1) - 3),
@@ -257,10 +257,10 @@ def several():
     check(apart(render_several(kept, size=(60, 60)), mixed) == 0, "what is kept, too")
     check(render_several(kept, size=(60, 60), camera=dict(azimuth=70)).counters["items"][1]["range_builds"] == 1, "and builds nothing anew")
     hidden = numpy.full((4, 4, 4), numpy.nan)
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         left = render_several([(first, look), hidden], **host)
-    check(len(told) == 1 and "none of the 64" in str(told[0].message) and apart(left, render(first, **look, **host)) == 0, "what can't show is left out")
+    check(len(caught) == 1 and "none of the 64" in str(caught[0].message) and apart(left, render(first, **look, **host)) == 0, "what can't show is left out")
     whole_depth = numpy.ones((60, 60))
     refuse(ValueError, "items has 0", render_several, [])
     refuse(ValueError, "1 to 8", render_several, [first] * 9)

@@ -139,13 +139,13 @@ def partitioned():
         linear = places @ (3, -2, 0.5) + 1
         check(numpy.allclose(cut.at_points(linear), cut.points @ (3, -2, 0.5) + 1), "values on cut edges")
         check(numpy.allclose(cut.at_points(places), cut.points), "of several components")
-        # Each leaf lies on its side of the planes above it.
+        # Each leaf is on its side of the planes above it.
         stack = [(0, numpy.ones(len(cut.leaf), bool))]
         while stack:
             at, within = stack.pop()
             node = cut.nodes[at]
             if node["axis"] < 0:
-                check((cut.leaf[within] == node["below"]).all() and (cut.leaf == node["below"]).sum() == within.sum(), "leaves are those of the tree")
+                check((cut.leaf[within] == node["below"]).all() and (cut.leaf == node["below"]).sum() == within.sum(), "leaves are the tree's")
                 continue
             heights = (cut.points @ cut.frame[node["axis"]])[cut.tetrahedra]
             below = within & (heights.max(axis=1) <= node["value"] + 1e-9)

@@ -145,11 +145,11 @@ def tetrahedra():
     of_cells = render_tetrahedra(places, cells, values[cells].mean(axis=1), opacity=points, **host)
     check(apart(of_cells, mesh) < 0.3 and of_cells.rgba[30, 30, 3] > 0.5, "values of cells")
     for values_of, words in (numpy.full(len(places), numpy.nan), "none of the 990"), (values, "only in 2..3"):
-        with warnings.catch_warnings(record=True) as told:
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             render_tetrahedra(places, cells, values_of, opacity=[(0, 0), (2, 0), (3, 1)], **host)
-        check(len(told) == 1 and told[0].category is NothingShown and words in str(told[0].message) and told[0].filename == __file__,
-              f"one warning: {[str(one.message) for one in told]}")
+        check(len(caught) == 1 and caught[0].category is NothingShown and words in str(caught[0].message) and caught[0].filename == __file__,
+              f"one warning: {[str(one.message) for one in caught]}")
     refuse(ValueError, "(990, 2)", render_tetrahedra, places[:, :2], cells, values)
     refuse(ValueError, "0..989", render_tetrahedra, places, cells + 1, values)
     refuse(ValueError, "(4320, 3)", render_tetrahedra, places, cells[:, :3], values)
