@@ -141,7 +141,7 @@ static void figure_5_leaves_voxels_unfilled_around_a_single_one(void** state)
   stratus_context_destroy(context);
 }
 
-static void steps_are_those_of_the_method(void** state)
+static void steps_follow_the_method(void** state)
 {
   static const struct {
     stratus_field_method method;
@@ -202,7 +202,7 @@ static void the_adaptive_steps_follow_what_the_passes_did(void** state)
 }
 
 /* E1 and E2 by a plain flooding in double precision, pass by pass. */
-static void the_first_passes_numbers_are_those_of_equations_6_and_7(void** state)
+static void the_first_passes_numbers_follow_equations_6_and_7(void** state)
 {
   uint32_t random = 5;
   (void)state;
@@ -394,9 +394,9 @@ int test_flooding_fails(void)
     cmocka_unit_test(plates_and_shells_come_out_as_wrong_as_ever),
     cmocka_unit_test(floodings_that_halve_leave_nothing_unfilled),
     cmocka_unit_test(figure_5_leaves_voxels_unfilled_around_a_single_one),
-    cmocka_unit_test(steps_are_those_of_the_method),
+    cmocka_unit_test(steps_follow_the_method),
     cmocka_unit_test(the_adaptive_steps_follow_what_the_passes_did),
-    cmocka_unit_test(the_first_passes_numbers_are_those_of_equations_6_and_7),
+    cmocka_unit_test(the_first_passes_numbers_follow_equations_6_and_7),
     cmocka_unit_test(a_cap_on_the_first_step_is_kept_and_leaves_the_far_unknown),
     cmocka_unit_test(a_line_of_262144_voxels_floods_in_64_bits),
     cmocka_unit_test(a_grid_that_positions_do_not_name_is_refused),
