@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The VTK half: find, scan, build, wrap, install and export the modules. Sets stratus_vtk to ON where it does.
+# The VTK half: find, scan, build, wrap, install and export the modules. Sets stratus_vtk to ON if they are built.
 include(CheckLanguage)
 
-# Named one by one: a bare find of Debian's VTK wants Qt. What consumers need is in the first list, tests and programs want the second.
+# Named one by one: a bare find of Debian's VTK wants Qt. The first list is for consumers, the second for tests and programs.
 set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonTransforms ImagingCore ImagingMath IOCore IOImage
   RenderingCore RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2)
 set(stratus_vtk_programs ChartsCore CommonColor CommonSystem FiltersCore FiltersGeneral FiltersSources ImagingSources InteractionStyle
@@ -63,7 +63,7 @@ endforeach ()
 stratus_precompiled(stratus-headers PIC ${stratus_headers} LINKS VTK::CommonDataModel VTK::CommonExecutionModel)
 stratus_precompile(stratus-headers ${stratus_modules} ${stratus_common_libraries})
 
-# The library of VTK's core, by whose name programs tell whether theirs is the VTK that this was built for.
+# The library of VTK's core. By its name programs decide whether their VTK is the one that this was built for.
 _vtk_module_real_target(stratus_vtk_core VTK::CommonCore) # its name differs between versions of VTK
 get_target_property(type ${stratus_vtk_core} TYPE)
 if (type STREQUAL "INTERFACE_LIBRARY") # a VTK of kits, which join modules in one library

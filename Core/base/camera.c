@@ -119,7 +119,7 @@ stratus_status stratus_camera_check(stratus_context* context, const stratus_came
   const double volume = f[0] * (r[1] * u[2] - r[2] * u[1]) + f[1] * (r[2] * u[0] - r[0] * u[2]) + f[2] * (r[0] * u[1] - r[1] * u[0]);
   if (!camera->parallel && rr > 0.0 && uu > 0.0 && !(fabs(volume) > 1e-12 * sqrt(ff) * sqrt(rr) * sqrt(uu))) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-      "camera forward (%g, %g, %g), right (%g, %g, %g) and up (%g, %g, %g) lie in one plane", f[0], f[1], f[2], r[0], r[1], r[2], u[0],
+      "camera forward (%g, %g, %g), right (%g, %g, %g) and up (%g, %g, %g) are in one plane", f[0], f[1], f[2], r[0], r[1], r[2], u[0],
       u[1], u[2]);
   }
   if (!(camera->near_k < camera->far_k) || !isfinite(camera->near_k) || (!camera->parallel && camera->near_k < 0.0)) {

@@ -47,8 +47,8 @@ static inline bool enters(const stratus_ray* ray, const double from[3], const do
     }
     const double first = ((double)(along[a] > 0.0 ? voxel[a] : voxel[a] + 1) - from[a]) / along[a];
     const double last = ((double)(along[a] > 0.0 ? voxel[a] + 1 : voxel[a]) - from[a]) / along[a];
-    /* No branches: nobody can foresee by which axis a ray enters. Axes come in rising order, so that of equal crossings the last one counts
-     * for entering, and the first one for leaving. The ray's own start comes after all crossings of the same t. */
+    /* No branches: the axis by which a ray enters is unpredictable. Axes come in rising order, so if crossings are equal the last axis
+     * counts for entering, and the first one for leaving. The ray's own start comes after all crossings of the same t. */
     in.axis = (first > in.t) | ((first == in.t) & (in.axis != 3)) ? a : in.axis;
     in.t = first > in.t ? first : in.t;
     out.axis = last < out.t ? a : out.axis;

@@ -179,7 +179,7 @@ stratus_status stratus_tree_first_voxels_between(stratus_context* context, const
     on_host = stratus_device_hands_back(context, status);
     status = on_host ? STRATUS_OK : status;
   } else if (status == STRATUS_OK && context->device) {
-    stratus_log(context, STRATUS_LOG_INFO, "first hits: rays are walked on the host, for the device has no doubles");
+    stratus_log(context, STRATUS_LOG_INFO, "first hits: the host walks the rays, because the device has no doubles");
   }
   if (status == STRATUS_OK && on_host) {
     run_host(context, &b, rays, count, hits);

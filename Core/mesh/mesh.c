@@ -74,7 +74,7 @@ static stratus_status check_counts(stratus_context* context, const stratus_mesh*
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh points is NULL, with a point_count of %lld", (long long)mesh->point_count);
   }
   if (mesh->float_points) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh float_points is not NULL, as it may be of a lattice alone");
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh float_points is not NULL, must be NULL unless the mesh is a lattice");
   }
   if (!mesh->vertices && mesh->cell_count > 0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh vertices is NULL, with a cell_count of %lld", (long long)mesh->cell_count);

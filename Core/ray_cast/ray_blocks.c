@@ -188,7 +188,7 @@ static stratus_status measure(const blocks* b, stratus_block_box* boxes, stratus
     }
   }
   if (!stratus_matrix_invert_affine(axes, to_axes)) {
-    return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT, "the axes of block 0 lie in one plane");
+    return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT, "the axes of block 0 are in one plane");
   }
   eye->parallel = b->camera->parallel != 0;
   (eye->parallel ? stratus_matrix_vector : stratus_matrix_point)(to_axes, eye->parallel ? b->camera->forward : b->camera->eye, eye->point);
@@ -228,7 +228,8 @@ static stratus_status check(const blocks* b)
         b->context, STRATUS_INVALID_ARGUMENT, "block %d has no ray caster: caster is NULL, or tetra is not; blocks are volumes", n);
     }
     if (in->caster->context != b->context) {
-      return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT, "the ray caster of block %d is of another context than that of block 0", n);
+      return stratus_fail(
+        b->context, STRATUS_INVALID_ARGUMENT, "the ray caster of block %d has another context than the one of block 0", n);
     }
     TRY(stratus_volume_check(b->context, in->volume));
     const stratus_mode mode = in->options ? in->options->mode : STRATUS_MODE_COMPOSITE;

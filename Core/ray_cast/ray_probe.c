@@ -30,19 +30,19 @@
 /* An error falls by some power of the step, between 1 where light or the function's ends meet it and 2. The finer setting's own error,
  * which the comparison hides, is reckoned by the mean of the two. */
 #define ORDER 1.5
-/* What the probe's rays tell of all rays' error: the mean, and so many standard errors on top, may be this share of the tolerance. */
+/* A candidate passes if its error's mean plus CONFIDENCE standard errors, by the probe's rays, is at most this share of the tolerance. */
 #define CONFIDENCE 1.5
 #define SHARE 0.65
 /* An error that rises by less over rungs of cells has come to rest. */
 #define SETTLED 1.1
 /* The rung from which the step of smooth blocks is sought: two voxels. */
 #define LOCAL_START 4
-/* Rule local is for few rough blocks: at most this share of all. It is taken where it costs less than this share of the next best rule: the
- * turns between its two ways, and the lookups of where they end, are not in its cost. */
+/* Rule local is for few rough blocks: at most LOCAL_MOST of all. It is chosen if it costs less than LOCAL_GAIN of the next best rule: its
+ * cost does not contain the switches between cells and samples, and the lookups of their borders. */
 #define LOCAL_MOST 0.5
 #define LOCAL_GAIN 0.75
-/* What rule local may err by on the probe's rays, of what other rules may: half, because two parts of it err, and those of the error that
- * are of few blocks are met by few rays. */
+/* Rule local's allowed error on the probe's rays, as a share of other rules' allowed error. It is half, because two parts of the rule err,
+ * and few rays meet an error of few blocks. */
 #define LOCAL_SHARE 0.5
 #define PATCH (STRATUS_PROBE_WIDTH * STRATUS_PROBE_HEIGHT)
 
@@ -268,8 +268,8 @@ static double cost_of(const probe* p, const family* f, int rung)
                                                : lattice;
 }
 
-/* The coarsest rung of cells: values off by more than the tolerance's share of what the function spans could show in rays that graze a
- * surface, of which the probe may have none. */
+/* Returns the coarsest rung of cells. Values that are off by more than the tolerance's share of the function's range could show in rays
+ * that graze a surface, and the probe may have none of these. */
 static int coarsest_cells(const probe* p, const family* f)
 {
   const double rung = -2.0 * (log2(p->options->tolerance) + 2.0);
@@ -329,8 +329,8 @@ typedef struct candidates {
   setting fine;
 } candidates;
 
-/* Looks for blocks that are worth cells while all others take longer steps: those of the roughest class, then of the two roughest, and so
- * on. cells: the rung of cells. *least: the cost of *found at *best; all three are left alone where nothing is cheaper. */
+/* Searches for blocks that are worth cells while all others take longer steps: the roughest class, then the two roughest, and so on. cells:
+ * the rung of cells. *least: the cost of *found at *best. If nothing is cheaper, all three stay unchanged. */
 static stratus_status search_local(probe* p, candidates* k, double most, int cells, double* least, int* best, family** found)
 {
   const stratus_probe_classes* classes = &p->classes;

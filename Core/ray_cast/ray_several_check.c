@@ -20,7 +20,7 @@ stratus_status stratus_several_check_inputs(const stratus_ray_cast_input* inputs
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume %d has no ray caster: caster is NULL, and so is tetra", n);
     }
     if (stratus_several_context(&inputs[n]) != context) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the ray caster of volume %d is of another context than that of volume 0", n);
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the ray caster of volume %d has another context than the one of volume 0", n);
     }
     if (inputs[n].caster && inputs[n].tetra) {
       return stratus_fail(
@@ -50,7 +50,7 @@ stratus_status stratus_several_check_volume(stratus_context* context, int n, con
   }
   if (options->clip_gradients && options->clip_plane_count > 0) {
     return stratus_fail(
-      context, STRATUS_UNSUPPORTED, "volume %d of several has gradients that clip planes change: one volume alone takes that", n);
+      context, STRATUS_UNSUPPORTED, "volume %d of several has gradients that clip planes change, must be the only volume", n);
   }
   if (options->crop && options->crop_regions != STRATUS_CROP_INSIDE && options->crop_regions != STRATUS_CROP_ALL) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several shows crop regions 0x%x, must be the inside (0x%x) or all", n,

@@ -196,7 +196,7 @@ static stratus_status create_label_tables(stratus_ray_caster* caster)
   }
   if (entries > LABEL_ENTRIES_MOST) {
     return stratus_fail(caster->context, STRATUS_UNSUPPORTED,
-      "%d labels' functions take %zu entries, at most %d: their narrowest features ask for less", caster->transfer_count - 1, entries,
+      "%d labels' functions need %zu table entries, must be at most %d: wider features need fewer", caster->transfer_count - 1, entries,
       LABEL_ENTRIES_MOST);
   }
   return STRATUS_OK;

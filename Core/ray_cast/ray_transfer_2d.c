@@ -71,7 +71,7 @@ stratus_status stratus_ray_transfer_2d_check(
       stratus_sampling_name(options->sampling));
   }
   if (options->label_count > 0) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "%d labels with a two-dimensional function: they have functions of the value alone",
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "%d labels with a two-dimensional function: labels have functions of only the value",
       options->label_count);
   }
   if (components > 2) {

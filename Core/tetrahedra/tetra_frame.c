@@ -84,7 +84,7 @@ static stratus_status find_matrix(frame_build* build)
   double basis[16] = { [15] = 1.0 }, inverse[16];
   find_basis(build, basis);
   if (!stratus_matrix_invert_affine(basis, inverse)) {
-    return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT, "camera right, up and forward lie in one plane, must not");
+    return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT, "camera right, up and forward are in one plane, must not be");
   }
   double* t = build->matrix;
   for (int row = 0; row < 3; ++row) {

@@ -44,7 +44,7 @@ stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const st
     return STRATUS_OK;
   }
   if (caster->context->device && !stratus_device_is_cpu(caster->context->device)) {
-    snprintf(report->why, sizeof report->why, "march: what projection costs on a GPU is not measured");
+    snprintf(report->why, sizeof report->why, "march: the cost of projection on a GPU is not measured");
     return STRATUS_OK;
   }
   if (!stratus_tetra_count_view(&shown, mesh, camera, image, &view)) {

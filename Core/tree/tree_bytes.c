@@ -249,7 +249,7 @@ stratus_status stratus_tree_load(stratus_context* context, const void* bytes, si
     return WRONG("%s is NULL", bytes ? "tree" : "bytes");
   }
   if (size < sizeof h) {
-    return WRONG("%zu bytes are no tree: its header alone has %zu", size, sizeof h);
+    return WRONG("%zu bytes are no tree: the header has %zu", size, sizeof h);
   }
   memcpy(&h, bytes, sizeof h);
   TRY(check_header(context, &h, bytes, size));

@@ -126,7 +126,7 @@ static stratus_status make_grid(stratus_context* context, const stratus_transfer
   t->offset = (float)(0.5 - (from - values->fetching.bias) * (double)t->scale);
   if (!isfinite(t->scale) || !isfinite(t->offset)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-      "values from %g to %g lie too close together: floats can't tell %d steps between them", from, to, cells);
+      "values from %g to %g are too close together: floats can't separate %d steps between them", from, to, cells);
   }
   return STRATUS_OK;
 }

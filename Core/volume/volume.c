@@ -345,8 +345,8 @@ bool stratus_volume_floats_differ(const stratus_volume* volume, double bias)
   return false;
 }
 
-/* Asked where all fetched values are the same: of a constant volume, or because floats cannot hold what sets the values apart. One value
- * beyond floats on either side, however often it is there, is a fill value. */
+/* Called if all fetched values are equal: the volume is constant, or floats cannot hold the differences. One value beyond floats on either
+ * side, however often it is there, is a fill value. */
 stratus_status stratus_volume_check_floats(stratus_context* context, const stratus_volume* volume, double bias)
 {
   if (volume->type != STRATUS_FLOAT64) {
@@ -363,11 +363,11 @@ stratus_status stratus_volume_check_floats(stratus_context* context, const strat
     }
     if (apart < (double)FLT_MIN) {
       return stratus_fail(
-        context, STRATUS_INVALID_ARGUMENT, "values %g and %g lie too close together: floats can't tell them apart", bias, value);
+        context, STRATUS_INVALID_ARGUMENT, "values %g and %g are too close together: floats can't separate them", bias, value);
     }
     if (apart > (double)FLT_MAX && !isnan(*fill) && value != *fill) {
       return stratus_fail(
-        context, STRATUS_INVALID_ARGUMENT, "values %g and %g lie too far from %g: floats can't tell them apart", *fill, value, bias);
+        context, STRATUS_INVALID_ARGUMENT, "values %g and %g are too far from %g: floats can't separate them", *fill, value, bias);
     }
     *fill = apart > (double)FLT_MAX ? value : *fill;
   }

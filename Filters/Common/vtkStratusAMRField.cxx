@@ -147,7 +147,7 @@ bool vtkStratusAMRField::Cover(const Box& box, std::string& error)
     for (at[1] = lo[1]; at[1] < hi[1]; ++at[1]) {
       for (at[0] = lo[0]; at[0] < hi[0]; ++at[0]) {
         if (!(this->StateOf(box.Level - 1, at, cache) & EXISTS)) {
-          error = "a box of level " + std::to_string(box.Level) + " lies where level " + std::to_string(box.Level - 1) + " has no cells";
+          error = "a box of level " + std::to_string(box.Level) + " is where level " + std::to_string(box.Level - 1) + " has no cells";
           return false;
         }
         this->Make(box.Level - 1, at, index).State[index] |= COVERED;

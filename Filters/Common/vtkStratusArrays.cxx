@@ -35,7 +35,8 @@ bool CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell, std::string& error)
   vtkCellArray* of_cells = grid->GetPolyhedronFaceLocations();
   const vtkIdType count = of_cells ? of_cells->GetNumberOfCells() : 0;
   if (cell >= count) {
-    error = "cell " + std::to_string(cell) + " is a polyhedron without faces: the faces of " + std::to_string(count) + " cells are told";
+    error =
+      "cell " + std::to_string(cell) + " is a polyhedron without faces: the grid has the faces of " + std::to_string(count) + " cells";
   }
   return cell < count;
 }

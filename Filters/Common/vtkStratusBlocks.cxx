@@ -156,7 +156,7 @@ std::vector<vtkStratusBlocks::Block> vtkStratusBlocks::List(vtkCompositeDataSet*
   this->LeftOut.clear();
   Tell(flat, "without a volume", this->LeftOut);
   Tell(bare, "without the scalar array", this->LeftOut);
-  Tell(other, "whose scalar array is not of points or cells, or not of as many components, as that of the first block", this->LeftOut);
+  Tell(other, "whose scalar array differs from the first block's in points or cells, or in its number of components", this->LeftOut);
   return blocks;
 }
 

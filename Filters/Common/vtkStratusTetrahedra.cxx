@@ -178,7 +178,7 @@ vtkIdType vtkStratusTetrahedra::AddMiddle(const Kind& kind, const vtkIdType* ids
 void vtkStratusTetrahedra::AddQuadratic(const Kind& kind, const vtkIdType* ids, vtkIdType cell)
 {
   if (kind.Points == 10) {
-    // Nodes 0..3 are corners, nodes 4..9 the midpoints of edges 01 12 20 03 13 23. Four tetrahedra lie at the corners, four around the line
+    // Nodes 0..3 are corners, nodes 4..9 the midpoints of edges 01 12 20 03 13 23. Four tetrahedra are at the corners, four around the line
     // from node 4 to node 9.
     static const int parts[8][4] = { { 0, 4, 6, 7 }, { 4, 1, 5, 8 }, { 6, 5, 2, 9 }, { 7, 8, 9, 3 }, { 4, 9, 6, 7 }, { 4, 9, 7, 8 },
       { 4, 9, 8, 5 }, { 4, 9, 5, 6 } };

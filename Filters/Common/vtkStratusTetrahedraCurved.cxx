@@ -142,8 +142,8 @@ bool vtkStratusTetrahedra::AddCurved(vtkUnstructuredGrid* grid, vtkIdType cell, 
     return false;
   }
   if (!FindOrder(shape, degrees, cell, count, order)) {
-    error = "of " + std::to_string(count) + " points" + (degrees ? " and the degrees that the grid tells" : "") +
-      ", no cell of an order 1.." + std::to_string(OrderMost) + " has so many";
+    error = "of " + std::to_string(count) + " points" + (degrees ? " and the grid's degrees" : "") + ", no cell of an order 1.." +
+      std::to_string(OrderMost) + " has so many";
     return false;
   }
   if (IsBezier(type)) {

@@ -148,7 +148,7 @@ void vtkStratusCFGrid::FindHorizontal(const std::vector<const Variable*>& others
   }
   std::array<const Variable*, 2> found = { { nullptr, nullptr } };
   for (const Variable* one : candidates) {
-    const int told = this->AxisOf(*one), axis = told < 0 ? AxisOfName(one->BaseName()) : told;
+    const int given = this->AxisOf(*one), axis = given < 0 ? AxisOfName(one->BaseName()) : given;
     if (this->Has(*one, 0) && this->Has(*one, 1) && (axis == 0 || axis == 1) && !found[static_cast<size_t>(axis)]) {
       found[static_cast<size_t>(axis)] = one;
     }
@@ -267,7 +267,7 @@ void vtkStratusCFGrid::ConvertUnits()
   }
 }
 
-// Names axes by what their numbers are now: distances on the sphere, heights, or the file's own coordinates.
+// Names axes by the meaning of their converted numbers: distances on the sphere, heights, or the file's own coordinates.
 void vtkStratusCFGrid::NameAxes(const std::array<const Variable*, 2>& from, const std::array<vtkStratusUnit, 2>& units, bool degrees)
 {
   for (size_t a = 0; a < 3; ++a) {

@@ -78,7 +78,7 @@ File::File(const std::string& path) : Path(path)
     exr_storage_t storage = EXR_STORAGE_TILED;
     this->Check(exr_get_storage(this->Context, 0, &storage));
     if (storage != EXR_STORAGE_SCANLINE) {
-      throw Stop(path + " holds " + (storage == EXR_STORAGE_TILED ? "tiles" : "deep pixels") + ", scan lines are read alone");
+      throw Stop(path + " holds " + (storage == EXR_STORAGE_TILED ? "tiles" : "deep pixels") + ", must hold scan lines");
     }
     exr_attr_box2i_t window = {};
     this->Check(exr_get_data_window(this->Context, 0, &window));
@@ -87,7 +87,7 @@ File::File(const std::string& path) : Path(path)
     // A byte that zlib has compressed holds 1,032 at most: a larger picture than that is not in the file.
     const auto most = 1032 * static_cast<int64_t>(std::filesystem::file_size(path));
     if (width < 1 || height < 1 || width > most || height > most / width) {
-      throw Stop(path + " tells of " + std::to_string(width) + " x " + std::to_string(height) + " pixels, which are not in it");
+      throw Stop(path + " has a header for " + std::to_string(width) + " x " + std::to_string(height) + " pixels, which are not in it");
     }
     this->Width = static_cast<int>(width);
     this->Height = static_cast<int>(height);
@@ -150,7 +150,7 @@ void File::CheckChunk(const exr_decode_pipeline_t& pipeline, int top) const
     good = pipeline.channels[c].width == chunk.width && pipeline.channels[c].height == chunk.height;
   }
   if (!good) {
-    throw Stop("can't read " + this->Path + ": the rows from " + std::to_string(top) + " on are not what the file's header tells of");
+    throw Stop("can't read " + this->Path + ": the rows from " + std::to_string(top) + " on differ from the file's header");
   }
 }
 

@@ -186,7 +186,7 @@ void vtkStratusImageReader::FindFrame()
     ++count;
   }
   if (!std::isfinite(this->Origin[0]) || !std::isfinite(this->Origin[1]) || !std::isfinite(this->Origin[2])) {
-    file.Fail("the first sample lies at " + Tell(this->Origin) + ", must be finite");
+    file.Fail("the first sample is at " + Tell(this->Origin) + ", must be finite");
   }
   if (components > VTK_INT_MAX) {
     file.Fail("a sample has " + std::to_string(components) + " components, must have at most " + std::to_string(VTK_INT_MAX));
@@ -208,7 +208,7 @@ void vtkStratusImageReader::FindFrame()
   const double volume = vtkMath::Determinant3x3(axes[0], axes[1], axes[2]);
   if (!(std::fabs(volume) >= Flat)) {
     file.Fail(
-      "the axes " + Tell(axes[0]) + ", " + Tell(axes[1]) + ", " + Tell(axes[2]) + " lie in one plane, an image needs three directions");
+      "the axes " + Tell(axes[0]) + ", " + Tell(axes[1]) + ", " + Tell(axes[2]) + " are in one plane, an image needs three directions");
   }
   this->Description += volume < 0.0 ? ", a left-handed frame" : "";
   this->Description += steepest > Sheared ? ", a sheared frame" : "";

@@ -140,7 +140,7 @@ public:
   {
     const size_t bytes = static_cast<size_t>(values) * size, got = this->Inflate(to, bytes);
     if (got < bytes) {
-      this->In.Fail("inflates to fewer values than the header tells");
+      this->In.Fail("inflates to fewer values than the header requires");
     }
   }
   void Skip(int64_t values, size_t size) override
@@ -283,7 +283,7 @@ void vtkStratusImageValues::CheckLength(const std::string& path) const
                                                                     : (there - skip + 1) / 2 >= this->PerFile;
   if (error || !fits) {
     fail("has " + std::to_string(std::max<int64_t>(there - skip, 0)) + " bytes, which can't be the " + std::to_string(this->PerFile) +
-      " values of " + std::to_string(this->Size) + " bytes that the header tells of");
+      " values of " + std::to_string(this->Size) + " bytes that the header requires");
   }
 }
 

@@ -147,8 +147,7 @@ private:
             this->template VisitNode<nanovdb::NanoLower<Build>, nanovdb::NanoLeaf<Build>>(
               inner, place, wanted, tile, [&](const int64_t at[3], uint64_t last) {
                 const Leaf& one = this->Source.template At<Leaf>(&inner, last);
-                this->Source.template At<Leaf>(
-                  &one, 0, static_cast<uint64_t>(one.memUsage())); // some have as many bytes as their flags tell
+                this->Source.template At<Leaf>(&one, 0, static_cast<uint64_t>(one.memUsage())); // some leaves' size depends on their flags
                 leaf(at, one);
               });
           });
@@ -218,7 +217,7 @@ public:
       needed += one.fileSize;
       if (one.fileSize > length || needed > length) {
         throw vtkStratusReadError{ path + ": the file is cut short: it has " + std::to_string(length) + " bytes, the grid '" +
-          one.gridName + "' alone " + std::to_string(one.fileSize) };
+          one.gridName + "' needs " + std::to_string(one.fileSize) };
       }
       const auto* kind = FindKind(one.gridType);
       this->Entries.push_back({ this->Distinct(one.gridName),
@@ -238,7 +237,7 @@ public:
       const nanovdb::GridData head = bytes.At<nanovdb::GridData>(bytes.Begin(), 0);
       const auto* kind = FindKind(head.mGridType);
       if (head.mMagic != NANOVDB_MAGIC_NUMBER || !kind || head.mGridType != this->Grids[number].gridType) {
-        throw vtkStratusReadError{ this->Path + ": the grid '" + name + "' is damaged: its head tells another type than the file's" };
+        throw vtkStratusReadError{ this->Path + ": the grid '" + name + "' is damaged: its header has another type than the file's" };
       }
       result = kind->make(std::move(bytes));
       for (size_t i = 0; i < 9; ++i) {

@@ -49,10 +49,10 @@ bool vtkStratusNetCDFLayout::IsEnsemble(int dimension) const
 void vtkStratusNetCDFLayout::LeaveThree(std::vector<int>& space, const std::function<int(int)>& axis_of)
 {
   const int outermost = space[0];
-  const auto told = [&](int dimension) { return axis_of(dimension) >= 0; };
+  const auto named = [&](int dimension) { return axis_of(dimension) >= 0; };
   while (space.size() > 3) {
-    const auto untold = std::find_if_not(space.begin(), space.end(), told);
-    const auto drop = untold == space.end() ? space.begin() : untold;
+    const auto unnamed = std::find_if_not(space.begin(), space.end(), named);
+    const auto drop = unnamed == space.end() ? space.begin() : unnamed;
     if (*drop == outermost && this->Time < 0 && !this->File.CoordinateOf(outermost)) {
       this->Time = outermost;
     } else {
@@ -66,15 +66,15 @@ void vtkStratusNetCDFLayout::LeaveThree(std::vector<int>& space, const std::func
 void vtkStratusNetCDFLayout::Sort(const std::vector<int>& space, const std::function<int(int)>& axis_of)
 {
   this->Axes = { { space[2], space[1], space[0] } };
-  std::array<int, 3> told = { { -1, -1, -1 } };
+  std::array<int, 3> named = { { -1, -1, -1 } };
   for (int dimension : space) {
     const int axis = axis_of(dimension);
-    if (axis < 0 || told[static_cast<size_t>(axis)] >= 0) {
+    if (axis < 0 || named[static_cast<size_t>(axis)] >= 0) {
       return;
     }
-    told[static_cast<size_t>(axis)] = dimension;
+    named[static_cast<size_t>(axis)] = dimension;
   }
-  this->Axes = told;
+  this->Axes = named;
 }
 
 bool vtkStratusNetCDFLayout::IsOther(int dimension) const

@@ -112,7 +112,7 @@ Header::Header(const std::string& path)
   const std::string one = this->Second ? "n+2" : "n+1", pair = this->Second ? "ni2" : "ni1";
   if (magic != one + '\0' && magic != pair + '\0') {
     file.Fail(std::all_of(magic.begin(), magic.end(), [](char c) { return c == 0; })
-        ? "is a header of ANALYZE 7.5, which tells nothing of orientation and can't be read; NIfTI can"
+        ? "is a header of ANALYZE 7.5, which has no orientation and can't be read; NIfTI can"
         : "has " + vtkStratusShown(magic) + " where NIfTI has " + one + " or " + pair);
   }
   this->SetValues();

@@ -313,7 +313,7 @@ void Header::SetAxes()
   const auto spaces = count(vtkStratusImageAxis::SPACE);
   if (spaces < 1 || spaces > 3 || count(vtkStratusImageAxis::TIME) > 1) {
     this->File.Fail("of " + std::to_string(this->Dimension) + " axes " + std::to_string(spaces) + " are of space and " +
-      std::to_string(count(vtkStratusImageAxis::TIME)) + " of time, must be 1 to 3 and at most 1; 'kinds' or 'space directions' tell");
+      std::to_string(count(vtkStratusImageAxis::TIME)) + " of time, must be 1 to 3 and at most 1; set 'kinds' or 'space directions'");
   }
   this->CheckVectors(kinds);
   this->SetTime(axes);

@@ -130,8 +130,8 @@ private:
   void Describe(const openvdb::GridBase& grid, const std::string& name, vtkStratusSparseGrid& to) const
   {
     if (!grid.transform().isLinear()) {
-      throw vtkStratusReadError{ this->Path + ": the grid '" + name + "' lies in a " + grid.transform().mapType() +
-        ", whose voxels differ in size; those of a linear map are drawn" };
+      throw vtkStratusReadError{ this->Path + ": the grid '" + name + "' has a " + grid.transform().mapType() +
+        ", whose voxels differ in size; its map must be linear" };
     }
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     const openvdb::math::Mat4d map = grid.transform().baseMap()->getAffineMap()->getMat4(); // rows are the images of the axes

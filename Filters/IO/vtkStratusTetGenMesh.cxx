@@ -152,8 +152,7 @@ int vtkStratusTetGenReadPieces(
     if (second_order < 0) {
       const int columns = input.GetNumbersLeft() - 1 - (marked ? 1 : 0);
       if (corners == 2 && columns == 3) {
-        input.Fail(
-          "the third point may be the middle of the edge or a tetrahedron beside it: the .ele or .face file would tell, but is not there");
+        input.Fail("the third point may be the middle of the edge or a tetrahedron next to it; the .ele or .face file is needed to decide");
       }
       second_order = columns == corners + middles || columns == corners + middles + owners ? 1 : 0;
     }

@@ -29,7 +29,7 @@ vtkStratusUgridLayers::vtkStratusUgridLayers(const vtkStratusUgridMesh& mesh) : 
   this->FindSurfaces();
   if ((this->Kind == Flat || this->Kind == Sigma) && (!this->Surface || !this->Bed)) {
     this->File.Fail(std::string("there is no ") + (this->Surface ? "bottom" : "free surface") +
-      " to stand layers on: neither formula_terms nor standard_name nor the names of Delft3D FM, SCHISM or FVCOM tell it, and no dimension "
+      " to stand layers on: neither formula_terms nor standard_name nor the names of Delft3D FM, SCHISM or FVCOM name it, and no dimension "
       "of "
       "layers has a coordinate of a length, a pressure or a direction");
   }

@@ -102,7 +102,7 @@ bool vtkStratusVDBReader::ChooseBlocks()
   const vtkStratusSparseGrid& grid = *this->Grid;
   const double voxel = static_cast<double>(vtkDataArray::GetDataTypeSize(grid.Type)) * grid.Components;
   const double limit = 1048576.0 * static_cast<double>(this->MemoryLimit);
-  const std::string tell = ". The sparse grid takes " + TellBytes(static_cast<double>(grid.Bytes)) + "; the limit is " +
+  const std::string memory = ". The sparse grid takes " + TellBytes(static_cast<double>(grid.Bytes)) + "; the limit is " +
     std::to_string(this->MemoryLimit) + " MiB (MemoryLimit)";
   double image = voxel, blocks = 0.0;
   this->Blocks.clear();
@@ -111,8 +111,8 @@ bool vtkStratusVDBReader::ChooseBlocks()
   }
   if (this->Layout == IMAGE_LAYOUT || grid.Empty || (this->Layout == AUTO_LAYOUT && image <= limit)) {
     if (image > limit) {
-      this->Fail("the grid '" + this->GridName + "' would take " + TellBytes(image) + " as an image: its active voxels lie within " +
-        TellBox(grid) + tell);
+      this->Fail("the grid '" + this->GridName + "' would take " + TellBytes(image) + " as an image: its active voxels are within " +
+        TellBox(grid) + memory);
     }
     return false;
   }
@@ -122,7 +122,7 @@ bool vtkStratusVDBReader::ChooseBlocks()
   }
   if (blocks > limit) {
     this->Fail("the grid '" + this->GridName + "' would take " + TellBytes(blocks) + " as " + std::to_string(this->Blocks.size()) +
-      " blocks, and " + TellBytes(image) + " as an image" + tell);
+      " blocks, and " + TellBytes(image) + " as an image" + memory);
   }
   this->Description +=
     "; " + std::to_string(this->Blocks.size()) + " blocks of " + TellBytes(blocks) + " in place of an image of " + TellBytes(image);

@@ -224,7 +224,7 @@ std::string vtkStratusTetGenFindProgram(const std::string& asked)
       return folder + path;
     }
   }
-  Fail("the program stratus-tetgen is not at " + folder + STRATUS_TETGEN_PATH + "; SetProgram() tells where it is");
+  Fail("the program stratus-tetgen is not at " + folder + STRATUS_TETGEN_PATH + "; set its path by SetProgram()");
 }
 
 void vtkStratusTetGenRun(const std::string& program, double time_limit, vtkStratusTetGenSpool& request, vtkStratusTetGenSpool& answer,

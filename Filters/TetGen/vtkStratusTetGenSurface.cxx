@@ -244,7 +244,7 @@ std::vector<vtkIdType> LeaveOut(vtkIdType points, vtkIdTypeArray* mesh, vtkIdTyp
     for (vtkIdType index = 0; index < ids->GetNumberOfValues(); ++index) {
       const vtkIdType now = number[static_cast<size_t>(ids->GetValue(index))];
       if (now < 0) {
-        Fail("TetGen's answer is damaged: a face lies on no tetrahedron");
+        Fail("TetGen's answer is damaged: a face is on no tetrahedron");
       }
       ids->SetValue(index, now);
     }

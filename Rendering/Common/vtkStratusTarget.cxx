@@ -78,8 +78,8 @@ private:
 };
 } // namespace
 
-// A pass binds its frame buffer for drawing and reading. One that peels is bound for drawing alone, and reads the scene's opaque depth
-// where it was bound before.
+// A pass binds its frame buffer for drawing and reading. A pass that peels is bound only for drawing, and the buffer with the scene's
+// opaque depth stays bound for reading.
 void vtkStratusTarget::Find(vtkRenderer* renderer)
 {
   renderer->GetTiledSizeAndOrigin(&this->Viewport[2], &this->Viewport[3], &this->Viewport[0], &this->Viewport[1]);

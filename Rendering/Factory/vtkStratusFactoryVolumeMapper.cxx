@@ -38,7 +38,7 @@ std::string vtkStratusFactoryVolumeMapper::FindHindrance(vtkVolume* volume)
     return "light is scattered or casts shadows";
   }
   if (this->GetComputeNormalFromOpacity()) {
-    return "normals are those of opacity";
+    return "normals are computed from opacity";
   }
 #endif
   return "";

@@ -178,7 +178,7 @@ void vtkStratusVolumeMapper::Internals::WarnOfCrop(const stratus_ray_cast_option
       text << "nothing is shown: the cropping planes " << planes[0] << " and " << planes[1] << " miss the image, which extends from "
            << begin << " to " << end << " along its own "
            << "xyz"[a] << " axis. Cropping planes are along the image's own axes, before its "
-           << "direction matrix, and not along those of GetBounds()";
+           << "direction matrix, and not along the axes of GetBounds()";
       this->LeftOut.WarnOnce(this->Mapper, text.str());
       return;
     }

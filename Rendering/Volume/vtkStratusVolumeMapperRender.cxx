@@ -185,9 +185,9 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     return true;
   }
   const double start = Now();
-  const bool alone = this->Mapper->RenderToImage && !renderer->GetSelector();
+  const bool toImage = this->Mapper->RenderToImage && !renderer->GetSelector();
   const vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, prop, vtkStratusJointPicture::EndsNoRay);
-  const float* opaqueDepth = alone ? nullptr : this->Picture.ReadOpaqueDepth(renderer, others);
+  const float* opaqueDepth = toImage ? nullptr : this->Picture.ReadOpaqueDepth(renderer, others);
   const double read = Now();
   this->Rgba.resize(4 * static_cast<size_t>(this->Picture.Size[0]) * this->Picture.Size[1]);
   this->Bytes.resize(this->Rgba.size());
@@ -198,7 +198,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   }
   this->HasPicture = true;
   this->LearnTime(coarseness);
-  if (alone) {
+  if (toImage) {
     return true;
   }
   const double cast = Now();

@@ -240,7 +240,7 @@ void WhatIsRefused()
   refuses(cut, "cell 27 is a vtkLagrangeHexahedron (72) of 26 points, no cell of an order 1..64 has so many");
   const Grid wrong = Curved(0, VTK_BEZIER_HEXAHEDRON, 3, 2, 4);
   wrong->GetCellData()->GetHigherOrderDegrees()->SetComponent(5, 1, 7);
-  refuses(wrong, "and the degrees that the grid tells");
+  refuses(wrong, "and the grid's degrees");
   wrong->GetCellData()->GetHigherOrderDegrees()->SetNumberOfTuples(4);
   wrong->Modified();
   refuses(wrong, "have 4 and 0 tuples");

@@ -56,8 +56,8 @@ typedef struct stratus_tetra_arguments {
   float shear;       /* dw/dz: 1, parallel 0 */
   float begin, end;  /* the part that is seen, in z, of the ray through the window's middle */
   float lean[2];     /* parallel: by how much a ray's ends rise, in z, over u and over v; else 0 */
-  float square[6];   /* the squared length of a unit of c along a ray, over that of `forward`: [0] + u [1] + v [2] + u u [3] + u v [4] + v v
-                        [5] */
+  float square[6];   /* the squared length of a unit of c along a ray, over the square of the length of `forward`: [0] + u [1] + v [2] + u u
+                        [3] + u v [4] + v v   [5] */
   float per_z, per_frame; /* world lengths along `forward` of a unit of z, and of the middle's c */
   int columns;            /* of tiles */
   int cell_values;
