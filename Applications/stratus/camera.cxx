@@ -107,7 +107,7 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
   const double room = o.axes ? 1.3 : 1.02; // leaves space for the numbers next to the box
   const double bar = share_of_bar(o);
   const double scale = room * std::max(high, wide / (aspect * (1.0 - bar))) / o.zoom;
-  // The camera moves to the right, so that the box is in the middle of what the colour bar leaves.
+  // The camera moves to the right, so that the box is in the middle of the picture without the colour bar.
   const double moved = bar * scale * aspect * (o.parallel ? 1.0 : away),
                level = std::hypot(direction[(up + 1) % 3], direction[(up + 2) % 3]);
   const double right[2] = { -direction[(up + 2) % 3] / level, direction[(up + 1) % 3] / level };

@@ -51,7 +51,7 @@ void volume_parts::set(const options& o, context& core, const stratus_volume& vo
   cast.mask = static_cast<const uint8_t*>(bytes.values);
 }
 
-void tell_cast(const options& o, const context& core, const transfer& functions, const stratus_ray_cast_report& r)
+void print_cast(const options& o, const context& core, const transfer& functions, const stratus_ray_cast_report& r)
 {
   const double build = r.range_ms + r.table_ms + r.occupancy_ms + r.structure_ms + r.probe_ms + r.upload_ms;
   const double segments = static_cast<double>(r.samples) + static_cast<double>(r.skipped);

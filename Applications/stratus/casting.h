@@ -26,7 +26,7 @@ private:
 };
 
 // Prints the rows from "opacity" on.
-void tell_cast(const options& o, const context& core, const transfer& functions, const stratus_ray_cast_report& r);
+void print_cast(const options& o, const context& core, const transfer& functions, const stratus_ray_cast_report& r);
 // Throws failure for an audit that found pixels that differ.
 void judge_cast(const options& o, const stratus_ray_cast_report& r);
 } // namespace cli

@@ -23,12 +23,12 @@ public:
   virtual void look() = 0;
   // The range of the finite values that were taken; first > second: there are none.
   virtual std::pair<double, double> range() const = 0;
-  // What annotations need to know: camera, box, and the values' name.
+  // The annotations' input: camera, box, and the values' name.
   virtual scene_frame place() const = 0;
   virtual const transfer& functions() const = 0;
   virtual void draw(const stratus_image& image) = 0;
-  // Prints the rows of the last picture, those that come before and after "a pixel".
-  virtual void tell() const = 0;
+  // Prints the last picture's rows: those before and after "a pixel".
+  virtual void print_rows() const = 0;
   // Fails where the picture is not what it should be; it has been written.
   virtual void judge() const {}
 };

@@ -269,7 +269,7 @@ file_format choose_format(const std::string& path, const std::string& raw)
     return { raw_reader(path, raw), "" };
   }
   if (extension == ".raw") {
-    throw usage("'" + path + "' tells nothing of itself: give --raw NXxNYxNZ:TYPE[:big][:DX,DY,DZ][:+BYTES BEFORE]");
+    throw usage("'" + path + "' does not describe itself: give --raw NXxNYxNZ:TYPE[:big][:DX,DY,DZ][:+BYTES BEFORE]");
   }
   for (const auto& known : formats) {
     if (extension == known.extension) {

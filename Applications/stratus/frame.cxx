@@ -23,7 +23,7 @@ frame::frame(const options& o)
       "--show samples is a picture for people, of another format than OpenEXR; '" + o.output + "' has the samples themselves without it");
   }
   if (this->IsExr && (o.axes || o.color_bar || !o.caption.empty())) {
-    throw usage("an OpenEXR file has values alone: leave out --axes, --color-bar and --caption");
+    throw usage("an OpenEXR file has only values: leave out --axes, --color-bar and --caption");
   }
   const size_t pixels = static_cast<size_t>(o.width) * static_cast<size_t>(o.height);
   this->Rgba.resize(4 * pixels);

@@ -59,7 +59,7 @@ public:
   cli::scene_frame place() const override;
   const cli::transfer& functions() const override { return this->Transfer; }
   void draw(const stratus_image& image) override;
-  void tell() const override;
+  void print_rows() const override;
 
 private:
   const cli::options& Options;
@@ -127,7 +127,7 @@ void grid_drawing::draw(const stratus_image& image)
     stratus_tetra_caster_render(this->Caster, &this->Mesh.view(), &view, &this->Camera, &how, &image, &this->Report), "render");
 }
 
-void grid_drawing::tell() const
+void grid_drawing::print_rows() const
 {
   const stratus_tetra_report& r = this->Report;
   row("mesh",

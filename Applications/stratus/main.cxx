@@ -119,7 +119,7 @@ void info(const cli::options& o)
   }
   print_time(in);
   if (in.steps() > 1) {
-    row("", "told of: " + in.describe(step));
+    row("", "shown: " + in.describe(step));
   }
   for (const cli::variable_entry& one : variables) {
     row("variable",
@@ -177,7 +177,7 @@ void version()
 #ifdef STRATUS_VDB
   formats += ", OpenVDB or NanoVDB";
 #endif
-  row("built with", formats.empty() ? "VTK's own file formats alone" : formats.substr(2));
+  row("built with", formats.empty() ? "only VTK's own file formats" : formats.substr(2));
   const cli::context core("host", 0);
   row("host", stratus_context_device(core));
   const std::vector<std::string> names = device_names();
@@ -238,7 +238,7 @@ int main(int argc, char* argv[])
   try {
     return run(cli::parse(argc, argv)) ? 0 : 1;
   } catch (const cli::usage& error) {
-    std::fprintf(stderr, "stratus: %s\nstratus: --help tells how\n", error.what());
+    std::fprintf(stderr, "stratus: %s\nstratus: see --help\n", error.what());
     return 2;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "stratus: out of memory\n");

@@ -411,22 +411,22 @@ template <class Table> auto find_word(const Table& table, const std::string& wor
   return found == std::end(table) ? nullptr : found;
 }
 
-// Sets what a word says of the INPUT before it. Returns false for words that are about the whole picture.
+// Sets an option of the INPUT before it. Returns false for options of the whole picture.
 template <class Entry> bool set_companion(companion& last, const Entry* entry, const std::string& value)
 {
-  options alone;
+  options own;
   const std::string word = entry->word;
   if (word != "--array" && word != "--variable" && word != "--raw" && word != "--select" && word != "--opacity" && word != "--color" &&
     word != "--unit-distance") {
     return false;
   }
-  entry->set(alone, word, value);
-  last.array = alone.array.empty() ? last.array : alone.array;
-  last.raw = alone.raw.empty() ? last.raw : alone.raw;
-  last.select += (last.select.empty() || alone.select.empty() ? "" : ",") + alone.select;
-  last.opacity = alone.opacity.empty() ? last.opacity : alone.opacity;
-  last.color = alone.color.empty() ? last.color : alone.color;
-  last.unit_distance = alone.unit_distance > 0.0 ? alone.unit_distance : last.unit_distance;
+  entry->set(own, word, value);
+  last.array = own.array.empty() ? last.array : own.array;
+  last.raw = own.raw.empty() ? last.raw : own.raw;
+  last.select += (last.select.empty() || own.select.empty() ? "" : ",") + own.select;
+  last.opacity = own.opacity.empty() ? last.opacity : own.opacity;
+  last.color = own.color.empty() ? last.color : own.color;
+  last.unit_distance = own.unit_distance > 0.0 ? own.unit_distance : last.unit_distance;
   return true;
 }
 

@@ -67,7 +67,7 @@ long thread_number()
 
 // A crash of another thread than the one that reads is not the reader's: it ends the program as it would without this handler. A signal
 // that another process sends comes to any thread.
-void tell_crash(int number, siginfo_t* from, void*)
+void report_crash(int number, siginfo_t* from, void*)
 {
   if (from->si_code != SI_USER && thread_number() != reading_thread) {
     for (size_t i = 0; i < crash_count; ++i) {
@@ -200,7 +200,7 @@ void reading::catch_crashes()
   sigaltstack(&stack, &stack_before);
   for (size_t i = 0; i < crash_count; ++i) {
     struct sigaction action = {};
-    action.sa_sigaction = &tell_crash;
+    action.sa_sigaction = &report_crash;
     action.sa_flags = SA_ONSTACK | SA_SIGINFO;
     sigemptyset(&action.sa_mask);
     sigaction(crashes[i].number, &action, &before[i]);

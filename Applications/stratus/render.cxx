@@ -48,7 +48,7 @@ std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& co
   return data.grid ? cli::make_grid_drawing(o, core) : cli::make_volume_drawing(o, core);
 }
 
-// Tells which variable is drawn, on which grid. `in` is null for a scene.
+// Prints which variable is drawn, on which grid. `in` is null for a scene.
 void print_reading(const cli::series* in)
 {
   if (in && !in->choice().empty()) {
@@ -77,7 +77,7 @@ void render_one(const cli::options& o, const cli::routed& data, const cli::serie
   if (!time.empty()) {
     row("time", time);
   }
-  drawing->tell();
+  drawing->print_rows();
   if (image.samples) {
     row("a pixel", frame.describe_samples());
   }
@@ -185,7 +185,7 @@ void render_film(const cli::options& o, cli::series& in)
       }
     }
   }
-  drawing->tell();
+  drawing->print_rows();
   row("frames", cli::grouped(in.steps()) + ", " + o.frames);
   struct rusage used;
   if (getrusage(RUSAGE_SELF, &used) == 0) {

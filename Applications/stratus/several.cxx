@@ -38,7 +38,7 @@ public:
   several_drawing(const cli::options& o, cli::context& core) : Options(o), Core(core)
   {
     if (o.tetra_method != STRATUS_TETRA_METHOD_AUTO) {
-      throw cli::usage("--method is for one grid alone: among several INPUTs a grid of cells is marched");
+      throw cli::usage("--method needs a single grid: among several INPUTs a grid of cells is marched");
     }
   }
   ~several_drawing() override
@@ -57,7 +57,7 @@ public:
   cli::scene_frame place() const override;
   const cli::transfer& functions() const override { return this->Members[0].functions; }
   void draw(const stratus_image& image) override;
-  void tell() const override;
+  void print_rows() const override;
   void judge() const override;
 
 private:
@@ -89,13 +89,13 @@ void several_drawing::take(const cli::routed& data)
   }
 }
 
-// Takes a scene, an image or a rectilinear grid, or else cells. The first one says which axis is up.
+// Adds a scene, an image or a rectilinear grid, or else cells. The first one determines which axis is up.
 void several_drawing::take_member(const cli::options& o, const cli::routed& data)
 {
   if (!data.blocks.empty() || data.refined) {
-    throw cli::usage(data.refined ? "'" + o.source + "' is AMR, which is drawn alone: leave out the other INPUTs"
+    throw cli::usage(data.refined ? "'" + o.source + "' is AMR, which is drawn without others: leave out the other INPUTs"
                                   : "'" + o.source + "' is a volume of " + std::to_string(1 + data.blocks.size()) +
-          " blocks, which is drawn alone: leave out the other INPUTs");
+          " blocks, which is drawn without others: leave out the other INPUTs");
   }
   this->Members.emplace_back();
   member& one = this->Members.back();
@@ -207,7 +207,7 @@ void several_drawing::draw(const stratus_image& image)
 }
 
 // Rows about the whole run are printed from the first volume's report, since meshes have no structure and no sampling.
-void several_drawing::tell() const
+void several_drawing::print_rows() const
 {
   const auto is_volume = [](const member& one) { return !one.mesh; };
   const auto volume = std::find_if(this->Members.begin(), this->Members.end(), is_volume);
@@ -226,7 +226,7 @@ void several_drawing::tell() const
   }
   row("camera", cli::describe(this->Camera));
   if (volume != this->Members.end()) {
-    cli::tell_cast(this->Options, this->Core, volume->functions, volume->report);
+    cli::print_cast(this->Options, this->Core, volume->functions, volume->report);
     return;
   }
   const stratus_ray_cast_report& r = this->Members[0].report;

@@ -38,7 +38,7 @@ public:
   cli::scene_frame place() const override;
   const cli::transfer& functions() const override { return this->Transfer; }
   void draw(const stratus_image& image) override;
-  void tell() const override;
+  void print_rows() const override;
   void judge() const override;
 
 private:
@@ -176,13 +176,13 @@ void volume_drawing::draw_blocks(const stratus_ray_cast_options& cast, const str
   }
 }
 
-void volume_drawing::tell() const
+void volume_drawing::print_rows() const
 {
   row("volume",
     (this->Blocks.empty() ? "" : std::to_string(1 + this->Blocks.size()) + " blocks, the first of ") + cli::describe(this->Input->volume) +
       ", array '" + this->Input->array_name + "'");
   row("camera", cli::describe(this->Camera));
-  cli::tell_cast(this->Options, this->Core, this->Transfer, this->Report);
+  cli::print_cast(this->Options, this->Core, this->Transfer, this->Report);
 }
 
 void volume_drawing::judge() const

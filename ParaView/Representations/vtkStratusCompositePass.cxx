@@ -101,14 +101,14 @@ vtkStratusCompositePass::vtkStratusCompositePass()
 
 vtkStratusCompositePass::~vtkStratusCompositePass() = default;
 
-void vtkStratusCompositePass::Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree, const Tell& tell)
+void vtkStratusCompositePass::Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree, const Report& report)
 {
   vtkSmartPointer<vtkStratusCompositePass>& pass = Passes[renderer];
   if (!pass) {
     pass = vtkSmartPointer<vtkStratusCompositePass>::New();
     pass->SetRenderer(renderer);
   }
-  pass->Users.push_back({ user, agree, tell });
+  pass->Users.push_back({ user, agree, report });
 }
 
 void vtkStratusCompositePass::Leave(vtkRenderer* renderer, vtkPVDataRepresentation* user)
@@ -279,7 +279,7 @@ void vtkStratusCompositePass::Render(const vtkRenderState* state)
     this->Delegate->Render(state);
     this->NumberOfRenderedProps = this->Delegate->GetNumberOfRenderedProps();
     if (ranks) {
-      this->TellProblem(room ? "" : "there is not enough memory to blend in 16 bits; ranks blend in 8");
+      this->ReportProblem(room ? "" : "there is not enough memory to blend in 16 bits; ranks blend in 8");
     }
     return;
   }
@@ -288,7 +288,7 @@ void vtkStratusCompositePass::Render(const vtkRenderState* state)
   frame->AddColorAttachment(0, this->Deep);
   this->DrawScene(state, window);
   if (this->HasRanks()) {
-    this->TellProblem(this->BlendRanks(window, bytes) ? "" : "there is not enough memory to blend; the last picture stays");
+    this->ReportProblem(this->BlendRanks(window, bytes) ? "" : "there is not enough memory to blend; the last picture stays");
     for (const auto& user : this->Users) {
       if (user.Shown->GetVisibility()) {
         user.AfterPicture(this->IceT->GetController());
@@ -352,9 +352,9 @@ bool vtkStratusCompositePass::MakeRoom()
 }
 
 // Lets rank 0 report shortages of any rank. Every rank must call it. problem: of this rank, or "".
-void vtkStratusCompositePass::TellProblem(const std::string& problem)
+void vtkStratusCompositePass::ReportProblem(const std::string& problem)
 {
-  const std::string words = stratus::join_words(this->IceT->GetController(), problem, this->Told);
+  const std::string words = stratus::join_words(this->IceT->GetController(), problem, this->Reported);
   if (!words.empty()) {
     vtkErrorMacro(<< words);
   }

@@ -45,11 +45,11 @@ public:
   vtkTypeMacro(vtkStratusCompositePass, vtkRenderPass);
 
   // Adds a representation that is drawn in the renderer, until it leaves. The pass works if one of them is visible. agree: called on all of
-  // several ranks before each frame, with the box of each rank's part, unless the representation is hidden. tell: called in the same way
+  // several ranks before each frame, with the box of each rank's part, unless the representation is hidden. report: called in the same way
   // after the frame.
   using Agree = std::function<void(vtkMultiProcessController*, const std::vector<vtkBoundingBox>&)>;
-  using Tell = std::function<void(vtkMultiProcessController*)>;
-  static void Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree, const Tell& tell);
+  using Report = std::function<void(vtkMultiProcessController*)>;
+  static void Enter(vtkRenderer* renderer, vtkPVDataRepresentation* user, const Agree& agree, const Report& report);
   static void Leave(vtkRenderer* renderer, vtkPVDataRepresentation* user);
 
   void Render(const vtkRenderState* state) override;
@@ -72,7 +72,7 @@ private:
   void DrawScene(const vtkRenderState* state, vtkOpenGLRenderWindow* window);
   void ShareSurfaces(vtkOpenGLRenderWindow* window);
   bool MakeRoom();
-  void TellProblem(const std::string& problem);
+  void ReportProblem(const std::string& problem);
   void Read(vtkOpenGLRenderWindow* window, std::vector<unsigned short>& picture);
   void Round(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes);
   bool BlendRanks(vtkOpenGLRenderWindow* window, vtkTextureObject* bytes);
@@ -84,7 +84,7 @@ private:
   struct User {
     vtkPVDataRepresentation* Shown;
     Agree BeforePicture;
-    Tell AfterPicture;
+    Report AfterPicture;
   };
   std::vector<User> Users;                    // in the order in which they entered, the same on all ranks
   bool Active = false;                        // in this frame
@@ -99,5 +99,5 @@ private:
   std::vector<std::vector<unsigned short>> Layers; // of this frame: translucent parts, and opaque surfaces
   std::vector<unsigned char> Bytes;
   std::vector<float> Depths, Least;
-  std::string Told; // the last message about memory that this rank lacked
+  std::string Reported; // the last message about memory that this rank lacked
 };

@@ -29,28 +29,28 @@ vtkDataSetAttributes* attributes_of(vtkDataSet* grid, bool cells)
 
 std::vector<double> describe(vtkDataSet* piece, const std::vector<std::string>& names, bool cells)
 {
-  std::vector<double> told(FIXED + 2 * names.size(), 0.0);
+  std::vector<double> described(FIXED + 2 * names.size(), 0.0);
   auto* image = vtkImageData::SafeDownCast(piece);
   auto* rectilinear = vtkRectilinearGrid::SafeDownCast(piece);
   if ((!image && !rectilinear) || piece->GetNumberOfPoints() == 0) {
-    return told;
+    return described;
   }
-  told[0] = image ? IMAGE : RECTILINEAR;
-  std::copy_n(image ? image->GetExtent() : rectilinear->GetExtent(), 6, told.begin() + 1);
+  described[0] = image ? IMAGE : RECTILINEAR;
+  std::copy_n(image ? image->GetExtent() : rectilinear->GetExtent(), 6, described.begin() + 1);
   if (image) {
-    std::copy_n(image->GetOrigin(), 3, told.begin() + 7);
-    std::copy_n(image->GetSpacing(), 3, told.begin() + 10);
-    std::copy_n(image->GetDirectionMatrix()->GetData(), 9, told.begin() + 13);
+    std::copy_n(image->GetOrigin(), 3, described.begin() + 7);
+    std::copy_n(image->GetSpacing(), 3, described.begin() + 10);
+    std::copy_n(image->GetDirectionMatrix()->GetData(), 9, described.begin() + 13);
   }
   const vtkIdType wanted = cells ? piece->GetNumberOfCells() : piece->GetNumberOfPoints();
   for (size_t i = 0; i < names.size(); ++i) {
     vtkDataArray* array = attributes_of(piece, cells)->GetArray(names[i].c_str());
     if (array && array->GetNumberOfTuples() == wanted && array->HasStandardMemoryLayout()) {
-      told[FIXED + 2 * i] = array->GetDataType();
-      told[FIXED + 2 * i + 1] = array->GetNumberOfComponents();
+      described[FIXED + 2 * i] = array->GetDataType();
+      described[FIXED + 2 * i + 1] = array->GetNumberOfComponents();
     }
   }
-  return told;
+  return described;
 }
 
 // The extent of a piece's values, of points or of cells. A flat grid has a layer of cells.
@@ -91,12 +91,12 @@ void place(const Box& part, const unsigned char* values, const Box& whole, size_
 class Gathering
 {
 public:
-  Gathering(vtkMultiProcessController* controller, const std::vector<double>& told, size_t length)
-      : Controller(controller), Told(told), Length(length), Ranks(told.size() / length)
+  Gathering(vtkMultiProcessController* controller, const std::vector<double>& described, size_t length)
+      : Controller(controller), Described(described), Length(length), Ranks(described.size() / length)
   {
   }
 
-  const double* of(size_t rank) const { return this->Told.data() + rank * this->Length; }
+  const double* of(size_t rank) const { return this->Described.data() + rank * this->Length; }
 
   // Whether all pieces are of one grid with the same arrays. Finds the first rank that has any, and the extent of the whole.
   bool Fit()
@@ -167,7 +167,7 @@ public:
   }
 
   vtkMultiProcessController* Controller;
-  const std::vector<double>& Told;
+  const std::vector<double>& Described;
   size_t Length, Ranks, First = 0;
   double Extent[6] = { 0., 0., 0., 0., 0., 0. };
 };
@@ -233,9 +233,9 @@ vtkSmartPointer<vtkDataSet> stratus::gather_whole(vtkMultiProcessController* con
   const std::vector<std::string>& names, bool cells, vtkIdType most, bool& gathered)
 {
   const std::vector<double> mine = describe(piece, names, cells);
-  std::vector<double> told(mine.size() * static_cast<size_t>(controller->GetNumberOfProcesses()));
-  controller->AllGather(mine.data(), told.data(), static_cast<vtkIdType>(mine.size()));
-  Gathering pieces(controller, told, mine.size());
+  std::vector<double> described(mine.size() * static_cast<size_t>(controller->GetNumberOfProcesses()));
+  controller->AllGather(mine.data(), described.data(), static_cast<vtkIdType>(mine.size()));
+  Gathering pieces(controller, described, mine.size());
   gathered = pieces.Fit();
   if (!gathered) {
     return nullptr;

@@ -138,7 +138,7 @@ std::string stratus::choose_words(
     return problem.empty() ? refusal : problem;
   }
   return projects && controller->GetLocalProcessId() == 0
-    ? "each rank shows the maximum, minimum, average or sum of its own part of a ray, laid over the others, not that of the whole ray"
+    ? "each rank shows the maximum, minimum, average or sum of its own part of a ray, laid over the others, not of the whole ray"
     : "";
 }
 

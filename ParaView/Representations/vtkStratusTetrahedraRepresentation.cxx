@@ -205,12 +205,12 @@ void vtkStratusTetrahedraRepresentation::Deal(vtkMultiProcessController* ranks, 
 }
 
 // Lets rank 0 report which ranks left something out. Every rank must call it.
-void vtkStratusTetrahedraRepresentation::Tell(vtkMultiProcessController* ranks)
+void vtkStratusTetrahedraRepresentation::ReportProblem(vtkMultiProcessController* ranks)
 {
   const bool drawn = this->Actor->GetVisibility() && this->Actor->GetMapper() == this->Mapper;
   const std::string failed = drawn ? this->Mapper->GetLastError() : "";
   const std::string mine = stratus::choose_words(ranks, failed, this->Problem, this->Refusal, this->Mapper->GetBlendMode());
-  const std::string words = stratus::join_words(ranks, mine, this->Told);
+  const std::string words = stratus::join_words(ranks, mine, this->Reported);
   if (!words.empty()) {
     vtkErrorMacro(<< words);
   }
@@ -288,7 +288,7 @@ bool vtkStratusTetrahedraRepresentation::AddToView(vtkView* view)
       this->Deal(ranks, boxes);
       this->ClipTo(boxes, ranks->GetLocalProcessId());
     },
-    [this](vtkMultiProcessController* ranks) { this->Tell(ranks); });
+    [this](vtkMultiProcessController* ranks) { this->ReportProblem(ranks); });
   return this->Superclass::AddToView(view);
 }
 

@@ -118,7 +118,7 @@ private:
   void UpdateMapper(vtkDataObject* data);
   void Show(vtkDataObject* data, const std::string& name, bool on_cells);
   void Deal(vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>& boxes);
-  void Tell(vtkMultiProcessController* ranks);
+  void ReportProblem(vtkMultiProcessController* ranks);
   void ClipTo(const std::vector<vtkBoundingBox>& boxes, int rank);
 
   std::unique_ptr<stratus::SolidColor> Solid;
@@ -134,9 +134,9 @@ private:
   std::vector<double> DealtFor;
   vtkSmartPointer<vtkDataObject> DealtOf;
   std::string DealtName;
-  bool Lost = false;         // whether earlier data are shown, because the current data lack the array
-  std::string Refusal;       // of a device that is not there
-  std::string Problem, Told; // why this rank left something out, and its last message about it
+  bool Lost = false;             // whether earlier data are shown, because the current data lack the array
+  std::string Refusal;           // of a device that is not there
+  std::string Problem, Reported; // why this rank left something out, and its last message about it
 };
 
 #endif

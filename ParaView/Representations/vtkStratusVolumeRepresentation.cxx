@@ -170,13 +170,13 @@ void vtkStratusVolumeRepresentation::ShareBounds()
 }
 
 // Lets rank 0 report which ranks drew nothing, and which parts are not adjacent. Every rank must call it.
-void vtkStratusVolumeRepresentation::Tell(vtkMultiProcessController* ranks)
+void vtkStratusVolumeRepresentation::ReportProblem(vtkMultiProcessController* ranks)
 {
   const std::string failed = this->Actor->GetVisibility() ? this->GetMapper()->GetLastError() : "";
   const bool hits = this->GetSettings()->GetRenderMode() == vtkStratusVolumeMapper::FIRST_HIT_MODE;
   const std::string mine =
     stratus::choose_words(ranks, failed, this->Problem, this->Refusal, hits ? 0 : this->VolumeMapper->GetBlendMode());
-  const std::string words = stratus::join_words(ranks, mine, this->Told);
+  const std::string words = stratus::join_words(ranks, mine, this->Reported);
   if (!words.empty()) {
     vtkErrorMacro(<< words);
   }
@@ -214,7 +214,7 @@ void vtkStratusVolumeRepresentation::EndAtBorders(bool end)
   this->VolumeMapper->SetClippingPlanes(planes->GetNumberOfItems() > 0 ? planes.Get() : nullptr);
 }
 
-// When what follows from the data and from how they are shown was changed last, but for what ranks agree on.
+// Returns the time of the last change of the data and settings that the sampling follows from, except those that ranks agree on.
 vtkMTimeType vtkStratusVolumeRepresentation::GetSamplingTime()
 {
   return std::max(
@@ -243,19 +243,19 @@ void vtkStratusVolumeRepresentation::GatherWhole(vtkMultiProcessController* rank
   }
 }
 
-// Asks rank 0 what a picture of the whole would take. Every rank must call it. Returns false where it has no whole, or draws none.
+// Measures on rank 0 how a picture of the whole is sampled. Every rank must call it. Returns false if rank 0 has no whole, or draws none.
 bool vtkStratusVolumeRepresentation::MeasureWhole(vtkRenderer* renderer, vtkMultiProcessController* ranks)
 {
-  double told[4] = { 0.0, 0.0, 0.0, 0.0 };
+  double measured[4] = { 0.0, 0.0, 0.0, 0.0 };
   this->GatherWhole(ranks);
   if (this->Gathered && this->Whole) {
-    told[3] = this->GetMapper()->MeasureSampling(renderer, this->Actor, told, this->Whole);
+    measured[3] = this->GetMapper()->MeasureSampling(renderer, this->Actor, measured, this->Whole);
   }
   if (this->Gathered) {
-    ranks->Broadcast(told, 4, 0);
-    std::copy_n(told, 3, this->Agreed);
+    ranks->Broadcast(measured, 4, 0);
+    std::copy_n(measured, 3, this->Agreed);
   }
-  return this->Gathered && told[3] != 0.0;
+  return this->Gathered && measured[3] != 0.0;
 }
 
 // Lets a function of two variables go over the ranges of all ranks' data. Gradients are in mean spacings, which on a rectilinear grid are
@@ -393,7 +393,7 @@ bool vtkStratusVolumeRepresentation::AddToView(vtkView* view)
     vtkStratusCompositePass::Enter(
       renderer, this,
       [this, renderer](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>&) { this->AgreeOnSampling(renderer, ranks); },
-      [this](vtkMultiProcessController* ranks) { this->Tell(ranks); });
+      [this](vtkMultiProcessController* ranks) { this->ReportProblem(ranks); });
   }
   return this->Superclass::AddToView(view);
 }

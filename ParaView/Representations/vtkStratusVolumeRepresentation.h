@@ -120,7 +120,7 @@ private:
   void ApplySampling();
   void ShareBounds();
   vtkMTimeType GetSamplingTime();
-  void Tell(vtkMultiProcessController* ranks);
+  void ReportProblem(vtkMultiProcessController* ranks);
   void EndAtBorders(bool end);
   void GatherWhole(vtkMultiProcessController* ranks);
   bool MeasureWhole(vtkRenderer* renderer, vtkMultiProcessController* ranks);
@@ -139,7 +139,7 @@ private:
   double Agreed[3] = { 0., 0., 0. }; // sampling, sample distance, cell error
   bool Lost = false;                 // whether earlier data are shown, because the current data lack the array
   std::string Refusal;               // of a device that is not there
-  std::string Problem, Told;         // the fault in this rank's part, and the last message about it
+  std::string Problem, Reported;     // the fault in this rank's part, and the last message about it
   bool EndsAtBorders = false;
   vtkMTimeType EndedFor = 0;         // of the data
   vtkSmartPointer<vtkDataSet> Whole; // of all ranks' pieces, on rank 0

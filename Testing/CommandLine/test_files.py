@@ -403,7 +403,7 @@ def test_raw():
     picture("values.raw", "--raw", "5x4x6:int32:1,2,.5")
     if "spacing 1 x 2 x 0.5" not in expect(0, "volume", "info", "values.raw", "--raw", "5x4x6:int32:1,2,.5"):
         fail("the spacing of --raw is lost")
-    expect(2, "tells nothing of itself", "render", "values.raw", "-o", "no.png")
+    expect(2, "does not describe itself", "render", "values.raw", "-o", "no.png")
     expect(1, "needs 240 bytes, the file has 480$", "render", "values.raw", "-o", "no.png", "--raw", "5x4x6:int16")
     for bad in ("5x4:int16", "5x4x6", "5x4x6:int17", "5x4x0:int16", "5x4x6.5:int16", "ax4x6:int8", "5x4x6:int16:0,1,1", "5x4x6:int16:+x",
                 "5x4x6:int16:middle"):
@@ -471,7 +471,7 @@ def test_vdb():
            "render", "cloud.vdb", "-o", "no.png", "--variable", "qc")
     expect(0, r"2 blocks of 8000 bytes .* in place of an image of 256\d{9} bytes", "info", "wide.vdb")
     expect(0, "volume +2 blocks, the first of 10 x 10 x 10 float32", "render", "wide.vdb", "-o", "wide.png")
-    expect(2, "'wide.vdb' is a volume of 2 blocks, which is drawn alone", "render", "cloud.vdb", "wide.vdb", "-o", "no.png")
+    expect(2, "'wide.vdb' is a volume of 2 blocks, which is drawn without others", "render", "cloud.vdb", "wide.vdb", "-o", "no.png")
     with open("cloud.vdb", "rb") as file:
         text = file.read()
     with open("cut.vdb", "wb") as file:
@@ -541,11 +541,11 @@ def test_raw():
     twice = picture("image.vti", "image.vti")
     if picture("values.raw", *look, "values.raw", *look) != twice or twice == same:
         fail("two inputs of bare values are another picture than two images")
-    expect(2, "mask.raw' tells nothing of itself", "render", "image.vti", "-o", "no.png", "--mask", "mask.raw")
+    expect(2, "mask.raw' does not describe itself", "render", "image.vti", "-o", "no.png", "--mask", "mask.raw")
     expect(2, "of which file", "render", "image.vti", "-o", "no.png", "--mask-raw", "5x4x6:uint8")
     expect(1, "needs 240 bytes, the file has 120", "render", "image.vti", "-o", "no.png", "--mask", "mask.raw", "--mask-raw",
            "5x4x6:int16")
-    expect(2, "values.raw' tells nothing of itself", "tree", "values.raw")
+    expect(2, "values.raw' does not describe itself", "tree", "values.raw")
 
 
 def openfoam(cells=(2, 2, 2)):
@@ -657,7 +657,7 @@ def test_refined():
     expect(0, r"kind +AMR: 6 boxes in 3 levels", "info", "refined.vthb")
     expect(0, "picture", "render", "refined.vthb", "-o", "out.png", *look, "--nearest")
     expect(2, "which is drawn without --shade", "render", "refined.vthb", "-o", "no.png", "--shade")
-    expect(2, "is AMR, which is drawn alone", "render", "refined.vthb", "fine.vti", "-o", "no.png")
+    expect(2, "is AMR, which is drawn without others", "render", "refined.vthb", "fine.vti", "-o", "no.png")
     write(vtkXMLUniformGridAMRWriter, Refined(uneven(), cells=False).data(vtkCommonDataModel), "points.vthb")
     expect(1, "nearest interpolation of AMR's values of points", "render", "points.vthb", "-o", "no.png", "--nearest")
 
