@@ -3,8 +3,8 @@
 """declare.py OUT.py HEADER...: writes the public C headers' enums, structs and prototypes as declarations of ctypes.
 
 The headers are the only source, so that the package's structs cannot drift from the library's. A statement that this program does not
-understand is an error: nothing is left out in silence. Headers follow each other as stratus.h includes them, what is used after what is
-declared.
+understand is an error: nothing is left out in silence. Headers follow each other as stratus.h includes them: declarations
+come before their uses.
 """
 import re
 import sys
@@ -90,7 +90,7 @@ class Headers:
         return result
 
     def kind(self, text):
-        """The type of ctypes. An address of numbers, or of what the core alone looks into, is a plain address (c_void_p)."""
+        """Returns the type of ctypes. An address of numbers, or of a struct that only the core reads, is a plain address (c_void_p)."""
         text = re.sub(r"\b(const|struct)\b", "", text).strip()
         stars = text.count("*")
         name = text.replace("*", "").strip()

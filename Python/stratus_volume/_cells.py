@@ -56,7 +56,7 @@ class Partition(typing.NamedTuple):
 
 
 def _array(place, kind, *shape):
-    """A copy of what lies at an address."""
+    """Returns a copy of the memory at an address as an array."""
     count = int(numpy.prod(shape)) * numpy.dtype(kind).itemsize
     return numpy.frombuffer(ctypes.string_at(place, count) if count else b"", kind).reshape(shape).copy()
 
@@ -108,9 +108,9 @@ def partition(points, tetrahedra, depth=3, rule="median", planes=64, growth=nump
 
 
 class VisibilityOrder:
-    """The order in which a mesh's cells hide one another, of view after view. What is built of the mesh is kept.
+    """The order in which a mesh's cells hide one another, for one view after another. Structures of the mesh are built once.
 
-    points, tetrahedra  see Tetrahedra. Or a Partition alone, whose leaves are sorted in parallel
+    points, tetrahedra  see Tetrahedra. Or only a Partition, whose leaves are sorted in parallel
     device, threads     see Volume
     """
 

@@ -49,7 +49,7 @@ def _open(path):
 def _load():
     found = sorted(glob.glob(os.path.join(_FOLDER, "libstratus-core.*")))
     if not found:
-        raise ImportError(f"stratus_volume has no libstratus-core beside it in {_FOLDER}: it was not built or not installed as a whole")
+        raise ImportError(f"stratus_volume has no libstratus-core next to it in {_FOLDER}: it was not built or not installed as a whole")
     try:
         opened, note = _open(found[0])
     except OSError as error:
@@ -92,8 +92,8 @@ class Context:
                 raise ValueError(f"device is {device!r} and threads is {threads!r}, they must be 'host' and 1 in a process that was forked off one that "
                                  "had drawn; multiprocessing's method spawn starts processes without this limit")
             options.device, options.threads = b"host", 1
-        tell = weakref.WeakMethod(self._tell)
-        self._callback = c.stratus_progress_function(lambda user, stage, fraction: tell()(stage, fraction))  # lives as long as the context
+        report = weakref.WeakMethod(self._report)
+        self._callback = c.stratus_progress_function(lambda user, stage, fraction: report()(stage, fraction))  # lives as long as the context
         options.progress = self._callback
         pointer, message = ctypes.c_void_p(), ctypes.create_string_buffer(1024)
         status = library.stratus_context_create(ctypes.byref(options), ctypes.byref(pointer), message, len(message))
@@ -102,7 +102,7 @@ class Context:
             raise _ERRORS[status](f"{reason} ({without_opencl})" if without_opencl and status == c.STRATUS_NO_DEVICE else reason)
         self._pointer, Context.made = pointer, True
 
-    def _tell(self, stage, fraction):
+    def _report(self, stage, fraction):
         try:
             # Python handles signals here, so that Ctrl+C ends a long call.
             return int(bool(self._progress and self._progress(stage.decode(), fraction)))
@@ -144,7 +144,7 @@ class Context:
 
     @property
     def device(self):
-        """The name of what draws, such as "host (AVX2, 8 threads)"."""
+        """The name of the host or device that draws, such as "host (AVX2, 8 threads)"."""
         return library.stratus_context_device(self._pointer).decode(errors="replace")
 
     def __repr__(self):
@@ -159,7 +159,7 @@ class Progress:
 
     @classmethod
     def of(cls, progress):
-        """Returns a function for what a caller gave: None, a function, or a bar."""
+        """Returns a function for the argument `progress`: None, a function, or a bar."""
         if progress is None or callable(progress) and not hasattr(progress, "update"):
             return progress
         if not hasattr(progress, "update"):

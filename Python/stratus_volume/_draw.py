@@ -28,44 +28,45 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
     """Draws a volume and returns a Rendering: rgba, depth, counters.
 
     data           a NumPy array, an xarray.DataArray, a vtkImageData or vtkRectilinearGrid, a vtkUnstructuredGrid or vtkStructuredGrid,
-                   pyvista's too; or a Volume or Tetrahedra, which are drawn again without building anew. `Volume` and `Tetrahedra` tell
-                   what is taken, also for spacing, origin, axes, scalars, component, device, threads and matrix
+                   pyvista's too; or a Volume or Tetrahedra, which are drawn again without building anew. See `Volume` and `Tetrahedra`
+                   for the accepted data, and for spacing, origin, axes, scalars, component, device, threads and matrix
     opacity        pairs of a value and its opacity in 0..1 per unit_distance. Two pairs at one value are a step. A number is the top of a
-                   ramp away from the most frequent value, or the opacity of the whole volume where all values are equal; default 0.3, in mode
-                   slice 1 for all values. Of several components one such for all, or a list with one for each
+                   ramp away from the most frequent value, or the opacity of the whole volume if all values are equal; default 0.3, in mode
+                   slice 1 for all values. For several components one of these for all, or a list with one for each
     color          (r, g, b) in 0..1 for all values, or several (value, r, g, b), two at one value being a step; or a colour map over the range of
-                   the values: a function of 0..1, or the name of one or of a colour of matplotlib's, where that is installed. Of several
-                   components one such for all, or a list with one for each
+                   the values: a function of 0..1, or the name of one or of a colour of matplotlib's, if that is installed. For several
+                   components one of these for all, or a list with one for each
     size           width and height in pixels, 1..16384
     camera         dict of azimuth, elevation (degrees) and zoom; or dict of position, focal_point, view_up (x, y, z), view_angle (degrees) and,
                    for parallel rays, parallel_scale (half the window's height); or (position, focal point, view up); or a vtkCamera
     unit_distance  world length to which opacities refer; default: a fiftieth of the volume's diagonal
     mode           composite, first-hit, maximum, minimum, average, additive, isosurface or slice
     interpolation  linear or nearest
-    structure      by which rays skip empty space: auto, none, block, distance, octant or hybrid
+    structure      the structure by which rays skip empty space: auto, none, block, distance, octant or hybrid
     sampling       auto, midpoint, preintegrated or cells
-    sample_distance  world length; 0: by the tolerance
+    sample_distance  world length; default 0: as the tolerance needs
     tolerance      root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause; default 0.001, 0: the finest
     shade          False, True, or a dict of ambient, diffuse, specular, specular_power: light from the eye. Or a list with one for each component
     gradient_opacity  pairs of the gradient's magnitude, in values per mean spacing, and a factor in 0..1 of the optical depth; or a list with
-                   one such for each component
-    contours       1 to 16 values, of mode isosurface
-    surface        of mode slice, which shows the values on it: dict of center and normal (a plane), center and radius (a sphere), center, axis
+                   one of these for each component
+    contours       for mode isosurface: 1 to 16 values
+    surface        for mode slice, which shows the values on it: dict of center and normal (a plane), center and radius (a sphere), center, axis
                    and radius (a cylinder), center, axis and angle (a cone, half its angle in degrees), or center, square, linear and constant
                    (with d = x - center: square[0] dx dx + [1] dy dy + [2] dz dz + [3] dx dy + [4] dy dz + [5] dx dz + linear . d + constant = 0).
                    `slab` makes thick slices, in any mode
-    dependent      of 2 or 4 components; False: each is a medium of its own, whose optical depths and light add up. True: all are one medium. Of 2
+    dependent      for 2 or 4 components; False: each is a separate medium, and their optical depths and light add up. True: all are one medium. Of 2
                    the first has the colour and the second the opacity; 4 are red, green and blue in 0..255, uint8, and the opacity
-    weights        of independent components: a factor in 0..1 of the optical depth of each; default 1
-    mean_components  of independent components: whether each counts by its share of the optical depth, as VTK's mappers mix them
+    weights        for independent components: a factor in 0..1 of the optical depth of each; default 1
+    mean_components  for independent components: whether each counts by its share of the optical depth, as VTK's mappers mix them
     labels, looks  whole numbers in 0..255 in the values' shape, and a dict of labels, 1..255, and dicts of opacity, color and gradient_opacity:
-                   values nearest to a label of looks have its functions, and where it has none, as all others do, those of the picture
+                   values nearest to a label of looks are drawn by its functions. The picture's functions draw all other values, and replace
+                   functions that a look lacks
     function_2d    dict of rgba, numbers in 0..1 (rows, columns, 4), not premultiplied, value_range and second_range: colour and opacity as a
                    function of the value, along the columns, and of the gradient's magnitude or, of 2 components, of the second, along the rows.
-                   The ranges reach from the first one's outer edge to the last one's. It stands in place of opacity and color
-    crop           xmin, xmax, ymin, ymax, zmin, zmax in the world, before matrix: what is outside does not show
+                   The ranges reach from the first entry's outer edge to the last entry's. It replaces opacity and color
+    crop           xmin, xmax, ymin, ymax, zmin, zmax in the world, before matrix: values outside do not show
     clip_planes    up to 6 of a, b, c, d: points with a x + b y + c z + d >= 0 show
-    average_range  the values that count in mode average, ends included
+    average_range  for mode average: the values that count, ends included
     jitter         whether samples move along their rays by a noise
     audit          whether counters["differing_pixels"] counts the pixels that skipping changed
     opaque_depth   array (height, width) of OpenGL depths in 0..1 at which rays end, the top row first
@@ -103,21 +104,21 @@ def turn(data, frames=36, opacity=None, color=None, size=(320, 240), elevation=2
          progress=None, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, **options):
     """Returns a Film of the data as it turns once about the z axis: a list of Pictures, which notebooks show as a film.
 
-    frames     how many pictures, 1..1000
+    frames     number of pictures, 1..1000
     elevation  of the camera, degrees
     seconds    the time of one turn
-    progress   as in `render`, of the whole film
+    progress   as in `render`, for the whole film
     Everything else is as in `render` and `show`. Structures are built once.
     """
     whole(frames, "frames", 1, 1000)
     background, seconds = background_color(background), positive(seconds, "seconds")
     view = dict(elevation=number(elevation, "elevation"), zoom=number(zoom, "zoom"))
     drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix)
-    film, tell = Film(seconds=seconds), Progress.of(progress)
+    film, report = Film(seconds=seconds), Progress.of(progress)
     for n in range(frames):
-        part = None if tell is None else lambda stage, fraction, n=n: tell(stage, (n + fraction) / frames)
+        part = None if report is None else lambda stage, fraction, n=n: report(stage, (n + fraction) / frames)
         camera = dict(azimuth=30 + 360 * n / frames, **view)
         film.append(paint(drawn.render(opacity, color, size, camera, progress=part, **options).rgba, background))
-    if tell is not None:
-        tell("done", 1.0)
+    if report is not None:
+        report("done", 1.0)
     return film

@@ -15,8 +15,8 @@ _CELL_HIDDEN = c.CONSTANTS["STRATUS_GHOST_HIDDEN_CELL"]
 
 
 class Grid:
-    """Values on a grid. `values` has the axes slow, middle, fast and, of several components, these. `world` tells which world axis each index
-    runs along, fast first, and `own` which axis of the caller's array it is. `spreads` has one Spread for each component."""
+    """Values on a grid. `values` has the axes slow, middle, fast and, if there are several components, component. `world` contains the world
+    axis of each index, fast first, and `own` its axis in the caller's array. `spreads` has one Spread for each component."""
 
     def __init__(self, values, mask, spacing, origin, world=(0, 1, 2), direction=None, coordinates=(None, None, None), cell_centered=False,
                  flags=None, own=(2, 1, 0)):
@@ -157,7 +157,7 @@ _EASTS = ("x", "lon", "longitude", "east", "easting", "west_east", "i")
 
 
 def _of_xarray(data, spacing, origin, axes):
-    """A DataArray: its dimensions' names tell the axes, its coordinates the places, its fill values are masked."""
+    """Returns the Grid of a DataArray: its dimensions' names give the axes, its coordinates the places, and its fill values are masked."""
     names = [str(name).lower() for name in data.dims]
     values = numpy.ma.asarray(data.values) if len(names) == 3 else None
     if values is None:
@@ -176,14 +176,14 @@ def _of_xarray(data, spacing, origin, axes):
         if all(place.ndim == 1 and place.size > 1 and place.dtype.kind in "iuf" for place in places):
             places = [numpy.ascontiguousarray(place, numpy.float64) for place in places]
             if len(units) > 1:
-                # Degrees beside metres: each axis gets the length that its count of values has with a spacing of 1.
+                # If units differ, as degrees and metres do, each axis gets the length of its number of values with a spacing of 1.
                 places = [(place - place[0]) * ((place.size - 1) / abs(place[-1] - place[0])) for place in places]
             coordinates = places
     return _of_array(values, spacing, origin, axes, coordinates)
 
 
 def chosen(values, component, name):
-    """A VTK array's values, of several components the one that is asked for, or rows of all."""
+    """Returns a VTK array's values: of several components the requested one, or rows of all."""
     if values.ndim == 1:
         if component not in (None, 0, "all"):
             raise ValueError(f"component is {component!r}, but {name!r} has 1")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What pictures of volumes and of cells are asked for alike: functions, light, planes, contours, and the picture's own buffers."""
+"""Settings that pictures of volumes and of cells share: functions, light, planes, contours, and the picture's own buffers."""
 import math
 
 import numpy
@@ -13,8 +13,8 @@ _SHADING = ("ambient", "diffuse", "specular", "specular_power")
 
 
 class Transfer:
-    """The core's transfer function with the arrays that it points to. `color_spread` tells of the values that have the colours, where these
-    are another component's."""
+    """The core's transfer function with the arrays that it points to. `color_spread`: the Spread of the component that has
+    the colours, if it is another one."""
 
     def __init__(self, opacity, color, spread, power, unit_distance, gradient=None, color_spread=None, weight=1.0):
         self.points, colors = functions(opacity, color, spread, power)
@@ -95,7 +95,7 @@ class Image:
         if opaque_depth is not None:
             depth = numpy.asarray(opaque_depth)
             if depth.shape != (height, width):
-                raise ValueError(f"opaque_depth's shape is {depth.shape}, it must be that of the picture, {(height, width)}")
+                raise ValueError(f"opaque_depth's shape is {depth.shape}, it must be the picture's, {(height, width)}")
             self._opaque = numpy.ascontiguousarray(depth[::-1], numpy.float32)
             self.struct.opaque_depth = address(self._opaque)
 

@@ -86,7 +86,7 @@ def looks_of(labels, looks):
     """looks with whole labels, None without labels. Each look is a dict of opacity, color and gradient_opacity."""
     if (labels is None) != (looks is None):
         given, other = ("looks", "labels") if labels is None else ("labels", "looks")
-        raise ValueError(f"{given} needs {other}: labels tells the label of each value, looks the functions of each label")
+        raise ValueError(f"{given} needs {other}: labels has the label of each value, looks the functions of each label")
     if looks is None:
         return None
     result = {}
@@ -112,7 +112,7 @@ class Labels:
         given = numpy.asarray(labels)
         shape = grid.as_given(grid.values).shape
         if given.shape != shape:
-            raise ValueError(f"labels has the shape {given.shape}, it must be that of the values, {shape}")
+            raise ValueError(f"labels has the shape {given.shape}, it must be the values', {shape}")
         if given.dtype.kind not in "bui":
             raise TypeError(f"labels is of type {given.dtype}, it must be whole numbers in 0..{_LABELS}")
         if given.size and (given.min() < 0 or given.max() > _LABELS):
@@ -203,7 +203,7 @@ def _direction(vector, name):
 
 
 def slab(center, normal, thickness):
-    """Returns the two clip planes of a thick slice: `render(data, mode="maximum", clip_planes=slab(...))` shows what lies within.
+    """Returns the two clip planes of a thick slice: `render(data, mode="maximum", clip_planes=slab(...))` shows only the slab.
 
     center     a point in the middle of the slab: x, y, z in the world
     normal     direction across it, of any length above 0

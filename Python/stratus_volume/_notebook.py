@@ -10,7 +10,7 @@ from ._values import background_color, number, pixels, positive
 from ._view import _AROUND
 
 _REST = 0.3  # seconds without a move after which the full picture is drawn
-_LATE = 150  # milliseconds by which a mouse's event may be old and be drawn: where pictures take longer than events, the last ones count
+_LATE = 150  # milliseconds; older events of the mouse are not drawn: if pictures need more time than events, the last events count
 
 
 def _widgets():
@@ -24,9 +24,9 @@ def _widgets():
 class View:
     """A volume or cells in a notebook, turned by the mouse and by sliders, which `view` makes.
 
-    camera     dict of azimuth, elevation and zoom, which `show` and `render` take
+    camera     dict of azimuth, elevation and zoom, which `show` and `render` accept
     rendering  the Rendering of the picture that shows
-    look       dict of what else the picture is drawn by; `set` changes it
+    look       dict of the picture's other settings; `set` changes it
     widget     the ipywidgets.VBox of picture, sliders and message; `image`, `azimuth`, `elevation`, `zoom` and `message` are its parts
     """
 
@@ -55,7 +55,7 @@ class View:
         return dict(azimuth=self.azimuth.value, elevation=self.elevation.value, zoom=self.zoom.value)
 
     def set(self, **look):
-        """Changes what the picture is drawn by, as opacity, color or mode, and draws it. What is wrong is raised, and the look stays as it was."""
+        """Changes settings of the picture, such as opacity, color or mode, and draws it. A wrong setting raises an error and changes nothing."""
         before, self.look = self.look, dict(self.look, **look)
         try:
             self.draw()
@@ -169,11 +169,12 @@ def view(data, opacity=None, color=None, size=(480, 360), camera=None, backgroun
     """Returns a View: a picture in a notebook that the mouse turns (where ipyevents is installed) and sliders turn. Needs ipywidgets.
 
     camera           dict of azimuth and elevation, in degrees, and zoom, where the view begins
-    draft            while it moves, pictures have this part of the width and height, above 0 and at most 1
-    draft_tolerance  and this tolerance, where that of the look is not larger; 0.3 seconds after the last move the full picture follows
+    draft            while the view moves, pictures have this part of the width and height, above 0 and at most 1
+    draft_tolerance  while the view moves, pictures have this tolerance, or the look's if it is larger. 0.3 seconds after the last move the
+                     full picture follows
     Everything else is as in `render` and `show`. Structures are built once. A drag turns by half a degree a pixel, the wheel zooms.
 
-    The pictures are drawn in the notebook's own process and sent as PNG: no server runs. `view(data).camera` is what `show` takes.
+    The pictures are drawn in the notebook's own process and sent as PNG: no server runs. `show` accepts `view(data).camera`.
     """
     _widgets()
     size, background = pixels(size), background_color(background)

@@ -12,11 +12,11 @@ from ._values import is_number, number, numbers, pixels as window_of
 
 
 class Visible(typing.NamedTuple):
-    """What a view sees.
+    """The boxes that a view sees.
 
     ids       uint32: visible boxes, each once, in no order
-    coverage  float32: fraction of the window, 0..1, that the square about each box's bounding sphere covers; None unless asked for
-    depth     float32: distance of each box's centre from the near plane; None unless asked for
+    coverage  float32: fraction of the window, 0..1, that the square about each box's bounding sphere covers; None without coverage=True
+    depth     float32: distance of each box's centre from the near plane; None without coverage=True
     counters  dict of nodes_tested, objects_tested, objects_retested, splits, collapses and objects_handed_down
     """
     ids: numpy.ndarray
@@ -26,7 +26,7 @@ class Visible(typing.NamedTuple):
 
 
 def _boxes(bounds):
-    """Bounds (n, 6), or centres and half edges (n, 12); one of them may be given alone."""
+    """Returns bounds (n, 6), or centres and half edges (n, 12), as float64. A single box may have one axis."""
     own = numpy.asarray(bounds)
     if own.dtype.kind not in "iuf" or own.ndim not in (1, 2) or own.shape[-1] not in (6, 12):
         raise ValueError(f"bounds has the shape {own.shape} and type {own.dtype}, it must be numbers (n, 6): xmin, xmax, ymin, ymax, zmin, zmax; "
@@ -44,20 +44,20 @@ def _ids(ids):
 class Octree:
     """Boxes in an octree that is split where a view's border runs (Li & Huang 2024), for scenes of thousands to millions of them.
 
-    bounds          of the first boxes, see insert; they have the ids 0, 1, 2 and so on. Default: none
+    bounds          the first boxes' bounds, see insert; their ids are 0, 1, 2 and so on. Default: none
     placement       "enclosing": each in the smallest node that encloses it; "touching": in every leaf that its sphere touches, as in the paper
     stop            a node that is partly visible is split while it is larger than `pixels` on screen ("pixels"), while L / (c S) < 1 with L and S
                     along the axes ("manhattan") or as lengths ("euclid"), or always ("static")
-    levels          below the root, 0..21, default 21; 0 is a plain list
+    levels          number of levels below the root, 0..21, default 21; 0 is a plain list
     leaf_objects    a node of at most so many boxes is not split, 1..2**20, default 256
-    pixels          of a window 1000 pixels high, above 0, default 32
-    c               above 0, default 35
+    pixels          size on screen, in a window 1000 pixels high, above 0, default 32
+    c               the factor in L / (c S), above 0, default 35
     looseness       factor by which nodes count as wider, 1..2, default 1.25
-    collapse_after  calls of cull for which a node keeps children that no border has crossed, default 256; 0: for ever
-    split_budget    how many boxes one call may hand down to children; default 0: no limit
+    collapse_after  calls of cull for which a node keeps children that no border has crossed, default 256; 0: without limit
+    split_budget    largest number of boxes that one call hands down to children; default 0: no limit
     threads         1..1024; default: as many as OpenMP offers
 
-    What a view sees does not hang on any of these, but with "touching" for boxes out of sight.
+    A view's visible boxes do not depend on any of these, except that "touching" may keep other boxes that are out of sight.
     """
 
     def __init__(self, bounds=None, placement="enclosing", stop="pixels", levels=21, leaf_objects=256, pixels=32.0, c=35.0, looseness=1.25,
@@ -110,7 +110,7 @@ class Octree:
         self._call(library.stratus_octree_remove, address(own), len(own))
 
     def bounds(self, ids):
-        """Returns the bounds of boxes, float64 (n, 6), of turned ones those of the box about them."""
+        """Returns the bounds of boxes, float64 (n, 6). A turned box has the bounds of the straight box around it."""
         own = _ids(ids)
         result = numpy.empty((len(own), 6))
         for one, row in zip(own, result):
@@ -127,11 +127,11 @@ class Octree:
         near, far     distances of the first and of the last plane from the eye, 0 <= near < far; far may be infinite
         planes        in place of camera, size, near and far: (6, 4) of a, b, c, d, with a x + b y + c z + d >= 0 inside: left, right, bottom, top,
                       near, far, as of vtkCamera.GetFrustumPlanes()
-        eye           x, y, z, of planes, for the stops by distance; default 0, 0, 0
-        exact         True: boxes beyond an edge of the frustum, which its planes alone can't tell apart, are left out, too
+        eye           with planes: x, y, z of the eye, for the stops by distance; default 0, 0, 0
+        exact         True: boxes beyond an edge of the frustum, which a test of only its planes keeps, are left out, too
         coverage      True: coverage and depth are filled in
         hold          True: the tree stays as it is in this call
-        view          a name of the view: what is known of one view serves its next call
+        view          a name of the view: results of a view serve its next call
         """
         frustum, options, found = c.stratus_frustum(), c.stratus_octree_cull_options(), c.stratus_octree_visible()
         options.exact, options.coverage, options.hold = int(bool(exact)), int(bool(coverage)), int(bool(hold))

@@ -56,7 +56,7 @@ class Film(list):
         parts, number = [_header(self[0]), _chunk(b"acTL", struct.pack(">II", len(self), 0))], 0
         for n, picture in enumerate(self):
             parts.append(_chunk(b"fcTL", struct.pack(">IIIIIHHBB", number, width, height, 0, 0, delay, 1000, 0, 0)))
-            # The first picture is what a reader shows that knows no films.
+            # A reader that knows no films shows the first picture.
             parts.append(_chunk(b"IDAT", _rows(picture)) if n == 0 else _chunk(b"fdAT", struct.pack(">I", number + 1) + _rows(picture)))
             number += 1 if n == 0 else 2
         return b"".join([*parts, _chunk(b"IEND", b"")])
@@ -82,12 +82,12 @@ def paint(rgba, background):
 
 
 class Rendering(typing.NamedTuple):
-    """What `render` returns.
+    """A picture, as `render` returns it.
 
     rgba      float32 (height, width, 4), premultiplied by alpha, the top row first; 0 where nothing shows
-    depth     float32 (height, width): world distance along the ray from the eye (parallel cameras: from its plane) to what shows first;
-              infinite where nothing does
-    counters  dict of what was done: rays, samples, skipped segments, times in ms, the structure and sampling that were used and why
+    depth     float32 (height, width): world distance along the ray from the eye (parallel cameras: from its plane) to the first visible point;
+              infinite where nothing shows
+    counters  dict of rays, samples, skipped segments, times in ms, the used structure and sampling, and the reasons for them
     """
     rgba: numpy.ndarray
     depth: numpy.ndarray

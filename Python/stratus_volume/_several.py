@@ -38,15 +38,15 @@ def _asked(drawn, look, n):
 def render_several(items, size=(640, 480), camera=None, opaque_depth=None, device=None, threads=None, progress=None):
     """Draws volumes that may overlap as one medium, and returns a Rendering: rgba, depth, counters.
 
-    items         1 to 8, each of them data that `render` takes, or a pair of these and a dict of how they look: of all that `render` takes but
-                  size, camera, opaque_depth, device, threads and progress. spacing, origin and matrix tell where each lies. A Volume or
-                  Tetrahedra keeps what is built of it; all of them must be of one device, and none may come twice
+    items         1 to 8 items. Each is data that `render` accepts, or a pair of data and a dict of settings. Settings are all arguments of `render`
+                  except size, camera, opaque_depth, device, threads and progress; spacing, origin and matrix place the item. A Volume or
+                  Tetrahedra keeps its structures; all of them must use one device, and none may come twice
     size, camera, opaque_depth, progress  see render. The default camera sees all of the items
-    device, threads  of items that are not a Volume or Tetrahedra; default: those of the first one that is, or see Volume
+    device, threads  for items that are not a Volume or Tetrahedra; default: as of the first Volume or Tetrahedra, or see Volume
 
-    Where volumes overlap, their optical depths and their light add up, whatever the items' order. Mode composite alone. Meshes among several
-    have one component and no light, and are marched by the host. An item that has no value that can show is left out with a warning.
-    counters are of the whole picture, and counters["items"] has one dict for each item, with the structure and sampling of each and why.
+    Where volumes overlap, their optical depths and their light add up, in any order of the items. The mode is composite. Meshes among several
+    have one component and no light, and are marched by the host. An item without a visible value is left out with a warning.
+    counters are of the whole picture, and counters["items"] has one dict for each item, with its structure and sampling and the reasons.
     """
     size = pixels(size)
     try:
@@ -82,8 +82,8 @@ def render_several(items, size=(640, 480), camera=None, opaque_depth=None, devic
             view = _view.make(context, camera, bounds, size)
             context.call(library.stratus_ray_caster_render_several, inputs, len(shown), ctypes.byref(view), ctypes.byref(image.struct), reports,
                          progress=progress)
-    told = iter([as_dict(report) for report in reports])
-    each_of = [{} if _nothing(drawn) else next(told) for drawn, _ in parts]
+    drawn_reports = iter([as_dict(report) for report in reports])
+    each_of = [{} if _nothing(drawn) else next(drawn_reports) for drawn, _ in parts]
     for (drawn, _), each in zip(parts, asked):
         if _nothing(drawn):
             each.explain(image.rgba)

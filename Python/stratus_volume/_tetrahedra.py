@@ -32,16 +32,16 @@ def listed(points, tetrahedra):
 class Tetrahedra:
     """A mesh of tetrahedra, or a curvilinear grid of hexahedra, that may be drawn more than once without building anew.
 
-    points      float64 (n, 3), finite; of a curvilinear grid float64 or float32 (nk, nj, ni, 3). Or a vtkUnstructuredGrid or
-                vtkStructuredGrid, pyvista's too, which has the rest; cells that are no tetrahedra are divided into such by VTK
-    tetrahedra  int32 (m, 4), numbers of points, in any orientation; None of a curvilinear grid
-    values      of the points or of the cells, one each, of any type that Volume takes; masked, NaN and infinite ones hide their cells. One more
-                axis, the last, has 2 to 4 components of each
+    points      float64 (n, 3), finite; for a curvilinear grid float64 or float32 (nk, nj, ni, 3). Or a vtkUnstructuredGrid or
+                vtkStructuredGrid, pyvista's too, which also has tetrahedra and values; VTK divides other cells into tetrahedra
+    tetrahedra  int32 (m, 4), indices of points, in any orientation; None for a curvilinear grid
+    values      one for each point or one for each cell, of any type that Volume accepts; masked, NaN and infinite ones hide their cells. One
+                more axis, the last, has 2 to 4 components of each
     scalars     name of the array of a VTK data set; default: its active scalars
-    component   which of several components of it, from 0, or "all" of 2 to 4
+    component   index of one of its components, from 0, or "all" for 2 to 4
     device, threads, matrix  see Volume
 
-    Memory is not copied where types are the named ones and arrays are contiguous.
+    Memory is not copied if types are the named ones and arrays are contiguous.
     """
 
     def __init__(self, points, tetrahedra=None, values=None, scalars=None, device=None, threads=None, matrix=None, component=None):
@@ -88,7 +88,7 @@ class Tetrahedra:
         most = c.CONSTANTS["STRATUS_COMPONENTS_MAX"]
         several = own.shape not in self.shapes and own.ndim > 0 and own.shape[:-1] in self.shapes and 1 <= own.shape[-1] <= most
         if own.shape not in self.shapes and not several:
-            raise ValueError(f"values has the shape {own.shape}, it must be that of the points, {self.shapes[0]}, or of the cells, {self.shapes[1]}, "
+            raise ValueError(f"values has the shape {own.shape}, it must be the points', {self.shapes[0]}, or the cells', {self.shapes[1]}, "
                              f"and may have a last axis of 1 to {most} components")
         self.components = own.shape[-1] if several else 1
         if several and mask is not None:
@@ -146,9 +146,9 @@ class Tetrahedra:
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", method="auto", tolerance=None,
                shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, opaque_depth=None, progress=None,
                dependent=False, weights=None, mean_components=False):
-        """Draws a picture and returns a Rendering: rgba, depth, counters. `render` tells the parameters.
+        """Draws a picture and returns a Rendering: rgba, depth, counters. See `render` for the parameters.
 
-        method  march from cell to cell, project sorted cells, or auto, the one that should cost less
+        method  march from cell to cell, project sorted cells, or auto: the method of the lower expected cost
         mode    composite, maximum, minimum, average, additive or isosurface
         """
         size = pixels(size)
@@ -165,7 +165,7 @@ class Tetrahedra:
 
 
 class AskedOfCells:
-    """What the core is told of a mesh for one picture, with all that this points to. Made and used with the context's lock held."""
+    """The core's arguments for one picture of a mesh, with the memory that they point to. Made and used with the context's lock held."""
 
     def __init__(self, drawn, opacity=None, color=None, unit_distance=None, mode="composite", method="auto", tolerance=None, shade=False,
                  gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, dependent=False, weights=None,

@@ -227,7 +227,7 @@ def _color_map(name):
         import matplotlib
         from matplotlib.colors import to_rgb
     except ImportError:
-        raise ValueError(f"color is {name!r}: names are those of matplotlib, which is not installed") from None
+        raise ValueError(f"color is {name!r}: names need matplotlib, which is not installed") from None
     if name in matplotlib.colormaps:
         return matplotlib.colormaps[name]
     try:
@@ -237,7 +237,7 @@ def _color_map(name):
 
 
 def color_points(color, low, high, power):
-    """Returns tuples of value, red, green and blue. A single colour is that of all values."""
+    """Returns tuples of value, red, green and blue. A single colour is for all values."""
     if isinstance(color, str):
         color = _color_map(color)
     if callable(color):
@@ -299,35 +299,36 @@ def opacity_at(points, values):
 # ---- the reasons why nothing shows
 
 def none_visible(count, masked, wrong):
-    """The reason where no value can show: of `count` values so many are masked, and so many are NaN or infinite."""
+    """Returns the reason why no value can show: of `count` values `masked` are masked, and `wrong` are NaN or infinite."""
     what = [text for number_of, text in ((masked, f"{masked} masked"), (wrong, f"{wrong} NaN or infinite")) if number_of]
     return f"nothing shows: none of the {count} values can, {' and '.join(what) or 'none is finite'}"
 
 
 def no_opacity(points, low, high, power):
-    """The reason why values in low..high are transparent by these points, None where some are not."""
+    """Returns the reason why values in low..high are transparent by these points, or None if some are not."""
     if max(opacity for _, opacity in points) == 0:
         return "nothing shows: the opacity is 0 for every value"
     within = [opacity for value, opacity in points if low <= value <= high]
     if max([*within, *opacity_at(points, [low, high])]) > 0:
         return None
     shown = [value for n, (value, opacity) in enumerate(points) if opacity > 0 or any(other[1] > 0 for other in points[max(0, n - 1):n + 2])]
-    values = f"all values are {write(low, power)}" if low == high else f"the values lie in {write(low, power)}..{write(high, power)}"
+    values = f"all values are {write(low, power)}" if low == high else f"the values are in {write(low, power)}..{write(high, power)}"
     return f"nothing shows: {values}, and the opacity is above 0 only in {write(min(shown), power)}..{write(max(shown), power)}"
 
 
 def one_sided(spread):
-    """The reason where a function of the whole range tells nothing apart, because a few values are very far from all others."""
+    """Returns the reason if a function of the whole range hides all differences, because a few values are very far from all others."""
     if spread.far > 1e-6:
         return None
     return (f"next to nothing shows: the values reach from {spread.low:.6g} to {spread.high:.6g}, but 95 % of them are nearer to "
-            f"{spread.center:.6g} than a millionth of that. Mask what is no data, or give opacity as pairs of a value and an opacity")
+            f"{spread.center:.6g} than a millionth of that. Mask values that are no data, or give opacity as pairs of a value and an opacity")
 
 
 def explain(rgba, points, spread, power, automatic, mode, unit_distance, rays=None, contours=None):
-    """Warns once where a picture shows nothing, or nothing but a few values far from all others.
+    """Warns once if a picture shows nothing, or nothing but a few values far from all others.
 
-    points: of opacity, in order; automatic: they follow from the range of the values; rays: how many met what shows, None: unknown
+    points: the opacity's points, in order; automatic: they follow from the range of the values; rays: number of rays that met a visible
+    value, None: unknown
     """
     largest, grey = float(rgba[..., 3].max()), mode in ("average", "additive")
     reason = one_sided(spread) if automatic and not grey else None
@@ -335,11 +336,11 @@ def explain(rgba, points, spread, power, automatic, mode, unit_distance, rays=No
         reason = None if grey else no_opacity(points, float(scaled(spread.low, power)), float(scaled(spread.high, power)), power)
         if reason is None and contours is not None and mode == "isosurface":
             if not any(spread.low <= float(scaled(value, -power)) <= spread.high for value in contours):
-                reason = f"nothing shows: no contour lies within the values, {spread.low:.6g}..{spread.high:.6g}"
+                reason = f"nothing shows: no contour is within the values, {spread.low:.6g}..{spread.high:.6g}"
         if reason is None:
             reason = one_sided(spread)
         if reason is None and mode in ("maximum", "minimum") and rays != 0:
-            reason = f"nothing shows: in mode {mode} each ray shows one value alone, and those have an opacity of 0"
+            reason = f"nothing shows: in mode {mode} each ray shows a single value, and all of these have an opacity of 0"
         if reason is None and largest == 0:
             reason = "nothing shows: no ray of the camera meets a value of an opacity above 0, within crop and clip_planes where they are given"
         if reason is None:

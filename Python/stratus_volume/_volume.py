@@ -12,21 +12,22 @@ from ._values import explain, length_of, number, own_points, pixels, positive, u
 
 
 class Volume:
-    """A volume that is drawn more than once: what is built of its values is kept, and a camera's move builds nothing anew.
+    """A volume that is drawn more than once: structures of its values are built once, and a camera's move builds nothing anew.
 
     data          a NumPy array of three axes of at least 2 values (bool, integers, float16, float32, float64, of either byte order), masked or
-                  not; an xarray.DataArray of three dimensions; a vtkImageData or vtkRectilinearGrid, pyvista's too. Memory is not copied but
-                  of float16, the other byte order, masked floats, integers whose masked values lie beyond all others, magnitudes outside
+                  not; an xarray.DataArray of three dimensions; a vtkImageData or vtkRectilinearGrid, pyvista's too. Memory is copied only
+                  for float16, the other byte order, masked floats, integers whose masked values are beyond all others, magnitudes outside
                   1e-30..1e37, and arrays whose rows do not follow each other evenly. Masked, NaN and infinite values are transparent.
-                  A fourth axis, the array's last, has 2 to 4 components of each value, of which one that is masked or not finite hides all
+                  A fourth axis, the array's last, has 2 to 4 components of each value; a masked or not finite component hides all of them
     spacing       world length between two values along x, y and z, each > 0; default 1, 1, 1
     origin        position of the first value: x, y, z; default 0, 0, 0
     axes          order of the array's first three axes: "zyx" (default) is array[z, y, x], "xyz" array[x, y, z]
     scalars       name of the array of a VTK data set; default: its active scalars
-    component     which of several components of it, from 0, or "all" of 2 to 4
+    component     index of one of its components, from 0, or "all" for 2 to 4
     device        "auto" (default), "host", an OpenCL device's index or a part of its name, or a Context
-    threads       on the host, 1..1024; default: as many as OpenMP offers
-    matrix        (4, 4) affine, row by row, which may turn, stretch, mirror, shear and move what the above puts into the world; default: none
+    threads       number of threads on the host, 1..1024; default: as many as OpenMP offers
+    matrix        (4, 4) affine, row by row, which may turn, stretch, mirror, shear and move the volume in the world, after spacing and
+                  origin; default: none
     """
 
     def __init__(self, data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None):
@@ -47,14 +48,14 @@ class Volume:
         self.grid.matrix = affine(matrix)
 
     def modified(self):
-        """Tells that values changed in place: the next picture reads them anew. Values of a copy stay as they were copied."""
+        """Call it after values changed in place: the next picture reads them again. Values of a copy stay as they were copied."""
         self.grid.revision += 1
 
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", interpolation="linear",
                structure="auto", sampling="auto", sample_distance=0, tolerance=None, shade=False, gradient_opacity=None, contours=None, crop=None,
                clip_planes=None, average_range=None, jitter=False, audit=False, opaque_depth=None, progress=None, dependent=False, weights=None,
                mean_components=False, labels=None, looks=None, function_2d=None, surface=None):
-        """Draws a picture and returns a Rendering: rgba, depth, counters. `render` tells the parameters."""
+        """Draws a picture and returns a Rendering: rgba, depth, counters. See `render` for the parameters."""
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_ray_cast_report()
         with self.context.lock:
@@ -70,7 +71,7 @@ class Volume:
 
 
 class Asked:
-    """What the core is told of a volume for one picture, with all that this points to. Made and used with the context's lock held."""
+    """The core's arguments for one picture of a volume, with the memory that they point to. Made and used with the context's lock held."""
 
     def __init__(self, drawn, opacity=None, color=None, unit_distance=None, mode="composite", interpolation="linear", structure="auto",
                  sampling="auto", sample_distance=0, tolerance=None, shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None,

@@ -71,7 +71,7 @@ def _prepared(data, lower, upper, options):
 
 
 def distance_field(data, lower=None, upper=None, method="exact", signed=False, **options):
-    """Returns the distance from each voxel's centre to that of the nearest effective voxel, in voxels, as float32 in the array's shape.
+    """Returns the distance from each voxel's centre to the centre of the nearest effective voxel, in voxels, as float32 in the array's shape.
 
     data          see Volume, also for axes, scalars, component, device and threads
     lower, upper  values in lower..upper are effective, ends included; default: all that are not masked, NaN or infinite, and of a bool array True
@@ -79,7 +79,7 @@ def distance_field(data, lower=None, upper=None, method="exact", signed=False, *
     signed        True: within, it is the distance to the nearest voxel that is not effective, negated
     progress      see render
 
-    It is infinite where there is no effective voxel, and -infinite in a signed field of effective voxels alone.
+    It is infinite if there is no effective voxel, and -infinite in a signed field if all voxels are effective.
     """
     if method not in _METHODS:
         raise ValueError(f"method is {method!r}, it must be one of {', '.join(_METHODS)}")

@@ -7,8 +7,8 @@ VTK from 9.1 on will do. pyvista from 0.48 on finds the component by itself; bef
 
 Volumes of one renderer are drawn together: up to eight in mode composite mix along the rays, others lie one before the other.
 
-What it costs: depth is read from the window, and the picture is handed to it as a texture of bytes, in each frame. What cannot be right:
-translucent geometry is always behind the volume, and picking does not see it.
+Each frame reads depth from the window, and gives it the picture as a texture of bytes. Translucent geometry is always behind the volume,
+and picking does not see the volume.
 """
 import functools
 import warnings
@@ -64,7 +64,7 @@ def core_camera(camera, aspect):
 
 
 class _Picture(VTKPythonAlgorithmBase):
-    """Puts out the picture of a layer. VTK asks for it when it draws the texture, after the scene's geometry."""
+    """Puts out the picture of a layer. VTK requests it when it draws the texture, after the scene's geometry."""
 
     def __init__(self, layer, renderer):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkImageData")
@@ -126,7 +126,7 @@ class _Layer:
     """The volumes of one renderer, and the texture that has their picture."""
 
     def __init__(self, renderer):
-        self.renderer, self.volumes, self._told = renderer, [], False
+        self.renderer, self.volumes, self._warned = renderer, [], False
         self._algorithm = _Picture(self, renderer)
         self._actor = _window(renderer, self._algorithm)
         _lay_below(renderer, self._actor)
@@ -164,7 +164,7 @@ class _Layer:
         self.volumes.clear()
 
     def draw(self, renderer, size):
-        """The picture in bytes, colours not multiplied by alpha, the bottom row first. VTK's texture asks for it within a frame."""
+        """The picture in bytes, colours not multiplied by alpha, the bottom row first. VTK's texture requests it within a frame."""
         shown = [volume for volume in self.volumes if volume.visibility]
         if not shown:
             return numpy.zeros((size[1], size[0], 4), numpy.uint8)
@@ -175,11 +175,11 @@ class _Layer:
         for volume in shown:
             volume.place()
         with warnings.catch_warnings():
-            if self._told:  # once is enough: frames follow each other
+            if self._warned:  # once is enough: frames follow each other
                 warnings.simplefilter("ignore")
             rgba = self._together(shown, size, view, opaque) if len(shown) > 1 else None
             rgba = self._one_by_one(shown, size, view, opaque) if rgba is None else rgba
-        self._told = True
+        self._warned = True
         return numpy.ascontiguousarray(paint(rgba, None)[::-1])
 
     @staticmethod
@@ -212,9 +212,9 @@ class _Layer:
 
 
 class StratusVolume(pyvista.plotting.volume.Volume):
-    """A volume in a scene: a Volume of pyvista's whose picture Stratus draws. What its `prop`, `mapper`, `user_matrix`, position and so on are set
-    to shows in the next frame, but for `mapper.dataset`. `set` changes what else `Volume.render`, or of cells `Tetrahedra.render`, takes, and holds
-    in place of those. `remove` takes it away, `visibility` hides it, `counters` tell of the last frame.
+    """A volume in a scene: a Volume of pyvista's whose picture Stratus draws. Changes of its `prop`, `mapper`, `user_matrix`, position and so on
+    show in the next frame, except of `mapper.dataset`. `set` sets other arguments of `Volume.render`, or for cells of `Tetrahedra.render`, which
+    take precedence. `remove` removes it, `visibility` hides it, `counters` are the last frame's.
     """
 
     # pyvista's classes refuse attributes that they do not know. title: of the scalar bar; called: the name that was given
@@ -247,7 +247,7 @@ class StratusVolume(pyvista.plotting.volume.Volume):
                 self._box.mapper.SetInputData(pyvista.Box(self.bounds))
 
     def asked(self):
-        """The parameters of `render` that prop and mapper stand for, and those of `set`."""
+        """Returns the parameters of `render` that follow from prop and mapper, and the ones given to `set`."""
         prop, mapper = self.prop, self.mapper
         parts = [prop, mapper, prop.GetScalarOpacity(), prop.GetRGBTransferFunction(), mapper.GetClippingPlanes() or prop]
         parts += [planes.GetItem(n) for planes in [mapper.GetClippingPlanes()] if planes for n in range(planes.GetNumberOfItems())]
@@ -409,15 +409,15 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
                reset_camera=None, name=None, ambient=None, categories=False, culling=False, multi_colors=False, blending="composite", mapper=None,
                scalar_bar_args=None, show_scalar_bar=None, annotations=None, pickable=True, preference="point", opacity_unit_distance=None, shade=False,
                diffuse=0.7, specular=0.2, specular_power=10.0, render=True, user_matrix=None, log_scale=False, device=None, threads=None, **options):
-    """Adds a volume to a plotter's scene and returns a StratusVolume, of a MultiBlock a list with one for each block. The words are those of
-    pyvista's own add_volume. Values between others are interpolated linearly by default, for which pyvista's own volumes need
+    """Adds a volume to a plotter's scene and returns a StratusVolume, or for a MultiBlock a list with one for each block. The arguments have the
+    names of pyvista's own add_volume. Values between others are interpolated linearly by default, for which pyvista's own volumes need
     `prop.interpolation_type = "linear"`; values of cells are drawn as such. Several volumes of a renderer mix along its rays.
 
-    volume    array (nx, ny, nz), as pyvista's own add_volume takes it; or ImageData, RectilinearGrid, UnstructuredGrid, StructuredGrid, or a
+    volume    array (nx, ny, nz), as pyvista's own add_volume accepts it; or ImageData, RectilinearGrid, UnstructuredGrid, StructuredGrid, or a
               MultiBlock of these; or a Volume or Tetrahedra
     scalars   name of the array of a grid, or an array with one for each point or cell, or (n, 4) bytes: red, green, blue and opacity; default: the
               active one. preference: "point" or "cell", where a name or a length fits both
-    clim      least and greatest value of opacity and colours; one number c stands for (-c, c); default: those of the values
+    clim      least and greatest value of opacity and colours; one number c means (-c, c); default: the values' own
     resolution  of an array: its spacing
     opacity   a name of pyvista's such as "linear" or "sigmoid_5", one number, or opacities over clim. They end at 0.998, as pyvista's do
     n_colors, cmap, flip_scalars, categories, log_scale, annotations  of the table of colours, as pyvista's; cmap may be a LookupTable
@@ -428,7 +428,7 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
               of cells along an axis, and 1 of cells of unstructured and structured grids
     user_matrix  (4, 4), the last transformation into the world
     reset_camera, render, show_scalar_bar, scalar_bar_args  as pyvista's
-    mapper, culling, pickable  are taken and change nothing: the mapper is Stratus, it has no faces, and picking does not see it
+    mapper, culling, pickable  are accepted and change nothing: the mapper is Stratus, it has no faces, and picking does not see it
     device, threads, and all other options of `stratus_volume.render`: tolerance, crop, clip_planes, contours, progress and so on
     """
     clim, cmap = options.pop("rng", clim), options.pop("colormap", cmap)
@@ -498,7 +498,7 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
 
 
 def _words(plotter, volume, drawn, table):
-    """The mapper and the property of pyvista's that tell what a volume is drawn by. The mapper has the grid's bounds, and draws nothing."""
+    """Returns pyvista's mapper and property with a volume's settings. The mapper has the grid's bounds, and draws nothing."""
     from pyvista.plotting.mapper import SmartVolumeMapper, UnstructuredGridVolumeRayCastMapper
     from pyvista.plotting.volume_property import VolumeProperty
     kind = UnstructuredGridVolumeRayCastMapper if isinstance(volume, pyvista.UnstructuredGrid) else SmartVolumeMapper
@@ -537,7 +537,7 @@ def _unit(volume, drawn):
 
 
 def _matrix(transform):
-    """The matrix (4, 4) of what pyvista takes as a transformation, None of none."""
+    """Returns the matrix (4, 4) of a transformation as pyvista accepts it, or None."""
     if transform is None:
         return None
     try:
