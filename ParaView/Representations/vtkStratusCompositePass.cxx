@@ -44,7 +44,7 @@ bool MakeDeep(vtkTextureObject* texture, int width, int height)
 }
 } // namespace
 
-// IceT keeps of a rank's picture what lies within the rank's bounds. Rank 0, which hands in the picture of all, has this prop with the
+// IceT keeps only the part of a rank's picture within the rank's bounds. Rank 0, which hands in the picture of all, has this prop with the
 // bounds of all. It draws nothing.
 class vtkStratusWholeBounds : public vtkProp
 {

@@ -251,7 +251,7 @@ vtkSmartPointer<vtkDataSet> stratus::gather_whole(vtkMultiProcessController* con
   }
   gathered = bytes <= static_cast<double>(most);
   const bool root = controller->GetLocalProcessId() == 0;
-  const int room = gathered && has_room(root ? 2.0 * bytes + 4.0 * values : values); // what is gathered and what it becomes; flags
+  const int room = gathered && has_room(root ? 2.0 * bytes + 4.0 * values : values); // gathered values and the grid's; flags
   int all_room = 0;
   controller->AllReduce(&room, &all_room, 1, vtkCommunicator::MIN_OP);
   gathered = all_room != 0;
