@@ -270,12 +270,12 @@ void CarriedTrees()
   numbers->DeepCopy(bytes(floats));
   floats->GetFieldData()->AddArray(numbers);
   ExpectCarried("in floats", floats, false);
-  Scene scene;
+  Scene shown;
   vtkNew<ErrorObserver> warnings;
-  scene.Mapper->AddObserver(vtkCommand::WarningEvent, warnings);
-  scene.Mapper->SetInputData(floats);
-  FirstHits(scene);
-  scene.Render();
+  shown.Mapper->AddObserver(vtkCommand::WarningEvent, warnings);
+  shown.Mapper->SetInputData(floats);
+  FirstHits(shown);
+  shown.Render();
   CHECK(warnings->Count == 1 && warnings->Has("'StratusHybridTree' is of type float"), "%d warnings: %s", warnings->Count,
     warnings->Text.c_str());
 }
