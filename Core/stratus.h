@@ -13,7 +13,7 @@
  *   NULL, a call that returns a status returns STRATUS_INVALID_ARGUMENT. It leaves no message if there is no object to hold one. A call
  *   without a status treats a NULL object as an empty one, and writes nothing through a NULL pointer.
  * - One context serves one thread at a time. Different contexts are independent, and several threads may create contexts at once. The
- *   core's only global state is what it measured of this machine, and a lock: one thread at a time queries OpenCL's devices, because some
+ *   core's only global state is its measurements of this machine, and a lock: one thread at a time queries OpenCL's devices, because some
  *   platforms allow no more. Threads that need the same measurement wait for one another.
  * - Each calling thread and each OpenMP thread needs 128 KiB of stack on the host. An OpenCL implementation may need more. */
 #ifndef STRATUS_H

@@ -37,12 +37,12 @@ void stratus_stage_end(stratus_context* context, const stratus_stage* stage, con
   const uint64_t kernels = report->launched - stage->launched - (report->ended_kernels - stage->ended_kernels);
   const uint64_t returned = report->returned - stage->returned - (report->ended_returned - stage->ended_returned);
   const bool on_device = kernels && !returned; /* if the host took the stage over, the device's kernels made nothing of it */
-  stratus_build_stage* told = find_stage(report, name, on_device ? context->device_name : "host");
-  if (told) {
+  stratus_build_stage* entry = find_stage(report, name, on_device ? context->device_name : "host");
+  if (entry) {
     /* Differences of large sums may round below zero. */
-    told->ms += ms > 0.0 ? ms : 0.0;
-    told->bytes += bytes;
-    told->kernels += on_device ? kernels : 0;
+    entry->ms += ms > 0.0 ? ms : 0.0;
+    entry->bytes += bytes;
+    entry->kernels += on_device ? kernels : 0;
   }
   report->ended_ms += ms;
   report->ended_kernels += kernels;

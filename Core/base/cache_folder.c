@@ -53,14 +53,14 @@ static bool write_whole(int handle, const stratus_cache_part* part)
 
 bool stratus_cache_write(const char* folder, const char* name, const stratus_cache_part* parts, int count)
 {
-  char path[STRATUS_CACHE_PATH], beside[STRATUS_CACHE_PATH];
+  char path[STRATUS_CACHE_PATH], temporary[STRATUS_CACHE_PATH];
   const int length = snprintf(path, sizeof path, "%s/%s", folder, name),
-            longer = snprintf(beside, sizeof beside, "%s/%s.XXXXXX", folder, name);
+            longer = snprintf(temporary, sizeof temporary, "%s/%s.XXXXXX", folder, name);
   if (length < 0 || longer >= STRATUS_CACHE_PATH) {
     return false;
   }
   make_folder(folder, FOLDERS_ABOVE);
-  const int handle = mkstemp(beside);
+  const int handle = mkstemp(temporary);
   if (handle < 0) {
     return false;
   }
@@ -68,8 +68,8 @@ bool stratus_cache_write(const char* folder, const char* name, const stratus_cac
   for (int i = 0; i < count; ++i) {
     whole = whole && write_whole(handle, parts + i);
   }
-  if (close(handle) != 0 || !whole || rename(beside, path) != 0) {
-    (void)unlink(beside);
+  if (close(handle) != 0 || !whole || rename(temporary, path) != 0) {
+    (void)unlink(temporary);
     return false;
   }
   return true;

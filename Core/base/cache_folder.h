@@ -20,8 +20,8 @@ typedef struct stratus_cache_part {
   size_t size;
 } stratus_cache_part;
 
-/* Writes `parts` to the file folder/name. It is written beside the file and renamed, so that readers see the old file or the new one.
- * Makes the folder, and up to two above it. Returns false if it could not; then nothing is left. */
+/* Writes `parts` to the file folder/name: to a temporary file in the folder, which is then renamed, so that readers see the old file or the
+ * new one. Makes the folder, and up to two above it. Returns false if it could not; then nothing is left. */
 bool stratus_cache_write(const char* folder, const char* name, const stratus_cache_part* parts, int count);
 
 #endif

@@ -15,19 +15,19 @@ stratus_status stratus_each_tile(
 #pragma omp parallel num_threads(context->threads)
   {
     uint64_t mine[STRATUS_TILE_COUNTS] = { 0 };
-    const bool tells = omp_get_thread_num() == 0 && context->options.progress;
-    bool told = false;
+    const bool reports = omp_get_thread_num() == 0 && context->options.progress;
+    bool reported = false;
     for (int tile; !atomic_load_explicit(&cancelled, memory_order_relaxed) && (tile = atomic_fetch_add(&next, 1)) < tiles;) {
       work(job, tile, mine);
-      if (tells) {
+      if (reports) {
         status = stratus_progress(context, stage, (double)(tile + 1) / tiles);
-        told = true;
+        reported = true;
         if (status != STRATUS_OK) {
           atomic_store(&cancelled, 1);
         }
       }
     }
-    if (tells && !told && tiles > 0) { /* the other threads took all tiles; the caller may want to cancel all the same */
+    if (reports && !reported && tiles > 0) { /* the other threads took all tiles; the caller may want to cancel all the same */
       status = stratus_progress(context, stage, 1.0);
     }
 #pragma omp critical(stratus_tile_counts)

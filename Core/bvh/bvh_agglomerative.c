@@ -6,7 +6,7 @@
  * other and do not tile a volume: by surface area, the boxes of an evenly filled volume's nodes of 64 to 255 voxels have twice the volume
  * of the set's box, the sweep's as much as that box. Such trees cost 1.19 to 1.24 times as much as the sweep's on the sets of record 17K to
  * 35K, and 1.23 to 1.27 times on even noise. By edges small clusters are rounder and overlap less: 1.10 to 1.14, and 1.17 to 1.18.
- * Voxels of a surface, such as the paper's scenes have, leave room beside each cluster: 1.08 to 1.10 by surface area, 1.12 to 1.14 by
+ * Voxels of a surface, such as the paper's scenes have, leave room around each cluster: 1.08 to 1.10 by surface area, 1.12 to 1.14 by
  * edges. The order of ties changes a cost by a fiftieth at most.
  *
  * By either measure, merging never shrinks the distance of two clusters. Two clusters that are each other's nearest may therefore merge at

@@ -150,7 +150,7 @@ stratus_status stratus_field_create(stratus_context* context, const stratus_voxe
   stratus_status status = STRATUS_OK;
   const stratus_field_options defaults = stratus_field_options_default();
   const double start = stratus_now_ms();
-  stratus_field_report told = { .passes = 0 };
+  stratus_field_report made = { .passes = 0 };
   stratus_field* field = NULL;
   size_t count, bytes;
   void* memory;
@@ -175,12 +175,12 @@ stratus_status stratus_field_create(stratus_context* context, const stratus_voxe
   field->effective = voxels->count;
   memcpy(field->n, n, sizeof field->n);
   const stratus_stage stage = stratus_stage_begin(context);
-  TRY_CLEANUP(build(context, voxels, options, count, field, &told));
+  TRY_CLEANUP(build(context, voxels, options, count, field, &made));
   stratus_stage_end(context, &stage, "distance field", bytes_of(field));
   TRY_CLEANUP(stratus_progress(context, "distance field", 1.0));
-  told.build_ms = stratus_now_ms() - start;
+  made.build_ms = stratus_now_ms() - start;
   if (report) {
-    *report = told;
+    *report = made;
   }
   *out = field;
   field = NULL;

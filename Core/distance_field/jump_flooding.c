@@ -141,7 +141,7 @@ static stratus_status run_pass(stratus_context* context, flooding* f, int step, 
   return STRATUS_OK;
 }
 
-static void tell(stratus_field_report* report, int step, const flood_count* count, double e1, double e2)
+static void add_pass(stratus_field_report* report, int step, const flood_count* count, double e1, double e2)
 {
   const int most = (int)(sizeof report->steps / sizeof *report->steps);
   if (report->passes < most) {
@@ -161,7 +161,7 @@ static stratus_status run_plan(stratus_context* context, flooding* f, flood_plan
     const double updated = (double)count.updated;
     const double e1 = f->searched > 0 ? updated / (double)f->searched : 0.0;
     const double e2 = count.updated > 0 ? (double)count.ratios / (double)FLOOD_RATIO_ONE / updated : 1.0;
-    tell(report, plan.steps[pass], &count, e1, e2);
+    add_pass(report, plan.steps[pass], &count, e1, e2);
     if (plan.method == STRATUS_FIELD_AJFA) {
       adapt(&plan, e1, e2);
     }

@@ -24,7 +24,7 @@
 #define BEAM_PARTS (BEAM / STRATUS_WIDTH)
 /* A wider beam leaps seldom, and rays of it have little in common. */
 #define BEAM_WIDEST 2.875f
-/* A cross-section of that width, and what it may grow by within a layer, touch at most so many bricks along an axis. */
+/* A cross-section of BEAM_WIDEST, with its growth within a layer, touches at most this many bricks along an axis. */
 #define BEAM_BRICKS 5
 
 typedef float four __attribute__((vector_size(16)));
@@ -256,7 +256,7 @@ static inline uint64_t beam_range(const hit_beam* beam, int axis, int lo, int hi
   return ~UINT64_C(0) >> (48 - 16 * high) & ~UINT64_C(0) << (16 * low);
 }
 
-/* Bits of a brick's mask whose voxels lie within borders across the axis, which are counted in voxels. */
+/* Returns the bits of a brick's mask whose voxels are within the borders across the axis, in voxels. */
 static inline uint64_t beam_covers(const hit_beam* beam, const beam_brick* brick, four_int voxels)
 {
   uint64_t bits = ~UINT64_C(0);

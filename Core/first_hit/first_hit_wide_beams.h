@@ -39,7 +39,7 @@ typedef struct wide_beam {
   int near[3], far[3]; /* as wide_ray has them */
   float sign[3];       /* of the rays' directions */
   float speed[2][3];   /* a plane at p is met at p * speed + base: [0] at the earliest, [1] at the latest */
-  float base[2][3];    /* likewise */
+  float base[2][3];    /* see speed */
   float last;          /* no ray ends behind it */
   uint64_t begun;      /* rays that have a line */
   int top, visited;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Partitions a mesh by a K-D tree (Li et al. 2012, section 2). A cut also divides cells of the leaves beside it, so cutting goes level by
+ * Partitions a mesh by a K-D tree (Li et al. 2012, section 2). A cut also divides cells of the adjacent leaves, so cutting goes level by
  * level: those leaves exist by then. */
 #include "partition_build.h"
 

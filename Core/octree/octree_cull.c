@@ -100,17 +100,17 @@ static uint64_t test_job(const stratus_octree_view* view, const looker* look, bo
   return retested;
 }
 
-static void tell_job(const stratus_octree_view* view, const stratus_octree_job* job, uint32_t* ids)
+static void list_kept(const stratus_octree_view* view, const stratus_octree_job* job, uint32_t* ids)
 {
   if (job->kept == job->count) {
     memcpy(ids, job->ids, job->count * sizeof *ids);
     return;
   }
   const uint16_t* keep = view->keep + job->first;
-  uint32_t told = 0;
-  for (uint32_t p = 0; told < job->kept; ++p) {
+  uint32_t listed = 0;
+  for (uint32_t p = 0; listed < job->kept; ++p) {
     for (unsigned kept = keep[p]; kept; kept &= kept - 1) {
-      ids[told++] = job->ids[p * STRATUS_PACK + (uint32_t)__builtin_ctz(kept)];
+      ids[listed++] = job->ids[p * STRATUS_PACK + (uint32_t)__builtin_ctz(kept)];
     }
   }
 }
@@ -168,19 +168,19 @@ static stratus_status run_jobs(stratus_octree_view* view, const looker* look, bo
   if (tree->unbounded.count > 0) {
     memcpy(view->ids, stratus_list_ids(&tree->unbounded), tree->unbounded.count * sizeof *view->ids);
   }
-  size_t told = tree->unbounded.count;
+  size_t listed = tree->unbounded.count;
   for (int64_t j = 0; j < jobs; ++j) {
     if (view->jobs[j].kept > 0) { /* view->ids may be NULL where no job keeps a box */
-      tell_job(view, &view->jobs[j], view->ids + told);
-      told += view->jobs[j].kept;
+      list_kept(view, &view->jobs[j], view->ids + listed);
+      listed += view->jobs[j].kept;
     }
   }
   visible->objects_tested = tested;
   visible->objects_retested = retested;
-  visible->count = told;
+  visible->count = listed;
   if (tree->options.placement == STRATUS_OCTREE_TOUCHING) {
     TRY(stratus_octree_view_reserve_stamps(view));
-    visible->count = drop_repeated(view, told);
+    visible->count = drop_repeated(view, listed);
   }
   return STRATUS_OK;
 }

@@ -194,7 +194,7 @@ static stratus_status check_output(const stratus_octree* tree, const uint32_t* i
   return STRATUS_OK;
 }
 
-static void tell(const found* list, size_t n, size_t capacity, uint32_t* ids, double* values)
+static void write_found(const found* list, size_t n, size_t capacity, uint32_t* ids, double* values)
 {
   for (size_t i = 0; i < n && i < capacity; ++i) {
     ids[i] = list[i].id;
@@ -236,7 +236,7 @@ stratus_status stratus_octree_query_box(stratus_octree* tree, const double bound
   }
   if (status == STRATUS_OK) {
     sort(list, n, by_id);
-    tell(list, n, capacity, ids, NULL);
+    write_found(list, n, capacity, ids, NULL);
     *count = n;
   }
   stratus_release(tree->context, list);
@@ -257,7 +257,7 @@ stratus_status stratus_octree_query_sphere(
   size_t n = 0;
   TRY(collect(tree, &q, &list, &n));
   sort(list, n, by_id);
-  tell(list, n, capacity, ids, NULL);
+  write_found(list, n, capacity, ids, NULL);
   *count = n;
   stratus_release(tree->context, list);
   return STRATUS_OK;
@@ -282,7 +282,7 @@ stratus_status stratus_octree_query_ray(stratus_octree* tree, const double origi
   size_t n = 0;
   TRY(collect(tree, &q, &list, &n));
   sort(list, n, by_value);
-  tell(list, n, capacity, ids, t);
+  write_found(list, n, capacity, ids, t);
   *count = n;
   stratus_release(tree->context, list);
   return STRATUS_OK;
@@ -318,7 +318,7 @@ stratus_status stratus_octree_query_nearest(
     q.radius *= 2.0;
   }
   sort(list, n, by_value);
-  tell(list, n < wanted ? n : wanted, wanted, ids, distances);
+  write_found(list, n < wanted ? n : wanted, wanted, ids, distances);
   *count = wanted;
   stratus_release(tree->context, list);
   return STRATUS_OK;

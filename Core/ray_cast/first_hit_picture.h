@@ -39,8 +39,8 @@ typedef struct stratus_first_hit_scene {
 stratus_status stratus_first_hit_borders(
   stratus_context* context, const stratus_volume* volume, stratus_voxel_borders* borders, void** memory);
 
-/* Rebuilds only what changed. borders: NULL if the volume has no coordinates. plain: scene->voxels is needed even if an offered tree
- * serves. */
+/* Rebuilds only parts whose inputs changed. borders: NULL if the volume has no coordinates. plain: scene->voxels is needed even if an
+ * offered tree serves. */
 stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_voxel_borders* borders, stratus_structure structure, bool plain, stratus_first_hit_scene* scene,
   stratus_ray_cast_report* report);

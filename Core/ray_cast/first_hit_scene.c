@@ -197,7 +197,7 @@ static const char* reason_of(const stratus_first_hit_scene* scene, stratus_struc
                                        : "as asked";
 }
 
-static void tell(const stratus_first_hit_scene* scene, stratus_structure wanted, bool offered, stratus_ray_cast_report* report)
+static void report_scene(const stratus_first_hit_scene* scene, stratus_structure wanted, bool offered, stratus_ray_cast_report* report)
 {
   stratus_tree_statistics statistics = { .why = "" };
   report->structure = scene->used;
@@ -254,6 +254,6 @@ stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratu
     }
   }
   bounds_of(scene->tree, scene->voxels, scene);
-  tell(scene, structure, offered, report);
+  report_scene(scene, structure, offered, report);
   return STRATUS_OK;
 }

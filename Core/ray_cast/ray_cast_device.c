@@ -244,7 +244,7 @@ static void draw_on_host(stratus_ray_caster* caster, const char* why)
   snprintf(caster->where, sizeof caster->where, "drawn on the host: %s", why);
 }
 
-static void tell_pages(stratus_ray_caster* caster, const stratus_ray_pages* pages)
+static void report_pages(stratus_ray_caster* caster, const stratus_ray_pages* pages)
 {
   snprintf(caster->where, sizeof caster->where,
     "the device has %lld of the volume's %lld pages, %.4g MB, as all of it, %.4g MB, exceeds its largest allocation",
@@ -264,7 +264,7 @@ static stratus_status upload_all(stratus_ray_caster* caster, const stratus_ray_c
     if (*why_not) {
       return STRATUS_OK;
     }
-    tell_pages(caster, &caster->device->pages);
+    report_pages(caster, &caster->device->pages);
     if (caster->uploads != uploads) {
       stratus_log(caster->context, STRATUS_LOG_INFO, "%s", caster->where);
     }

@@ -16,7 +16,7 @@
 typedef struct stratus_ray_device stratus_ray_device;
 typedef struct stratus_first_hit stratus_first_hit;
 
-/* A table and what it was made for. */
+/* A table and its inputs. */
 typedef struct stratus_ray_made_table {
   stratus_table* table; /* NULL: none */
   double distance;      /* between samples */
@@ -24,7 +24,7 @@ typedef struct stratus_ray_made_table {
   uint64_t number;      /* of the caster's tables, in the order of their making */
 } stratus_ray_made_table;
 
-/* Milliseconds of a frame, and of building, by structure; and what a trial wastes. */
+/* Milliseconds of a frame, and of building, by structure; and the time that a trial wastes. */
 typedef struct stratus_ray_costs {
   double frame[STRATUS_STRUCTURE_HYBRID + 1], build[STRATUS_STRUCTURE_HYBRID + 1], trial;
 } stratus_ray_costs;
@@ -112,7 +112,7 @@ void stratus_ray_drop_map(stratus_ray_caster* caster);
 void stratus_ray_drop_rough(stratus_ray_caster* caster);
 void stratus_ray_drop_offer_map(stratus_ray_caster* caster);
 
-/* ray_caster_update.c: rebuilds only what changed. */
+/* ray_caster_update.c: rebuilds only parts whose inputs changed. */
 stratus_status stratus_ray_update_tables(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_ray_cast_options* options, size_t rays, stratus_ray_cast_report* report); /* value ranges, choices, table */
 /* Returns the size of blocks where the user leaves it open. */

@@ -22,7 +22,7 @@ typedef struct stratus_ray_pages {
  * where there is none. *why_not: the reason why they do not fit, written to `text`; NULL where they do. */
 stratus_status stratus_ray_pages_update(
   stratus_ray_caster* caster, stratus_ray_pages* pages, stratus_ray_variant variant, char* text, size_t capacity, const char** why_not);
-/* Tells rays how the page table is laid out. */
+/* Writes the layout of the page table to the rays' arguments. */
 void stratus_ray_pages_arguments(const stratus_ray_pages* pages, int components, stratus_ray_cast_arguments* a);
 /* Releases the buffers and all memory. */
 void stratus_ray_pages_drop(stratus_context* context, stratus_ray_pages* pages);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Which sampling rules can draw a scene, and what the user leaves open. */
+ * Decides which sampling rules can draw a scene, and which settings the user leaves open. */
 #include "ray_sampling.h"
 
 #include "matrix.h"

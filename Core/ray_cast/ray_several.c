@@ -118,7 +118,7 @@ cleanup:
   return status;
 }
 
-/* Tells of a mesh what was counted. */
+/* Writes a mesh's counts to its report. */
 static void report_mesh(const stratus_several* s, stratus_several_input* in, const stratus_ray_counts* counts, const int window[4])
 {
   in->report.rays = counts->rays;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Makes each of several volumes ready to be drawn: its tables and structure, the lattice that all share, and what rays read. */
+ * Makes each of several volumes ready to be drawn: its tables and structure, the lattice that all share, and the arrays that rays read. */
 #include "ray_several_picture.h"
 
 #include "matrix.h"

@@ -12,7 +12,7 @@
 typedef struct stratus_several_input {
   const stratus_ray_cast_input* of;
   const stratus_transfer* transfer; /* of a volume: the input's function, or the one derived from its function of two variables */
-  stratus_ray_cast_options options; /* with the tolerance of a picture of several, and what all take from the first */
+  stratus_ray_cast_options options; /* with the tolerance of a picture of several, and the settings that all share with the first */
   stratus_ray_cast_report report;
   stratus_tetra_options tetra_options; /* of a mesh: the input's options */
   stratus_tetra_frame frame;           /* of a mesh that shows */

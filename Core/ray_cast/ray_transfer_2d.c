@@ -114,8 +114,8 @@ static void fill_table(stratus_ray_transfer_2d* t)
   }
 }
 
-/* Gives the largest opacity of each value's rows as points, and the color of the middle row. A transparent column beside a visible one
- * stands a hair away from it, so that no rounding shows a value that is transparent here. */
+/* Gives the largest opacity of each value's rows as points, and the color of the middle row. A transparent column next to a visible one is
+ * moved a hair away from it, so that no rounding shows a value that is transparent here. */
 static void fill_shown(stratus_ray_transfer_2d* t)
 {
   const stratus_transfer_2d* of = &t->of;

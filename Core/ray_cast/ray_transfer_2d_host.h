@@ -17,7 +17,7 @@ typedef struct stratus_ray_transfer_2d {
   stratus_transfer shown; /* for each value the largest opacity in its rows */
 } stratus_ray_transfer_2d;
 
-/* Checks the function, where the caster does not have it yet, and what it cannot be combined with. */
+/* Checks the function, unless the caster has it already, and options that it cannot be combined with. */
 stratus_status stratus_ray_transfer_2d_check(
   const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options);
 /* Keeps the function of the options, if there is one. Drops what follows from another one. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * An octree of objects, and what a frustum sees of them. */
+ * An octree of objects, and its visible objects in a frustum. */
 #ifndef STRATUS_PUBLIC_OCTREE_H
 #define STRATUS_PUBLIC_OCTREE_H
 

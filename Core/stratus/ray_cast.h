@@ -251,8 +251,8 @@ typedef struct stratus_ray_cast_report {
   int tolerance_met;      /* 0: the finest setting is expected to miss the tolerance; otherwise 1 */
   uint64_t probe_builds;  /* number of probes since the caster was created */
   uint64_t probe_samples; /* values interpolated by this call's probe */
-  /* One sentence: the reasons for structure, sampling and sample distance, and what was tried. If a device has only a part of the values,
-   * or leaves the image to the host, it says so and why. */
+  /* One sentence: the reasons for structure, sampling and sample distance, and the tried settings. If a device has only a part of the
+   * values, or leaves the image to the host, it says so and why. */
   char why[704];
   int offered_tree; /* 1: the structure is the tree of stratus_ray_caster_offer_tree() */
 } stratus_ray_cast_report;

@@ -10,7 +10,7 @@ extern const int stratus_lattice_ways[6][3];
 /* The distances between the numbers of points that are neighbours along i, j and k. */
 void stratus_lattice_steps(const stratus_mesh* mesh, int64_t step[3]);
 
-/* A mesh, and what was made of it. */
+/* A mesh, and the structures made of it. */
 typedef struct stratus_tetra_cells {
   const stratus_tetra_mesh* tetra;
   const stratus_mesh* mesh;

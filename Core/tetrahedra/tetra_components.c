@@ -171,7 +171,7 @@ static stratus_status build(components_build* b)
   stratus_tetra_components* m = &b->made;
   for (int c = 0; c < m->count; ++c) {
     b->bias[c] = stratus_tetra_bias(b->mesh, c);
-    if (m->dependent && m->count == 4 && c < 3) { /* red, green and blue are what they are */
+    if (m->dependent && m->count == 4 && c < 3) { /* red, green and blue are not scaled to the range */
       b->scale[c] = 1.0f / 255.0f;
       b->offset[c] = (float)b->bias[c] * b->scale[c];
     } else {

@@ -241,7 +241,7 @@ static bool find_orientation(lattice_build* b)
   return right > 0 && left > 0;
 }
 
-/* Lists the faces between hexahedra that show and what does not, unless faces is NULL, and returns their count. */
+/* Lists the faces between visible hexahedra and hidden ones, unless faces is NULL, and returns their count. */
 static size_t list_faces(const lattice_build* b, stratus_tetra_face* faces)
 {
   const int hand = b->left ? -1 : 1;

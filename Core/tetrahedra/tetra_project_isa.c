@@ -21,7 +21,7 @@ static vmask transparent(const stratus_tetra_projection* projection, vmask mask,
   return mask & vi_lt(last, v_gather_ints(table->next_shown, first, mask));
 }
 
-/* Finds the first and last pixel whose centre may lie within lo..hi; -1..1 spans `pixels`. */
+/* Finds the first and last pixel whose centre may be within lo..hi; -1..1 spans `pixels`. */
 static void pixel_span(vfloat lo, vfloat hi, int pixels, vint* first, vint* last)
 {
   const vfloat half = v_set(0.5f * (float)pixels), shift = v_set(0.5f * (float)pixels - 0.5f), slack = v_set(1e-3f + 2e-6f * (float)pixels);

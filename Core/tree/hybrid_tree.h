@@ -131,7 +131,7 @@ stratus_status stratus_hybrid_planes_density(hybrid_build* build, hybrid_work* c
 extern const hybrid_sums stratus_hybrid_sums_host;
 
 /* hybrid_device.c */
-/* Returns whether the context's device makes the sums: it builds, and what they add up to fits its numbers. */
+/* Returns whether the context's device makes the sums: it builds, and the sums fit its numbers. */
 bool stratus_hybrid_on_device(const hybrid_build* build);
 stratus_status stratus_hybrid_device_create(hybrid_build* build);
 void stratus_hybrid_device_destroy(hybrid_build* build);

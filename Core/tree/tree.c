@@ -279,7 +279,7 @@ stratus_status stratus_tree_count_up(stratus_context* context, stratus_tree* tre
   return STRATUS_OK;
 }
 
-static void tell_why(stratus_tree* tree)
+static void complete_why(stratus_tree* tree)
 {
   stratus_tree_statistics* s = &tree->statistics;
   if (s->voxels == 0) {
@@ -327,7 +327,7 @@ stratus_status stratus_tree_create(
   tree->statistics.voxels = voxels->count;
   tree->statistics.bricks = voxels->brick_count;
   TRY_CLEANUP(stratus_tree_count_up(context, tree));
-  tell_why(tree);
+  complete_why(tree);
   TRY_CLEANUP(stratus_progress(context, "tree", 1.0));
   tree->statistics.build_ms = stratus_now_ms() - start;
   *out = tree;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define WORD_NS 30.0 /* of one thread for a word of 64 cells and each bit of the codes */
-#define ROOM_GRIDS 5 /* grids that stratus_find_leaps needs beside its arguments */
+#define ROOM_GRIDS 5 /* grids that stratus_find_leaps needs in addition to its arguments */
 
 /* Sets the bits of the occupied cells, and the bits of the empty ones. */
 static void mark_bits(const stratus_voxels* voxels, const stratus_tree_shape* shape, const stratus_tree_node* node,

@@ -51,7 +51,8 @@ static stratus_status find_boxes(stratus_context* context, const stratus_leaves*
     const bool leaf = node->axis < 0;
     if ((n > 0 && parents[n] < 0) || (leaf && !isnan(boxes[6 * node->below])) ||
       (!leaf && (parents[node->below] >= 0 || parents[node->above] >= 0))) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "leaves: node %d or what it names is reached more or less than once", (int)n);
+      return stratus_fail(
+        context, STRATUS_INVALID_ARGUMENT, "leaves: node %d, its leaf or one of its children is reached more or less than once", (int)n);
     }
     if (!leaf) {
       parents[node->below] = parents[node->above] = n;

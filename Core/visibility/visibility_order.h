@@ -14,7 +14,7 @@
 
 #define STRATUS_NO_CELL UINT32_MAX
 
-/* Asks for memory that will be read soon. */
+/* Prefetches memory that will be read soon. */
 #ifdef __GNUC__
 #define STRATUS_FETCH(address) __builtin_prefetch(address)
 #else

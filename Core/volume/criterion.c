@@ -133,7 +133,7 @@ stratus_status stratus_criterion_intervals(
   return STRATUS_OK;
 }
 
-/* True if each wanted interval lies within one of the tree's. */
+/* Returns whether each wanted interval is within one of the tree's. */
 static bool is_within(const stratus_origin* wanted, const stratus_origin* tree)
 {
   for (int32_t i = 0, j = 0; i < wanted->intervals; ++i) {

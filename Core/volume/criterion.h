@@ -33,7 +33,7 @@ stratus_status stratus_origin_take_cells(
 stratus_status stratus_criterion_intervals(
   stratus_context* context, const stratus_volume* volume, const stratus_criterion* criterion, int cells, stratus_origin* origin);
 /* Returns 1 if a structure made for `tree` may replace one made for `wanted`: both have the same use and hash, and the intervals cover. For
- * cells the wanted intervals lie within the tree's. For voxels both have the same intervals, since a voxel too many would be hit. */
+ * cells the wanted intervals are within the tree's. For voxels both have the same intervals, since a voxel too many would be hit. */
 int stratus_origin_covers(const stratus_origin* tree, const stratus_origin* wanted);
 
 #endif

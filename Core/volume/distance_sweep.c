@@ -142,8 +142,8 @@ static void octant_sweep(const stratus_occupancy* occupancy, const distance_inne
       const size_t at = (size_t)j * pitch;
       uint8_t* row = r->plane + at;
       if (i > 0) {
-        const int64_t beside = y_up ? j + 1 : j - 1;
-        row_step2(before + at, before + (beside >= 0 && beside < ny ? (size_t)beside * pitch : at), nx, row);
+        const int64_t neighbour = y_up ? j + 1 : j - 1;
+        row_step2(before + at, before + (neighbour >= 0 && neighbour < ny ? (size_t)neighbour * pitch : at), nx, row);
       }
       row_near(row, nx, side, r->planes[i & 1] + at);
       uint8_t* out = map->bytes + (size_t)octant * map->map_bytes + (size_t)k * plane_bytes + at;

@@ -161,7 +161,7 @@ typedef struct dividing {
   stratus_table_entries* t;
   double* points; /* of opacity and colour, ascending; `count` of them */
   size_t count;
-  uint8_t* flags; /* of cells: 1: holds a point; 2: meets a piece that is narrow beside cells; 4: is divided */
+  uint8_t* flags; /* of cells: 1: holds a point; 2: meets a piece that is narrow compared with cells; 4: is divided */
   float* bounds;  /* where the entries of a cell begin */
   size_t bound_count, bound_room;
   bool has_few_floats; /* a cell has so few floats that its middle and theirs differ */

@@ -11,7 +11,7 @@
 #define MOST_ENTRIES 65536
 /* The tolerance for which these are enough. A value is off by up to half an entry, so that half the tolerance needs twice as many. */
 #define ENTRIES_TOLERANCE 1e-3
-/* Units of width over all values: so narrow may a feature be beside them that running sums hold. */
+/* The width of all values in units. Running sums hold features as narrow as one unit. */
 #define WIDTH_UNITS (1 << 29)
 /* Optical depth of a midpoint sample of opacity 1, instead of infinity. Even the smallest part of such a sample stays opaque, as long as it
  * is above 0 as a float. */
@@ -199,7 +199,7 @@ typedef struct sum_part {
 } sum_part;
 
 /* Writes what entries first..last-1 add to the four running sums. An entry is the function at one value, not the mean over its width: a
- * transparent value must stay transparent beside one that shows. */
+ * transparent value must stay transparent next to one that shows. */
 static void fill_addends(const stratus_table* table, const stratus_transfer* transfer, const stratus_table_entries* entries, int first,
   int last, double* sums, sum_part* part)
 {
@@ -328,7 +328,7 @@ static stratus_status fill_preintegrated(
     for (size_t which = 0; which < 3; ++which) {
       table->sums[4 * e + which] = any ? (int32_t)llrint(sums[4 * e + which] * scale) : 0;
     }
-    if (e > 0 && any) { /* an entry that shows raises the sum by at least 1, however faint it is beside the rest */
+    if (e > 0 && any) { /* an entry that shows raises the sum by at least 1, however faint it is compared with the rest */
       const int64_t rounded = llrint(sums[4 * e + 3] * scale), least = tau + (sums[4 * e + 3] > sums[4 * e - 1]);
       tau = rounded > least ? rounded : least;
     }

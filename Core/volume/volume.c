@@ -302,8 +302,8 @@ static double value_as_double(const stratus_volume* volume, size_t index)
   return 0.0;
 }
 
-/* The bias of wide types is the value of least magnitude. The first value may be a fill value of 1e36, beside which every digit of the
- * others would cancel. */
+/* The bias of wide types is the value of least magnitude. The first value may be a fill value of 1e36, and relative to it every digit of
+ * the others would cancel. */
 double stratus_volume_bias(const stratus_volume* volume)
 {
   if (!stratus_type_is_wide(volume->type)) {

@@ -130,7 +130,7 @@ static unsigned layers_of(uint64_t m, int axis)
   return (unsigned)(m & 15);
 }
 
-/* Widens [lo, hi) by a brick. Most bricks lie within and cost only comparisons. */
+/* Widens [lo, hi) by a brick. Most bricks are within it and cost only comparisons. */
 static void widen(const stratus_brick* brick, int64_t lo[3], int64_t hi[3])
 {
   for (int a = 0; a < 3; ++a) {

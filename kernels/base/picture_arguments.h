@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The picture that a kernel draws: its sides, and which arrays beside rgba the caller wants. The same bytes on host and device. */
+ * The picture that a kernel draws: its sides, and which arrays the caller wants in addition to rgba. The same bytes on host and device. */
 #ifndef STRATUS_PICTURE_ARGUMENTS_H
 #define STRATUS_PICTURE_ARGUMENTS_H
 

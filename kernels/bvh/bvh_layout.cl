@@ -151,7 +151,7 @@ static void write_node(const target* t, uint node, const subtree* s, uint first,
   to[7] = (int)kind_count;
 }
 
-/* place: the subtree's node, the first node below it and its first box. Node NO_NODE: it lies within a leaf. */
+/* place: the subtree's node, the first node below it and its first box. Node NO_NODE: it is within a leaf. */
 static void place_child(const target* t, uint child, const subtree* s, uint4 place)
 {
   if (!(child & LEAF)) {

@@ -6,7 +6,7 @@
  * voxel that touches the edge. So a ray that lands near an edge with an occupied voxel about it is given up as doubtful, and the caller
  * walks it again in double precision. The answer is exact, and float does nearly all of the work.
  *
- * A ray that is slow along an axis, by less than a slack in a length, runs beside a plane across it for long. Where floats have it cross
+ * A ray that is slow along an axis, by less than a slack in a length, runs along a plane across it for long. Where floats have it cross
  * the plane, and where it does, may be voxels apart. Within occupied bricks it is seen at every voxel that it passes. Between bricks it is
  * not, so that a slow ray that lands near a brick's border of that axis is doubtful, too. */
 #ifndef STRATUS_FIRST_HIT_H
@@ -69,8 +69,8 @@ INLINE int hit_occupied(
   return (tables->masks[2 * (tables->rows[f->first_row + row] + (int)(entry >> a->entry_bytes)) + (bit >> 5)] >> (bit & 31)) & 1;
 }
 
-/* 1 if a voxel within `reach` of `position`, which is in voxel `cell` or beside it, is occupied, or if another brick is within reach across
- * an axis along which the ray is slow. */
+/* Returns 1 if a voxel within `reach` of `position`, which is in voxel `cell` or next to it, is occupied, or if another brick is within
+ * reach across an axis along which the ray is slow. */
 INLINE int hit_doubt(CONSTANT stratus_hit_arguments* a, const stratus_hit_tables* tables, const stratus_hit_place* field,
   const float position[3], const int cell[3], const int slow[3], float reach)
 {

@@ -145,7 +145,7 @@ INLINE vmask cell_composite(
 
 #endif
 
-/* Visits the cells of the lanes in `mask`. Returns the lanes whose way shows something, and what their way is. */
+/* Visits the cells of the lanes in `mask`. Returns the lanes whose path shows something, and writes their paths to `ways`. */
 INLINE vmask RAY_NAME(cell_visit)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   stratus_packet* k, const cell_walk* w, vmask mask, cell_way* ways)
 {

@@ -107,7 +107,7 @@ typedef struct several_source {
   int preintegrated; /* 1: a sample is integrated between the values at both ends of its path; 0: it has the value in the middle */
 } several_source;
 
-/* A path: the part of each ray from `lo` to `hi`, and what a volume shows on it. Places are in segments from the segment in which the ray
+/* A path: the part of each ray from `lo` to `hi`, and a volume's values on it. Places are in segments from the segment in which the ray
  * enters the volume. */
 typedef struct several_way {
   vfloat lo, hi, front, rise; /* the field changes from `front` at lo to `front` + `rise` at hi */

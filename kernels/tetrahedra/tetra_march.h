@@ -280,7 +280,7 @@ INLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const st
   tetra_media(a, &mixture, light, mask, near);
 }
 
-/* The lanes whose stretch may show: its sums differ, or it lies within one entry. */
+/* Returns the lanes whose stretch may show: its sums differ, or it is within one entry. */
 INLINE vmask tetra_may_show(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_place* from, const stratus_tetra_place* to, vmask mask)
 {
   return a->table.has_opaque ? mask : m_andnot(mask, m_andnot(vi_zero(to->sum[3] - from->sum[3]), vi_zero(to->entry - from->entry)));

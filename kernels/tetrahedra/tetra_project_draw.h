@@ -67,7 +67,7 @@ typedef struct span {
 
 INLINE span span_of(const project_tile* t, GLOBAL const stratus_tetra_rect* rect)
 {
-#if STRATUS_WIDTH == 1 /* a pixel takes the cells of the packet that it would be in, whose rounding may meet it beside their rect */
+#if STRATUS_WIDTH == 1 /* a pixel draws the cells of the packet that it would be in, whose rounding may meet it next to their rect */
   const int left = (rect->x0 & ~3) - t->own_x, right = (rect->x1 | 3) - t->own_x;
   const int low = (rect->y0 & ~3) - t->own_y, high = (rect->y1 | 3) - t->own_y;
 #else

@@ -95,7 +95,7 @@ INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   for (int c = 0; c < 4; ++c) {
     span[c] = to->sum[c] - from->sum[c];
   }
-  if (m_any(level)) { /* a stretch within one entry takes that entry, so that a transparent entry stays so beside one that is not */
+  if (m_any(level)) { /* a stretch within one entry uses that entry, so that a transparent entry stays transparent next to a visible one */
     vint own[4];
     gather_four_ints(sums, to->entry + vi_set((int)a->table.last + 1), level, own);
     for (int c = 0; c < 4; ++c) {

@@ -157,8 +157,8 @@ static uint count_box(__global const uint* sums, long nx, long ny, const long lo
     sums[z0 + y1 + lo[0]] + sums[z0 + y0 + hi[0]] - sums[z0 + y0 + lo[0]];
 }
 
-/* Whether a block of occupancy `target` lies within `distance` of `at`. side: along each axis -1 looks below `at`, +1 above, 0 both ways.
- */
+/* Returns whether a block of occupancy `target` is within `distance` of `at`. side: along each axis -1 looks below `at`, +1 above, 0 to
+ * both sides. */
 static int found(__global const uint* sums, const long n[3], const long at[3], const int side[3], long distance, int target)
 {
   long lo[3], hi[3];
@@ -251,8 +251,8 @@ static void spread_row(__global const uchar* occupied, uchar target, long n, lon
   }
   for (int step = 1; step < n && step <= ROW_MARGIN; step *= 2) {
     for (long x = 0; x < n; x += 16) {
-      const uchar16 beside = min(vload16(0, from + x - step), vload16(0, from + x + step)) + (uchar16)((uchar)step);
-      vstore16(min(vload16(0, from + x), beside), 0, to + x);
+      const uchar16 neighbours = min(vload16(0, from + x - step), vload16(0, from + x + step)) + (uchar16)((uchar)step);
+      vstore16(min(vload16(0, from + x), neighbours), 0, to + x);
     }
     __global uchar* swap = from;
     from = to;
@@ -392,8 +392,8 @@ static void join_empty(const sweep* s, long row)
   }
 }
 
-/* One octant's map. A block's nearest in its octant lies along x, or one step nearer to a neighbour in the row, the plane or the row of the
- * plane before. The last row of the item's planes stands for rows beyond the grid. */
+/* Makes one octant's map. A block's nearest in its octant is along x, or one step nearer to a neighbour in the row, the plane or the row of
+ * the plane before. The last row of the item's planes replaces rows beyond the grid. */
 static void sweep_octant(const sweep* s, int octant, __global uchar* bytes)
 {
   const long nx = s->nx, ny = s->ny, nz = s->nz, stride = s->pitch + ROW_MARGIN, plane = (ny + 1) * stride + ROW_MARGIN;
