@@ -124,7 +124,7 @@ public:
   {
     double xa, ya, xb, yb;
     const double ka = this->project(a, xa, ya), kb = this->project(b, xb, yb);
-    if (ka > 1e-9 && kb > 1e-9) { // an eye within the box does not see the edges beside it
+    if (ka > 1e-9 && kb > 1e-9) { // an eye within the box does not see the edges behind it
       this->flat_line(xa, ya, xb, yb);
     }
   }

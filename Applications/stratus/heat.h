@@ -8,7 +8,7 @@
 
 namespace cli {
 
-constexpr int heat_bar_width = 112; // in pixels, beside the picture
+constexpr int heat_bar_width = 112; // in pixels, in addition to the picture
 
 // Returns RGB bytes, bottom row first, width + heat_bar_width pixels per row. `color` is a value of --color, over 0 .. the most samples of
 // a pixel.

@@ -9,8 +9,8 @@
 
 namespace cli {
 
-// Writes a temporary file beside the path and renames it. The temporary file is removed when the program fails or a signal ends it. A path
-// that is no regular file (a pipe, a device), or to which a standard stream writes (/dev/stdout), is written in place.
+// Writes a temporary file in the path's folder and renames it. The temporary file is removed when the program fails or a signal ends it. A
+// path that is no regular file (a pipe, a device), or to which a standard stream writes (/dev/stdout), is written in place.
 class output_file
 {
 public:

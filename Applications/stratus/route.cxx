@@ -219,7 +219,7 @@ void join(vtkCompositeDataSet* whole, const std::string& path, const std::string
     result.kind += cli::format(" %d ", kind.second) + kind.first;
   }
   result.kind = std::to_string(parts) + (parts == 1 ? " part:" : " parts:") + result.kind +
-    (blocks.TellLeftOut().empty() ? "" : "; left out: " + blocks.TellLeftOut());
+    (blocks.DescribeLeftOut().empty() ? "" : "; left out: " + blocks.DescribeLeftOut());
   result.arrays = names_of(first);
   result.grid = blocks.GetGrid();
 }

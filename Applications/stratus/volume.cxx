@@ -49,7 +49,7 @@ private:
   cli::context& Core;
   std::unique_ptr<cli::input> Input;
   cli::volume_parts Parts;
-  std::vector<std::unique_ptr<cli::input>> Blocks; // of the same volume as Input, beside it
+  std::vector<std::unique_ptr<cli::input>> Blocks; // further blocks of Input's volume
   std::vector<stratus_ray_caster*> BlockCasters;
   cli::transfer Transfer;
   stratus_camera Camera = {};

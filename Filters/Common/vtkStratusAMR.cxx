@@ -36,7 +36,7 @@ std::string NameOf(unsigned int level, unsigned int id)
   return "box " + std::to_string(id) + " of level " + std::to_string(level);
 }
 
-// Finds how many cells of each level lie along one of the level before.
+// Finds how many cells of each level fit along a cell of the level before.
 bool FindRatios(vtkOverlappingAMR* amr, std::vector<std::array<int, 3>>& ratios, std::string& error)
 {
   for (unsigned int level = 0; level + 1 < amr->GetNumberOfLevels(); ++level) {

@@ -33,8 +33,8 @@ public:
     Place Lo{}, Hi{};
   };
 
-  // ratios: how many cells of level i + 1 lie along a cell of level i; one fewer than there are levels. Returns false, with the reason,
-  // where places could not be counted.
+  // ratios: how many cells of level i + 1 fit along a cell of level i; one fewer than there are levels. Returns false, with the reason, if
+  // the number of places is too large to count.
   bool Begin(const std::vector<std::array<int, 3>>& ratios, bool cells, int components, std::string& error);
   // Adds a box of the values value(i): of its cells or its points, x fastest. hidden(i): whether it shows nothing; it gets the value NaN.
   // Returns false, with the reason, where another box of the level has one of its cells. Boxes of a level are numbered as they come.

@@ -56,7 +56,7 @@ vtkMTimeType TimeOf(vtkDataSet* grid, vtkDataArray* scalars)
   return time;
 }
 
-void Tell(vtkIdType count, const char* why, std::string& text)
+void AddLeftOut(vtkIdType count, const char* why, std::string& text)
 {
   if (count > 0) {
     text += (text.empty() ? "" : ", ") + std::to_string(count) + (count == 1 ? " block " : " blocks ") + why;
@@ -154,9 +154,9 @@ std::vector<vtkStratusBlocks::Block> vtkStratusBlocks::List(vtkCompositeDataSet*
     }
   }
   this->LeftOut.clear();
-  Tell(flat, "without a volume", this->LeftOut);
-  Tell(bare, "without the scalar array", this->LeftOut);
-  Tell(other, "whose scalar array differs from the first block's in points or cells, or in its number of components", this->LeftOut);
+  AddLeftOut(flat, "without a volume", this->LeftOut);
+  AddLeftOut(bare, "without the scalar array", this->LeftOut);
+  AddLeftOut(other, "whose scalar array differs from the first block's in points or cells, or in its number of components", this->LeftOut);
   return blocks;
 }
 

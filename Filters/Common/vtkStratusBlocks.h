@@ -38,8 +38,8 @@ public:
   using Lattices = std::vector<std::pair<vtkStructuredGrid*, vtkDataArray*>>;
   const Lattices& GetLattices() const { return this->Several; }
   bool OfCells() const { return this->Cells; }
-  // Which blocks are left out and why, "" where none is.
-  const std::string& TellLeftOut() const { return this->LeftOut; }
+  // Returns which blocks are left out and why, "" if none is.
+  const std::string& DescribeLeftOut() const { return this->LeftOut; }
 
 private:
   struct Block {

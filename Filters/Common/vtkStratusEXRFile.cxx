@@ -31,7 +31,7 @@ private:
   static int64_t Write(
     exr_const_context_t, void* self, const void* buffer, uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t) noexcept;
   static exr_result_t Compress(exr_encode_pipeline_t* pipeline) noexcept;
-  static void Tell(exr_const_context_t context, exr_result_t, const char* message) noexcept;
+  static void OnError(exr_const_context_t context, exr_result_t, const char* message) noexcept;
   void Check(exr_result_t result) const;
   void ReleasePipeline();
   void WriteChunk(int top, int width, const std::vector<float>& values, const std::vector<vtkStratusEXRChannel>& channels);
@@ -49,7 +49,7 @@ Encoder::Encoder()
   exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
   start.user_data = this;
   start.write_fn = Encoder::Write;
-  start.error_handler_fn = Encoder::Tell;
+  start.error_handler_fn = Encoder::OnError;
   const exr_result_t result = exr_start_write(&this->Context, "picture.exr", EXR_WRITE_FILE_DIRECTLY, &start);
   if (result != EXR_ERR_SUCCESS) {
     throw std::runtime_error(std::string("OpenEXR: ") + exr_get_default_error_message(result));
@@ -97,7 +97,7 @@ int64_t Encoder::Write(
   return static_cast<int64_t>(size);
 }
 
-void Encoder::Tell(exr_const_context_t context, exr_result_t, const char* message) noexcept
+void Encoder::OnError(exr_const_context_t context, exr_result_t, const char* message) noexcept
 {
   void* self = nullptr;
   if (exr_get_user_data(context, &self) == EXR_ERR_SUCCESS && self && message) {

@@ -19,7 +19,7 @@ struct VTK_STRATUS_PRIVATE vtkStratusEXRChannel {
 using vtkStratusEXRProgress = std::function<void(double)>;
 
 // Returns the whole file, so that no half of it reaches a disk or a pipe. EXR's first row is the top one. Throws std::runtime_error with a
-// message, std::bad_alloc, and what callbacks throw. width and height are at least 1.
+// message, std::bad_alloc, and the callbacks' exceptions. width and height are at least 1.
 VTK_STRATUS_PRIVATE std::vector<unsigned char> vtkStratusEncodeEXR(
   int width, int height, const std::vector<vtkStratusEXRChannel>& channels, const vtkStratusEXRProgress& progress = nullptr);
 

@@ -14,7 +14,7 @@
 #include <limits>
 
 namespace {
-std::string TellExtent(const int n[3])
+std::string WriteExtent(const int n[3])
 {
   return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
 }
@@ -32,8 +32,8 @@ bool vtkStratusLattice::Set(vtkStructuredGrid* grid, std::string& error)
   grid->GetDimensions(this->Points);
   this->Hidden.clear();
   if (*std::min_element(this->Points, this->Points + 3) < 2) {
-    error =
-      "the structured grid has " + TellExtent(this->Points) + " points and so no cell with a volume, at least 2 along each axis are needed";
+    error = "the structured grid has " + WriteExtent(this->Points) +
+      " points and so no cell with a volume, at least 2 along each axis are needed";
     return false;
   }
   if (!this->SetPoints(grid, error)) {
@@ -55,7 +55,7 @@ bool vtkStratusLattice::SetPoints(vtkStructuredGrid* grid, std::string& error)
 {
   const vtkIdType needed = Product(this->Points), there = grid->GetPoints() ? grid->GetPoints()->GetNumberOfPoints() : 0;
   if (there != needed) {
-    error = "the structured grid of " + TellExtent(this->Points) + " points has coordinates of " + std::to_string(there) + ", must have " +
+    error = "the structured grid of " + WriteExtent(this->Points) + " points has coordinates of " + std::to_string(there) + ", must have " +
       std::to_string(needed);
     return false;
   }

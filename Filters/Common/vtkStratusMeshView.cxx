@@ -98,7 +98,7 @@ void vtkStratusMeshView::Divide(vtkUnstructuredGrid* grid, vtkMTimeType time)
   this->Refusal.clear();
   this->Accepted = this->Tetrahedra.Set(grid, this->Refusal) && this->SetHidden(grid, this->Refusal);
   if (this->Accepted && this->Tetrahedra.Vertices.empty()) {
-    this->Refusal = this->Tetrahedra.TellLeftOut();
+    this->Refusal = this->Tetrahedra.DescribeLeftOut();
     this->Accepted = false;
   }
   this->HasLeaves = this->Accepted && this->Tetrahedra.CellByCell && this->Leaves.Set(grid);

@@ -57,7 +57,7 @@ template <typename Function> void DivideQuadraticFace(int type, const std::vecto
   }
 }
 
-std::string TellCell(vtkIdType cell, int type)
+std::string NameCell(vtkIdType cell, int type)
 {
   return "cell " + std::to_string(cell) + " is a " + vtkStratusNameOfCellType(type) + " (" + std::to_string(type) + ")";
 }
@@ -232,14 +232,14 @@ bool vtkStratusTetrahedra::AddCell(vtkUnstructuredGrid* grid, vtkIdType cell, st
     return true;
   }
   if (kind.Way == Kind::Unknown) {
-    error = TellCell(cell, type) + ", only linear, quadratic, Lagrange and Bezier cells can be divided into tetrahedra";
+    error = NameCell(cell, type) + ", only linear, quadratic, Lagrange and Bezier cells can be divided into tetrahedra";
     return false;
   }
   vtkIdType count = 0;
   const vtkIdType* ids = nullptr;
   grid->GetCellPoints(cell, count, ids);
   if (kind.Points > 0 && count != kind.Points) {
-    error = TellCell(cell, type) + " of " + std::to_string(count) + " points, it must have " + std::to_string(kind.Points);
+    error = NameCell(cell, type) + " of " + std::to_string(count) + " points, it must have " + std::to_string(kind.Points);
     return false;
   }
   if (type == VTK_TETRA) { // kept as it is, even if degenerate
@@ -247,7 +247,7 @@ bool vtkStratusTetrahedra::AddCell(vtkUnstructuredGrid* grid, vtkIdType cell, st
     this->Cells.push_back(cell);
   } else if (kind.Way == Kind::Curved) {
     if (!this->AddCurved(grid, cell, count, ids, error)) {
-      error = TellCell(cell, type) + " " + error;
+      error = NameCell(cell, type) + " " + error;
       return false;
     }
   } else if (kind.Way == Kind::Quadratic) {
@@ -313,7 +313,7 @@ stratus_mesh vtkStratusTetrahedra::GetMesh() const
   return mesh;
 }
 
-std::string vtkStratusTetrahedra::TellLeftOut() const
+std::string vtkStratusTetrahedra::DescribeLeftOut() const
 {
   return "the grid has no cell with a volume: " + std::to_string(this->LeftOut) + " are vertices, lines, polygons or empty";
 }

@@ -30,7 +30,7 @@ struct VTK_STRATUS_PRIVATE vtkStratusTetrahedra {
   bool Set(vtkUnstructuredGrid* grid, std::string& error);
   stratus_mesh GetMesh() const;
   // The message for a grid none of whose cells has a volume, so that there is nothing to draw.
-  std::string TellLeftOut() const;
+  std::string DescribeLeftOut() const;
 
   // Copies `from`, an array of the grid's points, to `to`, which has room for all Points. A value at a centre follows from the cell's shape
   // functions.

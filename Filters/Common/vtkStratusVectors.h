@@ -17,9 +17,9 @@ class VTK_STRATUS_PRIVATE vtkStratusVectors
 public:
   static constexpr int All = -2, Magnitude = -1;
 
-  // Tells what of an array of so many components a mesh's colour function draws, as VTK's mappers of meshes read its VectorMode: Magnitude,
-  // or a component, which may be one that the array lacks. All: every component, where they are 2 to 4 and the function names the first,
-  // which is its default, and where they depend on each other.
+  // Returns the component of an array of `components` components that a mesh's colour function draws, as VTK's mappers of meshes read its
+  // VectorMode: Magnitude, or a component, which may be one that the array lacks. Returns All, for every component, if there are 2 to 4 and
+  // the function names the first, which is its default, or if they depend on each other.
   static int Find(vtkVolumeProperty* property, int components);
 
   // Returns a component, or the magnitudes in double, under the array's name.

@@ -223,7 +223,7 @@ public:
   //@{
   /**
    * Get statistics of the last tree built: voxels that it holds, bricks that hold any, nodes, leaves, leaves of distance fields, depth of
-   * the deepest leaf, bytes, cost by the surface area heuristic, build time in milliseconds, and a sentence on what decided its shape.
+   * the deepest leaf, bytes, cost by the surface area heuristic, build time in milliseconds, and a sentence with the reason for its shape.
    */
   vtkGetMacro(NumberOfVoxels, vtkIdType);
   vtkGetMacro(NumberOfBricks, vtkIdType);

@@ -36,7 +36,7 @@ std::set<const Variable*> FindReferred(const vtkStratusNetCDFFile& file)
   return referred;
 }
 
-// Tells that no variable is a volume, and which variables there are.
+// Throws an error that no variable is a volume, and lists the variables.
 [[noreturn]] void FailWithoutVolume(const vtkStratusNetCDFFile& file)
 {
   constexpr size_t most = 10;
@@ -95,7 +95,7 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
   if (grid.IsSheet()) {
     vtkWarningMacro(
       << file.GetPath() << ": the levels of '" << this->ChosenName()
-      << "' have no unit of length or pressure, and no formula that is known: heights are mere numbers beside x and y in metres");
+      << "' have no unit of length or pressure, and no formula that is known: heights are only numbers, while x and y are in metres");
   }
   this->LengthUnits = grid.IsInMetres() ? "m" : "";
   for (int a = 0; a < 3; ++a) {

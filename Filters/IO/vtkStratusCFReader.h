@@ -39,7 +39,7 @@
  *   depth or the name begins with "depth" over values none of which is negative.
  * Levels that have no unit stay numbers, with a warning where x and y are metres.
  *
- * GetDescription() says which variables coordinates came from, and what was made of their units. Values are point data of the variable's
+ * GetDescription() says which variables coordinates came from, and how their units were converted. Values are point data of the variable's
  * name. Points of which a coordinate of two or more dimensions, or a term of the height, is missing are blanked by vtkGhostType.
  *
  * Coordinates of one dimension that have missing values, values that are not finite, are repeated or not monotone are errors, and so are

@@ -58,7 +58,7 @@ public:
   void Read(const std::map<std::string, Place>& places, const std::map<std::string, vtkFloatArray*>& arrays, Function done);
 
 private:
-  static void Tell(exr_const_context_t context, exr_result_t, const char* message) noexcept;
+  static void OnError(exr_const_context_t context, exr_result_t, const char* message) noexcept;
   void Check(exr_result_t result) const;
   void CheckChannels();
   void CheckChunk(const exr_decode_pipeline_t& pipeline, int top) const;
@@ -72,7 +72,7 @@ File::File(const std::string& path) : Path(path)
 {
   exr_context_initializer_t start = EXR_DEFAULT_CONTEXT_INITIALIZER;
   start.user_data = this;
-  start.error_handler_fn = File::Tell;
+  start.error_handler_fn = File::OnError;
   this->Check(exr_start_read(&this->Context, path.c_str(), &start));
   try {
     exr_storage_t storage = EXR_STORAGE_TILED;
@@ -98,7 +98,7 @@ File::File(const std::string& path) : Path(path)
   }
 }
 
-void File::Tell(exr_const_context_t context, exr_result_t, const char* message) noexcept
+void File::OnError(exr_const_context_t context, exr_result_t, const char* message) noexcept
 {
   void* self = nullptr;
   if (exr_get_user_data(context, &self) == EXR_ERR_SUCCESS && self && message) {

@@ -195,7 +195,7 @@ bool vtkStratusParse(std::string_view text, double& value)
   return ParseWhole(text, value);
 }
 
-std::string vtkStratusTell(double value)
+std::string vtkStratusWriteNumber(double value)
 {
   char text[32];
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);

@@ -93,7 +93,7 @@ VTK_STRATUS_PRIVATE std::string vtkStratusShown(std::string_view text); // in pr
 VTK_STRATUS_PRIVATE std::vector<std::string> vtkStratusSplit(std::string_view text);
 VTK_STRATUS_PRIVATE bool vtkStratusParse(std::string_view text, int64_t& value);
 VTK_STRATUS_PRIVATE bool vtkStratusParse(std::string_view text, double& value);
-VTK_STRATUS_PRIVATE std::string vtkStratusTell(double value);
+VTK_STRATUS_PRIVATE std::string vtkStratusWriteNumber(double value);
 
 // Lists the files "name%03d.raw" for numbers from first to last, by `step`. Throws where there are not `wanted` of them; 0: any number up
 // to `most`.

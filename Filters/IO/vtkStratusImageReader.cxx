@@ -25,9 +25,9 @@ namespace {
 constexpr double Flat = 1e-6;    // three axes of length 1 that span a smaller volume are in one plane
 constexpr double Sheared = 1e-4; // larger cosines are reported; smaller ones come from headers of few digits
 
-std::string Tell(const double* vector)
+std::string WriteVector(const double* vector)
 {
-  return "(" + vtkStratusTell(vector[0]) + ", " + vtkStratusTell(vector[1]) + ", " + vtkStratusTell(vector[2]) + ")";
+  return "(" + vtkStratusWriteNumber(vector[0]) + ", " + vtkStratusWriteNumber(vector[1]) + ", " + vtkStratusWriteNumber(vector[2]) + ")";
 }
 
 // Gives axis `a`, which the file does not describe, the direction of length 1 that is perpendicular to the known axes and nearest to x, y
@@ -146,7 +146,7 @@ std::string vtkStratusImageReader::Inspect()
   this->LengthUnits = file.LengthUnits;
   this->Description = file.Format;
   if (file.Slope != 1.0 || file.Intercept != 0.0) {
-    this->Description += ", values are " + vtkStratusTell(file.Slope) + " * stored + " + vtkStratusTell(file.Intercept);
+    this->Description += ", values are " + vtkStratusWriteNumber(file.Slope) + " * stored + " + vtkStratusWriteNumber(file.Intercept);
   }
   for (const std::string& note : file.Notes) {
     this->Description += ", " + note;
@@ -176,7 +176,7 @@ void vtkStratusImageReader::FindFrame()
     this->WholeExtent[2 * count + 1] = static_cast<int>(axis.Size) - 1;
     const double length = vtkMath::Norm(axes[count]);
     if (!std::isfinite(length) || (length == 0.0 && axis.Size > 1)) {
-      file.Fail("the step along axis " + std::to_string(count) + " is " + Tell(axes[count]) + ", must be finite and longer than 0");
+      file.Fail("the step along axis " + std::to_string(count) + " is " + WriteVector(axes[count]) + ", must be finite and longer than 0");
     }
     known[count] = length > 0.0;
     this->Spacing[count] = known[count] ? length : 1.0;
@@ -186,7 +186,7 @@ void vtkStratusImageReader::FindFrame()
     ++count;
   }
   if (!std::isfinite(this->Origin[0]) || !std::isfinite(this->Origin[1]) || !std::isfinite(this->Origin[2])) {
-    file.Fail("the first sample is at " + Tell(this->Origin) + ", must be finite");
+    file.Fail("the first sample is at " + WriteVector(this->Origin) + ", must be finite");
   }
   if (components > VTK_INT_MAX) {
     file.Fail("a sample has " + std::to_string(components) + " components, must have at most " + std::to_string(VTK_INT_MAX));
@@ -207,8 +207,8 @@ void vtkStratusImageReader::FindFrame()
   }
   const double volume = vtkMath::Determinant3x3(axes[0], axes[1], axes[2]);
   if (!(std::fabs(volume) >= Flat)) {
-    file.Fail(
-      "the axes " + Tell(axes[0]) + ", " + Tell(axes[1]) + ", " + Tell(axes[2]) + " are in one plane, an image needs three directions");
+    file.Fail("the axes " + WriteVector(axes[0]) + ", " + WriteVector(axes[1]) + ", " + WriteVector(axes[2]) +
+      " are in one plane, an image needs three directions");
   }
   this->Description += volume < 0.0 ? ", a left-handed frame" : "";
   this->Description += steepest > Sheared ? ", a sheared frame" : "";

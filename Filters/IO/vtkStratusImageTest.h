@@ -27,7 +27,7 @@
  * Tolerance has the unit of the mappers' ImageErrorTolerance: .001 is 60 dB. If only one image has an alpha, alpha is compared only with
  * Exact. A NaN or an infinity differs from everything but the same bits, by an infinite amount.
  *
- * Structural similarity is the mean over all components and all windows of 11 x 11 pixels that lie within the picture, with Gaussian
+ * Structural similarity is the mean over all components and all windows of 11 x 11 pixels that are within the picture, with Gaussian
  * weights of standard deviation 1.5, K1 = .01 and K2 = .03 (Wang et al., Image quality assessment: from error visibility to structural
  * similarity, IEEE Transactions on Image Processing 13(4), 2004). It is 1 for equal pictures and computed where LeastSSIM is set.
  *

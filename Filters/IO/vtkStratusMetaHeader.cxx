@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Headers of MetaImage (.mha, and .mhd with its values beside), with the keys of MetaIO's documentation and library.
+// Headers of MetaImage (.mha, and .mhd with its values in another file), with the keys of MetaIO's documentation and library.
 #include "vtkStratusImageFile.h"
 
 #include <algorithm>

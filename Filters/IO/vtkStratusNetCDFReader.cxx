@@ -61,11 +61,11 @@ bool IsIngredient(const vtkStratusNetCDFFile& file, const Variable& variable)
 // On the faces, edges or corners of cells: WRF and ROMS name their dimensions by it.
 bool IsStaggered(const vtkStratusNetCDFFile& file, const Variable& variable)
 {
-  const auto beside = [&file](int dimension) {
+  const auto staggered = [&file](int dimension) {
     const std::string& name = file.NameOf(dimension);
     return EndsWith(name, "_stag") || EndsWith(name, "_u") || EndsWith(name, "_v") || EndsWith(name, "_w") || EndsWith(name, "_psi");
   };
-  return std::any_of(variable.Dimensions.begin(), variable.Dimensions.end(), beside);
+  return std::any_of(variable.Dimensions.begin(), variable.Dimensions.end(), staggered);
 }
 
 int RankOf(const vtkStratusNetCDFFile& file, const Variable& variable)

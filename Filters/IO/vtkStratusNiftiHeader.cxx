@@ -138,7 +138,7 @@ void Header::SetValues()
     return; // as the standard has it: values are as stored, and colours are never scaled
   }
   if (!std::isfinite(intercept)) {
-    file.Fail("scl_slope is " + vtkStratusTell(slope) + " and scl_inter " + vtkStratusTell(intercept) + ", must be finite");
+    file.Fail("scl_slope is " + vtkStratusWriteNumber(slope) + " and scl_inter " + vtkStratusWriteNumber(intercept) + ", must be finite");
   }
   file.Slope = slope;
   file.Intercept = intercept;
@@ -150,7 +150,7 @@ void Header::SetPlaceByQuaternion(std::array<vtkStratusImageAxis, 3>& axes, cons
   const double square = b * b + c * c + d * d;
   constexpr double rounding = 1e-5; // of floats
   if (!(square <= 1.0 + rounding)) {
-    this->File.Fail("the quaternion " + vtkStratusTell(b) + ", " + vtkStratusTell(c) + ", " + vtkStratusTell(d) +
+    this->File.Fail("the quaternion " + vtkStratusWriteNumber(b) + ", " + vtkStratusWriteNumber(c) + ", " + vtkStratusWriteNumber(d) +
       " is longer than 1, so that it is no rotation");
   }
   const double length = std::max(std::sqrt(square), 1.0);
@@ -252,7 +252,7 @@ void Header::SetFiles()
   const double most = static_cast<double>(std::numeric_limits<int64_t>::max() / 4);
   const double offset = this->Second ? static_cast<double>(this->Get<long long>(168)) : static_cast<double>(this->Get<float>(108));
   if (!(offset >= 0.0) || offset > most || offset != std::floor(offset)) {
-    file.Fail("vox_offset is " + vtkStratusTell(offset) + ", must be a number of bytes");
+    file.Fail("vox_offset is " + vtkStratusWriteNumber(offset) + ", must be a number of bytes");
   }
   file.ByteSkip = static_cast<int64_t>(offset);
   const bool single = this->Bytes[this->Second ? 5 : 345] == '+';
@@ -260,7 +260,7 @@ void Header::SetFiles()
     const int64_t least = static_cast<int64_t>(this->Second ? Length2 : Length1) + 4;
     file.ByteSkip = file.ByteSkip == 0 ? least : file.ByteSkip;
     if (file.ByteSkip < least) {
-      file.Fail("vox_offset is " + vtkStratusTell(offset) + ", must be at least " + std::to_string(least) + " in one file");
+      file.Fail("vox_offset is " + vtkStratusWriteNumber(offset) + ", must be at least " + std::to_string(least) + " in one file");
     }
     file.Files = { file.Path };
   } else {

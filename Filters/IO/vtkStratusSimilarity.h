@@ -10,7 +10,7 @@
 // Pixels along a window's edge; a picture has at least as many along each axis.
 constexpr int vtkStratusSimilarityWindow = 11;
 
-// Returns the mean over all windows that lie within the picture, of one component in 0..1: a[y * width + x].
+// Returns the mean over all windows within the picture, of one component in 0..1: a[y * width + x].
 VTK_STRATUS_PRIVATE double vtkStratusSimilarity(const std::vector<double>& a, const std::vector<double>& b, int width, int height);
 
 #endif

@@ -167,7 +167,7 @@ int vtkStratusTetGenReadPieces(
       pieces.Markers->SetValue(piece, static_cast<int>(input.GetInteger("the marker", SmallestMarker, LargestMarker)));
     }
     for (int owner = 0; input.HasNumber() && owner < owners; ++owner) {
-      input.GetInteger("a tetrahedron beside it", -1, VTK_ID_MAX);
+      input.GetInteger("a tetrahedron next to it", -1, VTK_ID_MAX);
     }
     input.EndLine();
   }

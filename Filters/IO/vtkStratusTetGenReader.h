@@ -10,7 +10,7 @@
  * must exist; the others may be missing unless FileName names them. The second output is a vtkPolyData of edges and faces over the same
  * points, without the midpoints of second-order edges.
  *
- * From .poly and .smesh (with points in the same file, or in the .node file beside it): the second output holds the surface, the first
+ * From .poly and .smesh (with points in the same file, or in the .node file next to it): the second output holds the surface, the first
  * holds points without cells.
  *
  * | array | where | |
@@ -26,8 +26,8 @@
  * The first attribute is the active scalars. If TetGen was run with regions, the last attribute of a tetrahedron is its region's.
  *
  * If the first point's number is 0, the mesh's files count from 0, otherwise from 1. Outputs count from 0. An error names the file, the
- * line, the value and what it must be, and empties both outputs. The reader reads files in pieces of a megabyte and allocates no more than
- * a file can fill.
+ * line, the value and the allowed values, and empties both outputs. The reader reads files in pieces of a megabyte and allocates no more
+ * than a file can fill.
  *
  * @sa vtkStratusTetGenWriter vtkStratusTetGenFilter
  */

@@ -23,14 +23,14 @@ vtkStandardNewMacro(vtkStratusVDBReader);
 namespace {
 constexpr double Orthogonal = 1e-6; // largest cosine of the angle between two axes: the rounding error of a rotation in floats
 
-std::string TellBytes(double bytes)
+std::string WriteBytes(double bytes)
 {
   char text[64];
   std::snprintf(text, sizeof text, bytes < 1e15 ? "%.0f bytes (%.4g MiB)" : "%.4g bytes (%.4g MiB)", bytes, bytes / 1048576.0);
   return text;
 }
 
-std::string TellBox(const vtkStratusSparseGrid& grid)
+std::string WriteBox(const vtkStratusSparseGrid& grid)
 {
   std::string text;
   for (int a = 0; a < 3; ++a) {
@@ -72,10 +72,10 @@ std::string vtkStratusVDBReader::Inspect()
   this->GridName = this->ChosenName();
   this->Grid = file->Read(this->GridName);
   this->Description = this->Grid->Kind + ", " + std::to_string(this->Grid->Active) + " active voxels in " +
-    std::to_string(this->Grid->Leaves) + " leaves and tiles of " + TellBytes(static_cast<double>(this->Grid->Bytes));
+    std::to_string(this->Grid->Leaves) + " leaves and tiles of " + WriteBytes(static_cast<double>(this->Grid->Bytes));
   this->CheckMap();
   this->FindExtent();
-  this->Description += this->Grid->Empty ? ": nothing but background" : ", within " + TellBox(*this->Grid);
+  this->Description += this->Grid->Empty ? ": nothing but background" : ", within " + WriteBox(*this->Grid);
   const bool blocks = this->ChooseBlocks();
   this->Description += blocks || this->Grid->Empty ? "" : ": an image of this box and a border of one voxel";
   this->Description += others.empty() ? "" : "; left out: " + others;
@@ -87,8 +87,8 @@ void vtkStratusVDBReader::FindExtent()
   const vtkStratusSparseGrid& grid = *this->Grid;
   for (int a = 0; a < 3; ++a) {
     if (grid.Low[a] > grid.High[a] || grid.Low[a] <= INT_MIN || grid.High[a] >= INT_MAX) {
-      this->Fail("the box of the active voxels of '" + this->GridName + "' is " + TellBox(grid) +
-        "; bounds must rise and lie within -2147483647..2147483646");
+      this->Fail("the box of the active voxels of '" + this->GridName + "' is " + WriteBox(grid) +
+        "; bounds must rise and be within -2147483647..2147483646");
     }
     this->WholeExtent[2 * a] = static_cast<int>(grid.Low[a] - 1);
     this->WholeExtent[2 * a + 1] = static_cast<int>(grid.High[a] + 1);
@@ -102,7 +102,7 @@ bool vtkStratusVDBReader::ChooseBlocks()
   const vtkStratusSparseGrid& grid = *this->Grid;
   const double voxel = static_cast<double>(vtkDataArray::GetDataTypeSize(grid.Type)) * grid.Components;
   const double limit = 1048576.0 * static_cast<double>(this->MemoryLimit);
-  const std::string memory = ". The sparse grid takes " + TellBytes(static_cast<double>(grid.Bytes)) + "; the limit is " +
+  const std::string memory = ". The sparse grid takes " + WriteBytes(static_cast<double>(grid.Bytes)) + "; the limit is " +
     std::to_string(this->MemoryLimit) + " MiB (MemoryLimit)";
   double image = voxel, blocks = 0.0;
   this->Blocks.clear();
@@ -111,8 +111,8 @@ bool vtkStratusVDBReader::ChooseBlocks()
   }
   if (this->Layout == IMAGE_LAYOUT || grid.Empty || (this->Layout == AUTO_LAYOUT && image <= limit)) {
     if (image > limit) {
-      this->Fail("the grid '" + this->GridName + "' would take " + TellBytes(image) + " as an image: its active voxels are within " +
-        TellBox(grid) + memory);
+      this->Fail("the grid '" + this->GridName + "' would take " + WriteBytes(image) + " as an image: its active voxels are within " +
+        WriteBox(grid) + memory);
     }
     return false;
   }
@@ -121,11 +121,11 @@ bool vtkStratusVDBReader::ChooseBlocks()
     blocks += voxel * vtkStratusVoxelsOf(box);
   }
   if (blocks > limit) {
-    this->Fail("the grid '" + this->GridName + "' would take " + TellBytes(blocks) + " as " + std::to_string(this->Blocks.size()) +
-      " blocks, and " + TellBytes(image) + " as an image" + memory);
+    this->Fail("the grid '" + this->GridName + "' would take " + WriteBytes(blocks) + " as " + std::to_string(this->Blocks.size()) +
+      " blocks, and " + WriteBytes(image) + " as an image" + memory);
   }
   this->Description +=
-    "; " + std::to_string(this->Blocks.size()) + " blocks of " + TellBytes(blocks) + " in place of an image of " + TellBytes(image);
+    "; " + std::to_string(this->Blocks.size()) + " blocks of " + WriteBytes(blocks) + " in place of an image of " + WriteBytes(image);
   return true;
 }
 

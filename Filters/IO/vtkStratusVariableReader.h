@@ -76,8 +76,8 @@ public:
   //@}
 
   /**
-   * Get a sentence on how coordinates became a grid, "" before the first update: which variables they are, and what was made of their
-   * units.
+   * Get a sentence on how coordinates became a grid, "" before the first update: which variables they are, and how their
+   * units were converted.
    */
   const char* GetDescription();
 

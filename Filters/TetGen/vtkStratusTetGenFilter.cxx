@@ -170,6 +170,6 @@ void vtkStratusTetGenFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumSteinerPoints: " << this->MaximumSteinerPoints << "\n";
   os << indent << "PreserveBoundary: " << (this->PreserveBoundary ? "On" : "Off") << "\n";
   os << indent << "TimeLimit: " << this->TimeLimit << "\n";
-  os << indent << "Program: " << (this->Program ? this->Program : "(beside the library)") << "\n";
+  os << indent << "Program: " << (this->Program ? this->Program : "(next to the library)") << "\n";
   os << indent << "Holes: " << this->GetNumberOfHoles() << ", regions: " << this->GetNumberOfRegions() << "\n";
 }

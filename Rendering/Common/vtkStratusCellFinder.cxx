@@ -100,7 +100,7 @@ void vtkStratusCellFinder::Set(vtkDataObject* input, vtkMatrix4x4* matrix)
   } else {
     this->Add(vtkDataSet::SafeDownCast(input), 0, before);
   }
-  // Where boxes of AMR lie over one another, the finest is shown.
+  // Where boxes of AMR overlap, the finest is shown.
   std::stable_sort(this->Grids.begin(), this->Grids.end(), [](const Grid& a, const Grid& b) { return a.Length < b.Length; });
   vtkMatrix4x4::Identity(this->ToData);
   if (matrix) {

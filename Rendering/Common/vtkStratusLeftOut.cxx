@@ -23,7 +23,7 @@ void vtkStratusLeftOut::AddTransforms(vtkAbstractMapper* mapper)
 
 void vtkStratusLeftOut::WarnOnce(vtkObject* object, const std::string& warning)
 {
-  if (this->Told.insert(warning).second) {
+  if (this->Reported.insert(warning).second) {
     vtkWarningWithObjectMacro(object, << warning);
   }
 }
@@ -32,7 +32,7 @@ void vtkStratusLeftOut::Warn(vtkObject* object)
 {
   std::string text;
   for (const std::string& what : this->Now) {
-    if (this->Told.insert(what).second) {
+    if (this->Reported.insert(what).second) {
       text += (text.empty() ? "" : "; ") + what;
     }
   }

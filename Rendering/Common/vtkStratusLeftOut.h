@@ -31,7 +31,7 @@ public:
 
 private:
   std::vector<std::string> Now;
-  std::set<std::string> Told;
+  std::set<std::string> Reported;
 };
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The light of a renderer and what a property makes of it, for every mapper that is lit.
+// A renderer's lights and a property's shading as the core's options, for every mapper that is lit.
 #ifndef vtkStratusLights_h
 #define vtkStratusLights_h
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tells whether a prop's bounds may have changed without asking for them. Asking updates the pipeline behind a mapper and walks its cells,
-// which is what culling costs. Private to the module, never installed.
+// Decides whether a prop's bounds may have changed without querying them. A query updates the pipeline behind a mapper and walks its cells,
+// which is the cost of culling. Private to the module, never installed.
 #ifndef vtkStratusBoundsWatch_h
 #define vtkStratusBoundsWatch_h
 

@@ -201,8 +201,8 @@ stratus_status vtkStratusCulledList::Remove(const std::vector<uint32_t>& gone)
   return stratus_octree_remove(this->Octree, ids.data(), ids.size());
 }
 
-// Asks for the bounds of props[i] for each i of `added`, and sets slots[i]. All that needs the prop's memory is done beside asking, which
-// brings it into the processor's cache.
+// Queries the bounds of props[i] for each i of `added`, and sets slots[i]. All work that needs the prop's memory is done with the query,
+// which brings it into the processor's cache.
 stratus_status vtkStratusCulledList::Insert(
   vtkProp** props, size_t count, const std::vector<size_t>& added, vtkStratusBoundsWatch& watch, std::vector<uint32_t>& slots)
 {

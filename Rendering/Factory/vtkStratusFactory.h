@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The object factory, and what its mappers share: each is VTK's own, draws by ours where that supports the request, and else as VTK does.
+// The object factory, and the common parts of its mappers: each is VTK's own, draws by ours if that supports the request, and else as VTK
+// does.
 #ifndef vtkStratusFactory_h
 #define vtkStratusFactory_h
 

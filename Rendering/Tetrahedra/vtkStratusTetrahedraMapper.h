@@ -27,7 +27,7 @@
  *   composite of dependent ones: 2 (colour by the first, opacity by the second) and 4 unsigned bytes (red, green, blue, and the opacity's
  *   value). They are marched. Of independent ones the first colour function's VectorMode draws one value, as VTK's mappers of meshes do:
  *   the magnitude, or the component that VectorComponent names, by the functions of component 0. The first component, the default,
- *   leaves 2 to 4 to mix, and is what is drawn of more;
+ *   leaves 2 to 4 components to mix; of more components only the first is drawn;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
  * - the blend modes composite, maximum and minimum intensity (the largest or smallest value on a ray, at the opacity of one unit distance),
  *   average and additive intensity, and isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
@@ -114,7 +114,7 @@ public:
 
   //@{
   /**
-   * Set/Get whether only what lies within CroppingRegionPlanes is drawn, a box of the input's coordinates: xmin, xmax, ymin, ymax, zmin,
+   * Set/Get whether only the part within CroppingRegionPlanes is drawn, a box of the input's coordinates: xmin, xmax, ymin, ymax, zmin,
    * zmax. A box whose ends do not rise is refused. Default off, and 0 to 1.
    */
   vtkSetMacro(Cropping, bool);

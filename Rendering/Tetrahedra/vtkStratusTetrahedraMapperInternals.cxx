@@ -242,7 +242,7 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& 
     return true;
   }
   const bool blocks = vtkDataObjectTree::SafeDownCast(this->Mapper->GetDataObjectInput()) != nullptr;
-  const std::string left = blocks ? this->Blocks.TellLeftOut() : std::string();
+  const std::string left = blocks ? this->Blocks.DescribeLeftOut() : std::string();
   if (!left.empty() && left != this->LastLeftOut) { // warned of once, not with every frame
     vtkWarningWithObjectMacro(this->Mapper, << left << (left.find(" blocks ") == std::string::npos ? " is" : " are") << " not drawn");
   }

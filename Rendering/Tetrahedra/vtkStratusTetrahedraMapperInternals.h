@@ -37,7 +37,7 @@ public:
   // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   bool PrepareContext(std::string& error);
-  // Tells what the input, updated, is to another module's picture. On failure the description's error says why.
+  // Describes the updated input to another module's picture. On failure the description's error says why.
   bool Describe(vtkVolume* prop, vtkStratusMeshDescription& description);
   // Of what a structured grid or the blocks of a composite data set show; nullptr for other input.
   const double* FindBounds();

@@ -76,7 +76,7 @@ public:
 
   //@{
   /**
-   * The latest time at which this prop, one of its volumes, or what these draw was modified.
+   * Get the latest time at which this prop, one of its volumes, or an input or function of these was modified.
    */
   vtkMTimeType GetMTime() override;
   vtkMTimeType GetRedrawMTime() override;

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-// Independent components have materials of their own where they are not alike. Tells whether any of them is lit.
+// Sets materials for independent components if they differ. Returns whether any of them is lit.
 bool vtkStratusVolumeMapper::Internals::SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options)
 {
   const int components = this->Image.GetVolume().components;

@@ -81,7 +81,7 @@ private:
   bool PrepareInput(vtkVolume* prop, std::string& error);
   // Finds the scalar array, and whether it is of cells.
   vtkDataArray* FindArray(vtkDataSet* image, bool& cells, std::string& error) const;
-  // Vectors and what they mean, pictures as images, and calls of VTK's mappers (vtkStratusVolumeMapperVTK.cxx).
+  // Vectors and their modes, pictures as images, and calls of VTK's mappers (vtkStratusVolumeMapperVTK.cxx).
   int GetVectorComponent(vtkDataArray* array) const;
   double GetGradientOpacityDistance() const;
   void WarnOfGradientOpacity(vtkVolumeProperty* property);
