@@ -17,7 +17,7 @@ if (CMAKE_CXX_COMPILER)
 endif ()
 if (NOT VTK_FOUND)
   if (STRATUS_BUILD_VTK STREQUAL "AUTO")
-    message(STATUS "No VTK 9.1: building the core alone")
+    message(STATUS "No VTK 9.1: building only the core")
     return ()
   endif ()
   message(FATAL_ERROR "STRATUS_BUILD_VTK is ${STRATUS_BUILD_VTK}, but VTK 9.1 was not found (Debian: libvtk9-dev) ${VTK_NOT_FOUND_MESSAGE}")
@@ -72,7 +72,7 @@ endif ()
 set(stratus_vtk_library "$<TARGET_SONAME_FILE_NAME:${stratus_vtk_core}>")
 add_subdirectory(Rendering/Factory)
 
-# ---- Python: package `stratus` beside Debian's `vtk`
+# ---- Python: package `stratus` in addition to Debian's `vtk`
 if (VTK_WRAP_PYTHON AND TARGET VTK::WrappingPythonCore)
   # The interpreter VTK was built with, not the first one on PATH.
   if (NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
@@ -84,7 +84,7 @@ set(stratus_python OFF)
 if (Python3_FOUND AND Python3_Development.Module_FOUND)
   set(stratus_python ON)
   set(python_folder "lib/python3/dist-packages")
-  if (SKBUILD) # a wheel is what is installed, and nothing else
+  if (SKBUILD) # a wheel contains only installed files
     set(python_folder ".")
   endif ()
   set(STRATUS_VTK_PYTHON_PACKAGE "vtkmodules" CACHE STRING "Package of VTK's Python modules, which builds of others may have renamed")

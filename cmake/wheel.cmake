@@ -24,7 +24,7 @@ function (stratus_add_no_opencl folder)
   target_link_options(stratus-no-opencl PRIVATE "LINKER:--version-script=${source}.map")
 endfunction ()
 
-set(STRATUS_WHEEL_OPENMP "" CACHE STRING "Name of the OpenMP runtime that the wheel of VTK has beside it, which the core then shares")
+set(STRATUS_WHEEL_OPENMP "" CACHE STRING "Name of the OpenMP runtime that is next to VTK's wheel, which the core then shares")
 # stratus_share_openmp(): in a wheel, the installed core links the OpenMP runtime of VTK's wheel by the name that auditwheel gave it there.
 # By its usual name it would load a second, system runtime in the same process.
 function (stratus_share_openmp)

@@ -46,7 +46,7 @@ struct Plant {
     actor->SetMapper(mapper);
     actor->SetPosition(x, y, z);
     actor->SetScale(sx, sy, sz);
-    actor->RotateWXYZ(turn ? 90 : 0, turn == 1, 0, turn == 2); // cylinders stand along y
+    actor->RotateWXYZ(turn ? 90 : 0, turn == 1, 0, turn == 2); // vtkCylinderSource's axis is y
     actor->GetProperty()->SetColor(color[0], color[1], color[2]);
     this->Renderer->AddActor(actor);
     ++this->Count;
@@ -112,7 +112,7 @@ struct Plant {
   }
 
   // Statistics of the last frame are shown in the next one.
-  void Tell()
+  void ShowStatistics()
   {
     char text[200];
     const double seconds = this->Renderer->GetLastRenderTimeInSeconds();
@@ -132,7 +132,7 @@ struct Plant {
 
 static void OnFrame(vtkObject*, unsigned long, void* plant, void*)
 {
-  static_cast<Plant*>(plant)->Tell();
+  static_cast<Plant*>(plant)->ShowStatistics();
 }
 
 static void OnKey(vtkObject* caller, unsigned long, void* data, void*)

@@ -14,7 +14,7 @@ def add(shape, position, scale, turn, color):
         mapper, actor = vtk.vtkPolyDataMapper(), vtk.vtkActor()
         mapper.SetInputConnection(shape.GetOutputPort())
         actor.SetMapper(mapper), actor.SetPosition(position), actor.SetScale(scale), actor.GetProperty().SetColor(color)
-        actor.RotateWXYZ(90 if turn else 0, turn == "z", 0, turn == "x")  # cylinders stand along y
+        actor.RotateWXYZ(90 if turn else 0, turn == "z", 0, turn == "x")  # vtkCylinderSource's axis is y
         renderer.AddActor(actor)
         parts += 1
 
@@ -39,7 +39,7 @@ def set_mode(new):
         stratus.vtkStratusOctreeCuller.Install(renderer).SetStaticProps(mode == 1)
 
 
-def tell(*_):
+def show_statistics(*_):
     rate = 1 / max(renderer.GetLastRenderTimeInSeconds(), 1e-9)
     label.SetInput(f"{names[mode]}: {renderer.GetNumberOfPropsRendered()} of {parts} parts, {rate:.1f} frames/s")
 
@@ -54,7 +54,7 @@ while parts < 9454:
     add_unit(14 * (unit % 14), 14 * (unit // 14))
     unit += 1
 label.SetInput(" "), label.SetPosition(10, 10), label.GetTextProperty().SetFontSize(18), label.GetTextProperty().SetColor(0, 0, 0)
-renderer.AddViewProp(label), renderer.SetBackground(0.75, 0.82, 0.88), renderer.AddObserver("EndEvent", tell)
+renderer.AddViewProp(label), renderer.SetBackground(0.75, 0.82, 0.88), renderer.AddObserver("EndEvent", show_statistics)
 camera = renderer.GetActiveCamera()
 camera.SetPosition(52, 40.5, 8.5), camera.SetFocalPoint(90, 66, 1), camera.SetViewUp(0, 0, 1), camera.SetClippingRange(0.3, 80)
 window.SetSize(900, 560), window.AddRenderer(renderer), set_mode(0)

@@ -26,7 +26,7 @@ static int owner_of_border(int rank, int ranks)
   return (NX - 1) * rank / ranks;
 }
 
-/* Swaps the planes beside the slab. Both ranks of a border hold its points; each sends the plane next to it. */
+/* Swaps the planes next to the slab. Both ranks of a border hold its points; each sends its plane next to the border. */
 static void swap_borders(const slab* s)
 {
   float* planes = malloc(4 * ROWS * sizeof *planes);

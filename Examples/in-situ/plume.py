@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Catalyst's script of plume-in-situ: each EVERY-th step becomes a picture, FOLDER/plume-NNNN.png. The environment tells STRATUS_PLUGIN
+"""Catalyst's script of plume-in-situ: each EVERY-th step becomes a picture, FOLDER/plume-NNNN.png. The environment has STRATUS_PLUGIN
 (unless ParaView loads it by itself), STRATUS_FOLDER (default: where the program runs) and STRATUS_EVERY (default 1)."""
 import os
 

@@ -121,9 +121,9 @@ expected = drawn(plain, "--axes")
 same(drawn(globe, "--axes"), expected, "degrees are distances to the east and north")
 same(drawn(wrf, "--axes"), expected, "WRF's axes have names and units")
 
-# Levels that are mere numbers are drawn, with one line that says so.
+# Levels that are only numbers are drawn, with one line that says this.
 numbers = write("numbers", (("lev", numpy.arange(nz) + 1.0, {}), ("lat", lat, {"units": "degrees_north"}),
     ("lon", lon, {"units": "degrees_east"})))
 done = run("info", numbers)
-check(done.returncode == 0 and done.stdout.count("heights are mere numbers") == 1, "levels without a unit: " + done.stdout)
+check(done.returncode == 0 and done.stdout.count("heights are only numbers") == 1, "levels without a unit: " + done.stdout)
 sys.exit(1 if failures else 0)
