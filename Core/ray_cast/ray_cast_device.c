@@ -133,7 +133,7 @@ int stratus_ray_rarities(const stratus_ray_cast_arguments* a)
     (a->lattice.jitter ? RAY_JITTER : 0) | (a->values.has_hidden ? RAY_HIDDEN : 0) | (a->values.nearest ? RAY_NEAREST : 0) |
     (a->map.tree ? RAY_TREE : 0) | (a->media.components > 1 ? RAY_COMPONENTS : 0) | (a->media.label_count > 0 ? RAY_LABELS : 0) |
     (a->values.page_components ? RAY_PAGES : 0) | (a->table.has_opaque ? RAY_OPAQUE : 0) | (a->table.cut ? RAY_CUT : 0) |
-    (a->table.jumps ? RAY_JUMPS : 0) | (a->grid.on ? RAY_GRID : 0);
+    (a->table.jumps ? RAY_JUMPS : 0) | (a->grid.on ? RAY_GRID : 0) | (a->lattice.follows ? RAY_FOLLOWS : 0);
 }
 
 static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, int type,

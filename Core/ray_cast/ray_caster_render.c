@@ -206,6 +206,7 @@ void stratus_ray_fill_report(
   report->structure = used;
   report->sampling = caster->choice.sampling;
   report->sample_distance = caster->choice.sample_distance;
+  report->follows_voxels = caster->choice.follows;
   report->cell_error = stratus_ray_visits_cells(caster->choice.sampling) ? caster->choice.cell_error : 0.0;
   report->expected_error = caster->choice.expected_error;
   report->tolerance_met = caster->choice.met;
@@ -230,7 +231,8 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   if (caster->choice.provisional) {
     TRY(stratus_ray_probe(caster, volume, options, report));
   }
-  TRY(stratus_ray_frame_arguments(caster, camera, options, image, caster->choice.sample_distance, &arguments, &empty));
+  TRY(stratus_ray_frame_arguments(
+    caster, camera, options, image, caster->choice.sample_distance, caster->choice.follows, &arguments, &empty));
   const bool covers = stratus_ray_modes_covers(options);
   bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->occupancy->count == 0);
   double start = stratus_now_ms(), drawn_ms = 0.0;
@@ -274,9 +276,10 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   caster->samples_since_data += counts.samples;
   stratus_ray_fill_report(caster, &counts, used, report);
   const bool cells = caster->choice.sampling == STRATUS_SAMPLING_CELLS; /* which takes no step */
-  snprintf(report->why, sizeof report->why, "%s; %s, %s %.4g%s%s%s%s", why, stratus_sampling_name(caster->choice.sampling),
+  snprintf(report->why, sizeof report->why, "%s; %s, %s %.4g%s%s%s%s%s", why, stratus_sampling_name(caster->choice.sampling),
     cells ? "cell error" : "sample distance", cells ? caster->choice.cell_error : caster->choice.sample_distance,
-    *caster->where ? "; " : "", caster->where, *caster->tried ? ": " : "", caster->tried);
+    !cells && caster->choice.follows ? " or longer, as rays pass voxels" : "", *caster->where ? "; " : "", caster->where,
+    *caster->tried ? ": " : "", caster->tried);
   return STRATUS_OK;
 }
 

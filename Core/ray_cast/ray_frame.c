@@ -77,11 +77,13 @@ static void set_camera(const stratus_camera* camera, const double world_to_index
 }
 
 /* Returns the length of a sample in voxels, along the axis where it is longest. */
-static double voxels_a_sample(const double world_to_index[16], double sample_distance)
+static double voxels_a_sample(const stratus_volume* volume, const double world_to_index[16], double sample_distance, bool follows)
 {
-  double voxels = 0.0;
+  double voxels = 0.0, samples[3];
+  stratus_ray_samples_a_voxel(volume, sample_distance, samples);
   for (int axis = 0; axis < 3; ++axis) {
-    voxels = fmax(voxels, sample_distance * sqrt(stratus_vector_dot(world_to_index + 4 * axis, world_to_index + 4 * axis)));
+    const double* row = world_to_index + 4 * axis;
+    voxels = fmax(voxels, follows ? 1.0 / samples[axis] : sample_distance * sqrt(stratus_vector_dot(row, row)));
   }
   return voxels;
 }
@@ -91,7 +93,8 @@ double stratus_ray_voxels_a_sample(const stratus_ray_caster* caster)
   double index_to_world[16], world_to_index[16];
   stratus_volume_index_to_world(&caster->traversed, index_to_world);
   const bool has_inverse = stratus_matrix_invert_affine(index_to_world, world_to_index);
-  return has_inverse ? voxels_a_sample(world_to_index, caster->choice.sample_distance) : VOXELS_A_SAMPLE_MOST;
+  return has_inverse ? voxels_a_sample(&caster->traversed, world_to_index, caster->choice.sample_distance, caster->choice.follows)
+                     : VOXELS_A_SAMPLE_MOST;
 }
 
 /* Gives where crop bounds number lo and hi of an axis are in index coordinates, the lower first. */
@@ -236,29 +239,42 @@ static double longest_way(const double m[16], const stratus_volume* volume)
     for (int row = 0; row < 3; ++row) {
       edge += m[4 * row + axis] * m[4 * row + axis];
     }
-    const bool flat = volume->dimensions[axis] == 1 && !volume->cell_centered;
-    diagonal += flat ? 0.0 : sqrt(edge) * (double)volume->dimensions[axis];
+    diagonal += stratus_volume_extends(volume, axis) ? sqrt(edge) * (double)volume->dimensions[axis] : 0.0;
   }
   return diagonal;
 }
 
-double stratus_ray_shortest_step(const stratus_volume* volume)
+/* Returns how many samples no ray through a volume exceeds. */
+static double most_samples(const stratus_volume* volume, const double m[16], double sample_distance, bool follows)
+{
+  double samples[3], most = 0.0;
+  if (!follows) {
+    return longest_way(m, volume) / sample_distance;
+  }
+  stratus_ray_samples_a_voxel(volume, sample_distance, samples);
+  for (int axis = 0; axis < 3; ++axis) {
+    most += samples[axis] * (double)volume->dimensions[axis];
+  }
+  return most;
+}
+
+bool stratus_ray_step_fits(const stratus_volume* volume, double sample_distance, bool follows)
 {
   double index_to_world[16];
   stratus_volume_index_to_world(volume, index_to_world);
-  return longest_way(index_to_world, volume) / SAMPLES_MOST;
+  return most_samples(volume, index_to_world, sample_distance, follows) <= SAMPLES_MOST;
 }
 
-static stratus_status check_samples(
-  stratus_context* context, const double m[16], const double inverse[16], const stratus_volume* volume, double sample_distance)
+static stratus_status check_samples(stratus_context* context, const double m[16], const double inverse[16], const stratus_volume* volume,
+  double sample_distance, bool follows)
 {
-  const double diagonal = longest_way(m, volume);
-  if (diagonal / sample_distance > SAMPLES_MOST) {
+  if (most_samples(volume, m, sample_distance, follows) > SAMPLES_MOST) {
+    const double diagonal = longest_way(m, volume);
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
       "sample distance %g is too short: a ray through a volume %g wide would take more than %g samples; at least %g", sample_distance,
       diagonal, SAMPLES_MOST, diagonal / SAMPLES_MOST);
   }
-  const double voxels = voxels_a_sample(inverse, sample_distance);
+  const double voxels = voxels_a_sample(volume, inverse, sample_distance, follows);
   if (!(voxels <= VOXELS_A_SAMPLE_MOST) || !(sample_distance >= SMALLEST_SAMPLE_DISTANCE && sample_distance <= LARGEST_SAMPLE_DISTANCE)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
       "sample distance %g is too long or out of range: %g voxels a sample, at most %g; distances %g..%g", sample_distance, voxels,
@@ -268,22 +284,28 @@ static stratus_status check_samples(
 }
 
 stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, const stratus_camera* camera,
-  const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* a, bool* empty)
+  const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, bool follows, stratus_ray_cast_arguments* a,
+  bool* empty)
 {
   stratus_context* context = caster->context;
   const stratus_volume* volume = &caster->traversed;
-  double index_to_world[16], world_to_index[16];
+  double index_to_world[16], world_to_index[16], per_voxel[3];
   memset(a, 0, sizeof *a);
   TRY(stratus_camera_check(context, camera, image));
   stratus_volume_index_to_world(volume, index_to_world);
   if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the volume's matrix has no inverse");
   }
-  TRY(check_samples(context, index_to_world, world_to_index, volume, sample_distance));
+  TRY(check_samples(context, index_to_world, world_to_index, volume, sample_distance, follows));
   set_camera(camera, world_to_index, a);
   a->lattice.per_step = stratus_pair_of(1.0 / sample_distance);
   a->lattice.reach = stratus_pair_of(farthest_point(volume, camera, index_to_world) / sample_distance + 2.0);
   a->lattice.step = (float)sample_distance;
+  a->lattice.follows = follows;
+  stratus_ray_samples_a_voxel(volume, sample_distance, per_voxel);
+  for (int axis = 0; axis < 3; ++axis) {
+    a->lattice.per_voxel[axis] = stratus_pair_of(per_voxel[axis]);
+  }
   a->camera.pixel[0] = stratus_pair_of(1.0 / image->width);
   a->camera.pixel[1] = stratus_pair_of(1.0 / image->height);
   a->picture.width = image->width;
@@ -308,7 +330,7 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
   a->values.bias_high = (int)(uint32_t)(bits >> 32);
   a->lattice.jitter = options->jitter != 0;
   a->lattice.seed = (int)options->jitter_seed;
-  *empty = !set_box(caster, options, voxels_a_sample(world_to_index, sample_distance), a) || !set_piece(caster, a) ||
+  *empty = !set_box(caster, options, voxels_a_sample(volume, world_to_index, sample_distance, follows), a) || !set_piece(caster, a) ||
     !set_regions(volume, options, a);
   return STRATUS_OK;
 }

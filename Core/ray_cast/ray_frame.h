@@ -11,12 +11,13 @@
 /* Returns the length of a sample in voxels, along the axis where it is longest. */
 double stratus_ray_voxels_a_sample(const stratus_ray_caster* caster);
 
-/* Set all arguments of the caster's volume except table and map. *empty: no ray can meet the volume. */
+/* Set all arguments of the caster's volume except table and map. sample_distance, follows: as in stratus_ray_choice. *empty: no ray can
+ * meet the volume. */
 stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, const stratus_camera* camera,
-  const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* arguments,
-  bool* empty);
-/* Returns the shortest step, in the world, by which rays through a volume may go. */
-double stratus_ray_shortest_step(const stratus_volume* volume);
+  const stratus_ray_cast_options* options, const stratus_image* image, double sample_distance, bool follows,
+  stratus_ray_cast_arguments* arguments, bool* empty);
+/* Whether floats distinguish the samples of every ray through a volume. */
+bool stratus_ray_step_fits(const stratus_volume* volume, double sample_distance, bool follows);
 /* Returns the transparency at which a ray may end where only the tolerance says so. */
 double stratus_ray_termination(double tolerance);
 /* Sets the arguments of the table. */

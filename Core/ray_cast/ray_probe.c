@@ -96,6 +96,7 @@ static void take(const probe* p, const setting* s, stratus_ray_choice* choice)
   choice->sample_distance = cells    ? p->voxel
     : options->sample_distance > 0.0 ? options->sample_distance
                                      : exp2(2.0 - 0.25 * s->rung) * p->voxel;
+  choice->follows = (cells || !(options->sample_distance > 0.0)) && stratus_ray_follows_voxels(&p->caster->traversed);
 }
 
 /* ---- drawing */
@@ -104,6 +105,7 @@ typedef struct patch_job {
   const probe* p;
   float* pictures;
   double distance, tolerance;
+  bool follows;
   stratus_ray_variant variant;
   int type;
 } patch_job;
@@ -114,7 +116,8 @@ static stratus_status begin_patch(const patch_job* job, int number, stratus_ray_
   *image = (stratus_image){
     .width = STRATUS_PROBE_WIDTH, .height = STRATUS_PROBE_HEIGHT, .rgba = job->pictures + 4 * (size_t)PATCH * (size_t)number
   };
-  return stratus_ray_frame_arguments(job->p->caster, &job->p->patches[number].camera, &job->p->whole, image, job->distance, a, empty);
+  return stratus_ray_frame_arguments(
+    job->p->caster, &job->p->patches[number].camera, &job->p->whole, image, job->distance, job->follows, a, empty);
 }
 
 static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TILE_COUNTS])
@@ -166,6 +169,7 @@ static stratus_status draw_patches(probe* p, const setting* s, double tolerance,
   const patch_job job = { .p = p,
     .pictures = pictures,
     .distance = caster->choice.sample_distance,
+    .follows = caster->choice.follows,
     .tolerance = tolerance,
     .variant = stratus_ray_modes_variant(caster),
     .type = stratus_ray_fetch_type(&caster->traversed) };
@@ -481,7 +485,7 @@ static int finest_to_compare(const probe* p, stratus_sampling sampling, int last
   const setting finest = { .sampling = sampling, .rung = last + FINER_BY };
   stratus_ray_choice choice;
   take(p, &finest, &choice);
-  return choice.sample_distance >= stratus_ray_shortest_step(&p->caster->traversed) ? finest.rung : last;
+  return stratus_ray_step_fits(&p->caster->traversed, choice.sample_distance, choice.follows) ? finest.rung : last;
 }
 
 /* Takes the cheapest of the settings that keep the tolerance, else the finest. *beyond: blocks of classes below it are rough, 0 if the

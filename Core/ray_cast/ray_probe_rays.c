@@ -340,6 +340,26 @@ static void aim(const double point[3], double reach, double voxel, int number, s
   }
 }
 
+/* Makes the camera of a patch that looks at an index in a direction that is random in index coordinates. Where voxels are very thin nearly
+ * all directions of the world cross the layers one after the other, and pictures from there are all alike. Three patches of four are of
+ * this kind, so that views along the layers are measured, too. */
+static void aim_by_cells(const stratus_volume* volume, const double to_world[16], const double index[3], int number, stratus_camera* camera)
+{
+  double reach = 0.0, eye[3], forward[3], right[3], up[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    reach += (double)volume->dimensions[axis] + 1.0;
+  }
+  aim(index, reach, 1.0, number, camera);
+  stratus_matrix_point(to_world, camera->eye, eye);
+  stratus_matrix_vector(to_world, camera->forward, forward);
+  stratus_matrix_vector(to_world, camera->right, right);
+  stratus_matrix_vector(to_world, camera->up, up);
+  memcpy(camera->eye, eye, sizeof eye);
+  memcpy(camera->forward, forward, sizeof forward);
+  memcpy(camera->right, right, sizeof right);
+  memcpy(camera->up, up, sizeof up);
+}
+
 static void make_patch(const stratus_ray_caster* caster, const stratus_probe_classes* k, const int dealt[CLASSES], int64_t block,
   double voxel, int number, stratus_probe_patch* patch)
 {
@@ -362,7 +382,12 @@ static void make_patch(const stratus_ray_caster* caster, const stratus_probe_cla
     reach += sqrt(edge) * (last + 2.0);
   }
   stratus_matrix_point(to_world, index, point);
-  aim(point, reach, voxel, number, &patch->camera);
+  const bool by_cells = number % 4 && stratus_ray_follows_voxels(volume);
+  if (by_cells) {
+    aim_by_cells(volume, to_world, index, number, &patch->camera);
+  } else {
+    aim(point, reach, voxel, number, &patch->camera);
+  }
   if (!stratus_matrix_invert_affine(to_world, to_index)) {
     patch->weight = 0.0; /* stratus_ray_frame_arguments() refuses the volume */
     return;
@@ -370,7 +395,7 @@ static void make_patch(const stratus_ray_caster* caster, const stratus_probe_cla
   stratus_matrix_vector(to_index, patch->camera.forward, direction);
   for (int axis = 0; axis < 3; ++axis) {
     place[axis] = index[axis] / size;
-    direction[axis] *= voxel; /* in voxels a voxel */
+    direction[axis] *= by_cells ? 1.0 : voxel; /* in voxels a voxel */
     direction[axis] = fabs(direction[axis]) > 1e-9 ? direction[axis] : 1e-9;
     scale = fmax(scale, fabs(direction[axis]));
   }

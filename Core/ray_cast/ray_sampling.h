@@ -10,8 +10,11 @@
 typedef struct stratus_ray_choice {
   stratus_sampling sampling;
   double sample_distance; /* cells: a voxel, which is only their unit of length */
-  double cell_error;      /* cells, local: as in stratus_ray_cast_options */
-  bool provisional;       /* not measured yet: stratus_ray_probe() is to replace it */
+  /* Each ray's samples are as long as its way through a voxel, or through as many or such a part of one as sample_distance has of
+   * stratus_ray_voxel_length(); sample_distance is then the shortest sample. */
+  bool follows;
+  double cell_error; /* cells, local: as in stratus_ray_cast_options */
+  bool provisional;  /* not measured yet: stratus_ray_probe() is to replace it */
   /* The probe's results; NaN and true without a probe. */
   double expected_error;
   bool met;
@@ -41,5 +44,10 @@ bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_
 /* Returns the world length of a voxel's shortest edge, among the axes along which the volume extends; less where that would cross a
  * thousand layers of voxels. */
 double stratus_ray_voxel_length(const stratus_volume* volume);
+/* Whether automatic samples follow each ray's way through the voxels. */
+bool stratus_ray_follows_voxels(const stratus_volume* volume);
+/* Gives, for samples that follow the voxels and are at least sample_distance long, how many of them a ray takes in passing a voxel along
+ * each axis; along an axis without extent a thousandth of that. */
+void stratus_ray_samples_a_voxel(const stratus_volume* volume, double sample_distance, double samples[3]);
 
 #endif

@@ -255,7 +255,7 @@ static stratus_status set_volume(
   } else if (!media) {
     TRY(update_layers(caster, s->step));
   }
-  TRY(stratus_ray_frame_arguments(caster, s->camera, &in->options, s->image, s->step, a, &empty));
+  TRY(stratus_ray_frame_arguments(caster, s->camera, &in->options, s->image, s->step, false, a, &empty));
   const bool shown = !empty && stratus_ray_shading_show(caster) && !(with_map && caster->occupancy->count == 0);
   in->stride = stride_of(caster, s->step);
   in->part = -1;

@@ -146,7 +146,9 @@ typedef struct stratus_ray_cast_options {
   /* Sampling by cells: the largest departure of the field from a straight line within a piece, as a fraction of the values that the
    * functions' points span. At least 0 and finite; 0 (default): by the tolerance. A cell has at most 32 pieces. */
   double cell_error;
-  double sample_distance; /* world length, at most 4096 voxels; 0 (default): by the tolerance */
+  /* World length, at most 4096 voxels; 0 (default): by the tolerance. Where a voxel's longest side is more than 64 times its shortest, an
+   * automatic distance follows each ray: it is a number of voxels, or a part of one, along the ray's own way. */
+  double sample_distance;
   double termination;     /* a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance */
   /* The root mean square error of RGBA in 0..1 over the lit pixels that the automatic settings may cause. At least 0, finite. Default .001:
    * 60 dB, a quarter of an 8-bit step. 0: the finest settings. The tolerance governs the settings that are left automatic: sampling,
@@ -244,7 +246,8 @@ typedef struct stratus_ray_cast_report {
   int window[4];               /* x0, x1, y0, y1: pixels outside [x0, x1) x [y0, y1) show nothing */
   stratus_structure structure; /* the structure used */
   stratus_sampling sampling;   /* the sampling used */
-  double sample_distance;      /* the sample distance used, world length */
+  double sample_distance;      /* the sample distance used, world length; if follows_voxels, of the rays that take the shortest */
+  int follows_voxels;          /* 1: each ray's sample distance follows its way through the voxels; otherwise 0 */
   double cell_error;           /* the cell error used by rules cells and local; otherwise 0 */
   /* measured on the probe's rays, as the tolerance is defined, also if the tolerance is missed; NaN: not measured */
   double expected_error;

@@ -35,6 +35,11 @@ static inline float stratus_float_below(double number)
   const float nearest = (float)number;
   return (double)nearest > number ? nextafterf(nearest, -INFINITY) : nearest;
 }
+/* Whether the volume extends along an axis. */
+static inline bool stratus_volume_extends(const stratus_volume* volume, int axis)
+{
+  return volume->dimensions[axis] > 1 || volume->cell_centered;
+}
 /* Whether any axis has coordinates. */
 static inline bool stratus_volume_is_stretched(const stratus_volume* volume)
 {

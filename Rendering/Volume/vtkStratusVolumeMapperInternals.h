@@ -125,6 +125,7 @@ private:
   double FullMilliseconds = 0.0;       // estimated cast time of an exact picture, 0: unknown
   double FullSampleDistance = 0.0;
   stratus_sampling FullSampling = STRATUS_SAMPLING_AUTO;
+  bool FullFollows = false;
   vtkSmartPointer<vtkImageData> LastImage;
   std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{}; // of the picture's components
   vtkStratusVectors Vectors;

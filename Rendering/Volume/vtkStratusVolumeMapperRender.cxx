@@ -55,8 +55,8 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
   if (excess > 1.0) {
     const bool steps = !this->IsFirstHit() && mapper->BlendMode < vtkVolumeMapper::ISOSURFACE_BLEND && // nor have slices steps
-      this->FullSampling != STRATUS_SAMPLING_CELLS &&
-      this->FullSampling != STRATUS_SAMPLING_LOCAL; // cells have no step, local is not for asking
+      !this->FullFollows && this->FullSampling != STRATUS_SAMPLING_CELLS && // nor have rays that follow the voxels one step for all
+      this->FullSampling != STRATUS_SAMPLING_LOCAL;                         // cells have no step, local is not for asking
     coarseness.Step = !steps ? 1.0 : std::min(excess, mapper->MaximumSampleDistanceFactor);
     coarseness.Pixels *= std::sqrt(excess / coarseness.Step);
     coarseness.Pixels = std::max(mapper->ImageSampleDistance, std::min(coarseness.Pixels, mapper->MaximumImageSampleDistance));
@@ -69,6 +69,7 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
   if (coarseness.Step == 1.0) {
     this->FullSampleDistance = this->Report.sample_distance;
     this->FullSampling = this->Report.sampling;
+    this->FullFollows = this->Report.follows_voxels != 0;
   }
   const double rays = static_cast<double>(this->Picture.Size[0]) * this->Picture.Size[1];
   const double base = this->Mapper->ImageSampleDistance;

@@ -90,6 +90,39 @@ static void modes_are_those_of_the_host(void** state)
   stratus_context_destroy(device);
 }
 
+/* Samples that follow the voxels take a part of the kernels that other frames leave out. */
+static void thin_voxels_are_those_of_the_host(void** state)
+{
+  static const stratus_mode modes[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_AVERAGE, STRATUS_MODE_COMPOSITE };
+  stratus_context* host = case_context("host", 2);
+  stratus_context* device = case_context("0", 2);
+  (void)state;
+  for (int i = 0; i < (few_run() ? 1 : 3); ++i) {
+    picture_case c;
+    int64_t most = 0;
+    case_create(host, &c, STRATUS_FLOAT32, 21, 19, 23, 5);
+    c.volume.spacing[2] = 1e-3;
+    c.transfer.unit_distance = 1e-2;
+    c.options = stratus_ray_cast_options_default();
+    c.options.mode = modes[i];
+    c.options.sampling = i == 2 ? STRATUS_SAMPLING_CELLS : STRATUS_SAMPLING_AUTO;
+    case_camera(host, &c, 2 + i, i == 1);
+    case_render(host, &c, &on_host);
+    case_render(device, &c, &on_device);
+    for (int k = 0; k < 4 * CASE_PIXELS; ++k) {
+      const int64_t apart = ulps(on_host.rgba[k], on_device.rgba[k]);
+      most = apart > most ? apart : most;
+    }
+    print_message("             %s, %d pixels, at most %lld units in the last place apart\n", stratus_mode_name(modes[i]),
+      case_lit(&on_host), (long long)most);
+    assert_true(on_device.report.follows_voxels && case_lit(&on_host) > CASE_PIXELS / 50);
+    assert_true(most <= ULPS_MOST);
+    case_destroy(&c);
+  }
+  stratus_context_destroy(host);
+  stratus_context_destroy(device);
+}
+
 int test_ray_modes_device(void)
 {
   if (stratus_device_count() == 0) {
@@ -99,6 +132,7 @@ int test_ray_modes_device(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test_prestate(modes_are_those_of_the_host, &packets),
     cmocka_unit_test_prestate(modes_are_those_of_the_host, &one_ray),
+    cmocka_unit_test(thin_voxels_are_those_of_the_host),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -150,6 +150,7 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
   sample.value = RAY_NAME(ray_value)(a, values, hidden, k->grid, x, inside);
   sample.lo = lo;
   sample.weight = hi - lo;
+  sample.length = packet_length(a, k, sample.weight);
   sample.values = values;
   sample.hidden = hidden;
   return sample;
@@ -191,17 +192,17 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 INLINE void RAY_NAME(ray_shade)(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k, const stratus_sample* sample)
 {
-  const vfloat value = sample->value, weight = sample->weight, lo = sample->lo;
+  const vfloat value = sample->value, length = sample->length, lo = sample->lo;
   k->samples -= mask_int(k->live);
 #if STRATUS_PREINTEGRATED
   const vmask whole = m_andnot(k->live, k->fresh); /* rays that know the value at the segment's front */
   const vmask valid = whole & v_finite(value) & v_finite(k->front);
-  integrate_segment(a, (GLOBAL const int*)table, k, valid, value, weight, lo);
+  integrate_segment(a, (GLOBAL const int*)table, k, valid, value, length, lo);
   k->front = value;
   k->i = vi_select(k->fresh, k->i, k->i + vi_set(1));
   k->fresh = m_none();
 #else
-  shade_sample(a, (GLOBAL const float*)table, k, k->live & v_finite(value), value, weight, lo);
+  shade_sample(a, (GLOBAL const float*)table, k, k->live & v_finite(value), value, length, lo);
   k->i = k->i + vi_set(1);
 #endif
   k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));

@@ -26,8 +26,9 @@
 #define RAY_CUT 0x400        /* transparent beyond their ends, */
 #define RAY_JUMPS 0x800      /* or that jump */
 #define RAY_GRID 0x2000      /* a grid whose spacing changes */
+#define RAY_FOLLOWS 0x4000   /* samples whose length follows the ray's way through the voxels */
 #ifndef RAY_HAS
-#define RAY_HAS 0x2fff
+#define RAY_HAS 0x6fff
 #endif
 /* Values in pages, which only devices know, and only where the whole volume does not fit one of their allocations. */
 #define RAY_PAGES 0x1000
@@ -83,6 +84,10 @@ typedef struct stratus_ray_lattice {
   stratus_pair reach;    /* as many samples as reach beyond the volume's farthest corner */
   stratus_pair per_step; /* 1 / sample distance, in the world */
   float step;            /* the sample distance as a float, for depth */
+  /* 1: each ray's samples are as long as its own way through a part of a voxel. per_voxel: samples a ray takes in passing a voxel along
+   * each axis, of which the largest number counts. */
+  int follows;
+  stratus_pair per_voxel[3];
   /* cells: the square of the number of pieces of a path through a cell, over the field's largest second derivative on it */
   float pieces_per_bend;
   int jitter, seed; /* jitter 1: each ray's lattice lies farther from the eye by a part of a sample, which pixel and seed decide */

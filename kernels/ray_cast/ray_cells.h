@@ -137,7 +137,7 @@ INLINE vmask cell_composite(
   const vfloat length = w->leave - w->s, begin = v_fma(way->from, length, w->s);
   cell_piece piece;
   cell_next_piece(way, &piece);
-  cell_integrate(a, sums, k, mask, piece.front, piece.back, length * way->share, begin);
+  cell_integrate(a, sums, k, mask, piece.front, piece.back, packet_length(a, k, length * way->share), begin);
   const vmask left = cell_pass_piece(way, &piece, mask);
   k->live = m_andnot(k->live, mask & v_lt(k->transparency, v_set(a->termination)));
   return left & k->live;
@@ -172,7 +172,7 @@ INLINE void RAY_NAME(cell_visit_nearest)(CONSTANT stratus_ray_cast_arguments* a,
   const vfloat value = RAY_NAME(fetch_nearest)(a, values, at[0], at[1], at[2], k->live);
   k->samples -= mask_int(k->live);
   const vmask mask = cell_not_hidden(a, hidden, hides, k->live & v_lt(w->s, w->leave) & v_finite(value));
-  cell_integrate(a, sums, k, mask, value, value, w->leave - w->s, w->s);
+  cell_integrate(a, sums, k, mask, value, value, packet_length(a, k, w->leave - w->s), w->s);
   k->live = m_andnot(k->live, mask & v_lt(k->transparency, v_set(a->termination)));
 }
 

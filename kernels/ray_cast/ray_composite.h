@@ -13,7 +13,7 @@ INLINE void composite(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k,
 {
   if (a->picture.want_depth) {
     const vmask hit = mask & v_lt(v_set(0.0f), layer[3]) & v_le(v_set(LARGEST_FLOAT), k->depth);
-    k->depth = v_select(hit, (lo + k->first) * v_set(a->lattice.step), k->depth);
+    k->depth = v_select(hit, packet_length(a, k, lo + k->first) * v_set(a->lattice.step), k->depth);
   }
   k->red = v_fma(k->transparency, layer[0], k->red);
   k->green = v_fma(k->transparency, layer[1], k->green);
@@ -21,12 +21,12 @@ INLINE void composite(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k,
   k->transparency = v_fma(v_set(0.0f) - k->transparency, layer[3], k->transparency);
 }
 
-/* Shorten layers of whole segments to a part of the optical depth, `weight` of it. */
-INLINE void shorten_layer(
+/* Change layers of a sample distance to `weight` of the optical depth. */
+INLINE void scale_layer(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, vint entry, vmask mask, vfloat weight, vfloat layer[4])
 {
-  const vmask part = mask & v_lt(weight, v_set(1.0f)) & v_lt(v_set(0.0f), layer[3]);
-  if (m_any(part)) { /* only the segments at a ray's ends are shorter than a sample distance */
+  const vmask part = m_andnot(mask, v_le(weight, v_set(1.0f)) & v_le(v_set(1.0f), weight)) & v_lt(v_set(0.0f), layer[3]);
+  if (m_any(part)) { /* on most lattices only the segments at a ray's ends are not a sample distance long */
     vfloat last[4];
     gather_four(table + 4 * a->table.entries, entry, part, last);
     const vfloat alpha = v_absorbed(last[0] * weight),
@@ -57,7 +57,7 @@ INLINE void shade_sample(
   const vint entry = table_entry(&a->table, table, value);
   vfloat layer[4];
   gather_four(table, entry, mask, layer);
-  shorten_layer(a, table, entry, mask, weight, layer);
+  scale_layer(a, table, entry, mask, weight, layer);
   composite(a, k, mask, layer, lo);
 }
 

@@ -36,7 +36,7 @@ INLINE void RAY_NAME(local_march)(CONSTANT stratus_ray_cast_arguments* a, value_
   while (m_any(k->live) && RAY_NAME(ray_leap)(a, map, k)) {
     const stratus_sample sample = RAY_NAME(ray_sample)(a, values, hidden, k);
     k->samples -= mask_int(k->live);
-    local_composite(a, sums, k, k->live & v_finite(sample.value), sample.value, sample.weight, sample.lo);
+    local_composite(a, sums, k, k->live & v_finite(sample.value), sample.value, sample.length, sample.lo);
     k->i = k->i + vi_set(1);
     k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
   }

@@ -18,7 +18,7 @@ INLINE void RAY_NAME(ray_shade)(
   (void)table;
   k->samples -= mask_int(k->live);
   k->front = v_select(better, value, k->front);
-  k->depth = v_select(better, (sample->lo + k->first) * v_set(a->lattice.step), k->depth);
+  k->depth = v_select(better, packet_length(a, k, sample->lo + k->first) * v_set(a->lattice.step), k->depth);
   RAY_NAME(ray_advance)(k, v_le(v_set(a->mode.top), k->front)); /* no value of the volume is better */
 }
 
@@ -46,10 +46,10 @@ INLINE void RAY_NAME(ray_shade)(
   gather_four((GLOBAL const float*)table, table_entry(&a->table, table, value), counts, layer);
   const vfloat grey = v_fma(value, v_set(a->mode.grey_scale), v_set(a->mode.grey_offset)) * layer[3];
   k->samples -= mask_int(k->live);
-  k->front = v_select(counts, v_fma(grey, sample->weight, k->front), k->front);
-  k->red = v_select(counts, k->red + sample->weight, k->red);
+  k->front = v_select(counts, v_fma(grey, sample->length, k->front), k->front);
+  k->red = v_select(counts, k->red + sample->length, k->red);
   const vmask first = counts & v_lt(v_set(0.0f), layer[3]) & v_le(v_set(LARGEST_FLOAT), k->depth);
-  k->depth = v_select(first, (sample->lo + k->first) * v_set(a->lattice.step), k->depth);
+  k->depth = v_select(first, packet_length(a, k, sample->lo + k->first) * v_set(a->lattice.step), k->depth);
   RAY_NAME(ray_advance)(k, m_none());
 }
 

@@ -41,6 +41,7 @@ typedef GLOBAL const void* value_source;
 
 typedef struct stratus_packet {
   vfloat p[3], d[3], inverse[3], begin, end, first;
+  vfloat unit; /* the length of a sample in sample distances; set if lattice.follows is */
   vfloat transparency, red, green, blue, depth;
   vfloat
     front; /* pre-integrated: the value at the segment's front; extremes: the best value so far; sums: the sum, whose weight is in `red` */
@@ -57,6 +58,7 @@ typedef struct stratus_packet {
 /* A sample of every ray, in the segment [lo, lo + weight]. */
 typedef struct stratus_sample {
   vfloat value, lo, weight;
+  vfloat length;       /* of the segment, in sample distances */
   value_source values; /* of the volume that the sample is from */
   GLOBAL const uchar* hidden;
 } stratus_sample;
@@ -66,6 +68,15 @@ INLINE vint mask_int(vmask m) { return vi_select(m, vi_set(-1), vi_set(0)); }
 #else
 INLINE vint mask_int(vmask m) { return m; }
 #endif
+
+/* The lengths, in sample distances, of parts of the rays that are so many samples long. */
+INLINE vfloat packet_length(CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, vfloat samples)
+{
+  if (RAY_RARE(RAY_FOLLOWS, a->lattice.follows)) {
+    samples = samples * k->unit;
+  }
+  return samples;
+}
 
 INLINE vfloat segment_middle(const stratus_packet* k, vfloat fi)
 {
@@ -202,6 +213,7 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
   k->begin = v_select(k->live, k->begin, zero);
   k->end = v_select(k->live, k->end, zero); /* lanes that are not live stay at a harmless place */
   k->first = v_load(rays->first);
+  k->unit = RAY_RARE(RAY_FOLLOWS, a->lattice.follows) ? v_load(rays->unit) : v_set(1.0f);
   k->octant = vi_set(0);
   for (int axis = 0; axis < 3; ++axis) {
     k->p[axis] = v_load(rays->p[axis]);

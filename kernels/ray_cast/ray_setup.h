@@ -12,14 +12,15 @@ typedef struct stratus_rays {
   float p[3][STRATUS_WIDTH], d[3][STRATUS_WIDTH], inverse[3][STRATUS_WIDTH];
   float begin[STRATUS_WIDTH], end[STRATUS_WIDTH];
   float first[STRATUS_WIDTH];                                 /* the lattice index of segment 0, for depth */
+  float unit[STRATUS_WIDTH];                                  /* the length of a sample in sample distances; set if lattice.follows is */
   float whole[2][STRATUS_WIDTH];                              /* the sum is that index, exactly, and without jitter */
   float piece_begin[STRATUS_WIDTH], piece_end[STRATUS_WIDTH]; /* the part that this piece owns, in samples */
   float crossing[3][2][STRATUS_WIDTH];                        /* where the ray crosses the planes between crop regions, in samples */
 } stratus_rays;
 
-/* The smallest displacement of a sample along an axis, in voxels. It keeps reciprocals finite and moves no ray by a thousandth of a voxel.
- */
-#define SMALLEST_STEP 1e-9f
+/* The smallest displacement of a sample along an axis, in voxels. It keeps reciprocals finite, and the product of two in the range of
+ * floats; and it moves no ray by a thousandth of a voxel, even if the eye is 1e11 samples away, as from voxels of very unequal sides. */
+#define SMALLEST_STEP 1e-14f
 
 INLINE real ray_away_from_zero(real d)
 {
@@ -63,8 +64,9 @@ INLINE float ray_jitter(int x, int y, int seed)
 }
 
 /* REAL_WIDTH rays of the pixels x, y (whole numbers): index origins, directions by k. Returns the samples that a unit of k is, in *per_k,
- * and its reciprocal. */
-INLINE real ray_line(CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, real origin[3], real direction[3], real* per_k)
+ * and its reciprocal. *unit: the length of a sample in sample distances. */
+INLINE real ray_line(
+  CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, real origin[3], real direction[3], real* per_k, real* unit)
 {
   const real half_one = r_number(0.5f), one = r_number(1.0f), two = r_number(2.0f);
   const real u = r_sub(r_mul(r_mul(r_add(r_load(x), half_one), two), r_of(a->camera.pixel[0])), one);
@@ -82,6 +84,15 @@ INLINE real ray_line(CONSTANT stratus_ray_cast_arguments* a, const float* x, con
   }
   length = r_sqrt(length);
   *per_k = r_mul(length, r_of(a->lattice.per_step));
+  *unit = one;
+  if (RAY_RARE(RAY_FOLLOWS, a->lattice.follows)) {
+    const real distances = *per_k;
+    *per_k = r_number(0.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+      *per_k = r_max(*per_k, r_mul(r_max(direction[axis], r_neg(direction[axis])), r_of(a->lattice.per_voxel[axis])));
+    }
+    *unit = r_div(distances, *per_k);
+  }
   return r_div(one, *per_k);
 }
 
@@ -91,8 +102,8 @@ INLINE void ray_setup_part(
   CONSTANT stratus_ray_cast_arguments* a, const float* x, const float* y, const float* z, const float* w, int part, stratus_rays* rays)
 {
   const real zero = r_number(0.0f), one = r_number(1.0f);
-  real origin[3], direction[3], samples_per_k;
-  const real k_per_sample = ray_line(a, x, y, origin, direction, &samples_per_k);
+  real origin[3], direction[3], samples_per_k, unit;
+  const real k_per_sample = ray_line(a, x, y, origin, direction, &samples_per_k, &unit);
 
   real begin = r_mul(r_of(a->camera.near_k), samples_per_k), end = r_of(a->lattice.reach);
   if (a->camera.has_far) {
@@ -140,6 +151,9 @@ INLINE void ray_setup_part(
   r_store(rays->begin + part, r_sub(begin, first));
   r_store(rays->end + part, r_sub(end, first));
   r_store(rays->first + part, RAY_RARE(RAY_JITTER, a->lattice.jitter) ? r_sub(first, shift) : first);
+  if (RAY_RARE(RAY_FOLLOWS, a->lattice.follows)) {
+    r_store(rays->unit + part, unit);
+  }
   r_store(rays->whole[0] + part, first);
   r_store(rays->whole[1] + part, r_sub(first, r_load(rays->whole[0] + part)));
   for (int side = 0; RAY_RARE(RAY_REGIONS, a->crop.regions) && side < 6; ++side) {

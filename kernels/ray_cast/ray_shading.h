@@ -140,7 +140,7 @@ OUTLINE void RAY_NAME(shade_components)(
   if (m_any(shows)) {
     vfloat layer[4];
     const vfloat depth = sum[3];
-    layer[3] = v_select(shows, v_absorbed(depth * sample->weight), zero);
+    layer[3] = v_select(shows, v_absorbed(depth * sample->length), zero);
     const vfloat per_depth = v_select(shows, layer[3] * v_reciprocal(v_max(depth, v_set(1e-30f))), zero);
     for (int c = 0; c < 3; ++c) {
       layer[c] = sum[c] * per_depth;
@@ -225,9 +225,9 @@ OUTLINE void RAY_NAME(shade_labels)(
   const vmask shows = RAY_NAME(labels_at)(a, table, k, sample, &shown);
   if (m_any(shows)) {
     vfloat layer[4] = { shown.layer[0], shown.layer[1], shown.layer[2], shown.layer[3] };
-    const vfloat thick = sample->weight * shown.lighting.factor;
-    const vmask part = shows & v_lt(thick, v_set(1.0f));
-    if (m_any(part)) { /* as shorten_layer() */
+    const vfloat thick = sample->length * shown.lighting.factor;
+    const vmask part = m_andnot(shows, v_le(thick, v_set(1.0f)) & v_le(v_set(1.0f), thick));
+    if (m_any(part)) { /* as scale_layer() */
       vfloat depth[4];
       gather_four((GLOBAL const float*)table, shown.entry + shown.depths, part, depth);
       const vfloat alpha = v_absorbed(depth[0] * thick),
@@ -254,7 +254,7 @@ OUTLINE void RAY_NAME(ray_shade)(
   const vmask shows = segment_shows(a, (GLOBAL const int*)table, k, whole & v_finite(value) & v_finite(k->front), value);
   if (m_any(shows)) {
     RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), weight, shows, &lighting);
-    integrate_lit(a, (GLOBAL const int*)table, k, shows, value, weight * lighting.factor, lo, &lighting);
+    integrate_lit(a, (GLOBAL const int*)table, k, shows, value, sample->length * lighting.factor, lo, &lighting);
   }
   k->front = value;
   k->i = vi_select(k->fresh, k->i, k->i + vi_set(1));
@@ -272,7 +272,7 @@ OUTLINE void RAY_NAME(ray_shade)(
     if (m_any(shows)) {
       const vfloat depth = RAY_NAME(entry_depth)(a, (GLOBAL const float*)table + 4 * a->table.entries, entry, shows);
       RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), depth, shows, &lighting);
-      shorten_layer(a, (GLOBAL const float*)table, entry, shows, weight * lighting.factor, layer);
+      scale_layer(a, (GLOBAL const float*)table, entry, shows, sample->length * lighting.factor, layer);
       light_layer(&lighting, layer);
       composite(a, k, shows, layer, lo);
     }

@@ -45,9 +45,9 @@ INLINE void slice_begin(CONSTANT stratus_ray_cast_arguments* a, int x, int y, co
     py[lane] = (float)(y + (lane >> PACKET_X_LOG2));
   }
   for (int part = 0; part < STRATUS_WIDTH; part += REAL_WIDTH) {
-    real origin[3], direction[3], degree[3], roots[2], samples_per_k;
+    real origin[3], direction[3], degree[3], roots[2], samples_per_k, unit;
     const real first = r_add(r_load(rays->whole[0] + part), r_load(rays->whole[1] + part));
-    const real k_per_sample = ray_line(a, px + part, py + part, origin, direction, &samples_per_k);
+    const real k_per_sample = ray_line(a, px + part, py + part, origin, direction, &samples_per_k, &unit);
     for (int axis = 0; axis < 3; ++axis) {
       direction[axis] = r_mul(direction[axis], k_per_sample);
       origin[axis] = r_sub(r_add(origin[axis], r_mul(first, direction[axis])), r_of(a->slice.center[axis]));

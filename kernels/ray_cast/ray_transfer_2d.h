@@ -4,10 +4,11 @@
 #ifndef STRATUS_RAY_TRANSFER_2D_H
 #define STRATUS_RAY_TRANSFER_2D_H
 
-/* Makes colour and opacity over the length that opacities are of a layer: colour times alpha, and alpha, of `weight` samples. */
-INLINE void thicken_layer(CONSTANT stratus_ray_cast_arguments* a, vfloat weight, vfloat layer[4])
+/* Makes colour and opacity over the length that opacities are of a layer: colour times alpha, and alpha, of a length in sample distances.
+ */
+INLINE void thicken_layer(CONSTANT stratus_ray_cast_arguments* a, vfloat length, vfloat layer[4])
 {
-  layer[3] = v_absorbed(depth_of_entry(layer[3]) * (weight * v_set(a->transfer_2d.reach)));
+  layer[3] = v_absorbed(depth_of_entry(layer[3]) * (length * v_set(a->transfer_2d.reach)));
   for (int c = 0; c < 3; ++c) {
     layer[c] = layer[c] * layer[3];
   }
@@ -22,7 +23,7 @@ OUTLINE void RAY_NAME(shade_by_two)(CONSTANT stratus_ray_cast_arguments* a, GLOB
   stratus_lit_sample lighting;
   mask = RAY_NAME(two_at)(a, table, k, sample, column, across, mask, layer, &lighting);
   if (m_any(mask)) {
-    thicken_layer(a, sample->weight, layer);
+    thicken_layer(a, sample->length, layer);
     if (a->light.on) {
       light_layer(&lighting, layer);
     }

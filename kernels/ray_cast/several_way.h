@@ -132,7 +132,7 @@ INLINE void several_shade_media(const several_source* from, several_volume* v, v
   k.live = mask;
   sample.value = way->front;
   sample.lo = way->lo;
-  sample.weight = way->hi - way->lo;
+  sample.length = sample.weight = way->hi - way->lo;
   sample.values = from->values;
   sample.hidden = from->hidden;
   several_media_at(from, &k, &sample, way->rate);
