@@ -149,7 +149,7 @@ typedef struct stratus_ray_cast_options {
   /* World length, at most 4096 voxels; 0 (default): by the tolerance. Where a voxel's longest side is more than 64 times its shortest, an
    * automatic distance follows each ray: it is a number of voxels, or a part of one, along the ray's own way. */
   double sample_distance;
-  double termination;     /* a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance */
+  double termination; /* a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance */
   /* The root mean square error of RGBA in 0..1 over the lit pixels that the automatic settings may cause. At least 0, finite. Default .001:
    * 60 dB, a quarter of an 8-bit step. 0: the finest settings. The tolerance governs the settings that are left automatic: sampling,
    * sample_distance, cell_error and termination. */
