@@ -134,12 +134,10 @@ static stratus_status update_values(stratus_tetra_caster* caster, const stratus_
   return STRATUS_OK;
 }
 
-/* *mixed: the mesh is a lattice whose cells turn both ways, and is to be listed; then nothing has changed. */
-static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_mesh* mesh, bool* mixed, double* ms)
+static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_mesh* mesh, double* ms)
 {
   stratus_tetra_mesh* made = NULL;
   bool taken = false;
-  *mixed = false;
   if (caster->mesh && same_mesh(&caster->view, mesh)) {
     return STRATUS_OK;
   }
@@ -152,13 +150,7 @@ static stratus_status update_mesh(stratus_tetra_caster* caster, const stratus_me
     }
   }
   if (stratus_mesh_is_lattice(mesh)) {
-    TRY(stratus_tetra_lattice_create(caster->context, mesh, &made, mixed));
-    if (*mixed) {
-      caster->mixed = made->geometry;
-      stratus_tetra_mesh_destroy(made);
-      *ms += stratus_now_ms() - start;
-      return STRATUS_OK;
-    }
+    TRY(stratus_tetra_lattice_create(caster->context, mesh, &made));
   } else {
     TRY(stratus_tetra_mesh_create(caster->context, mesh, &made));
   }
@@ -176,13 +168,12 @@ static stratus_status update_list(stratus_tetra_caster* caster, const stratus_me
 {
   const double start = stratus_now_ms();
   stratus_tetra_list* list = caster->list;
-  bool mixed = false;
   if (!list || !same_mesh(&list->source, lattice)) {
     TRY(stratus_tetra_list_create(caster->context, lattice, &list));
     *ms += stratus_now_ms() - start;
   }
   memcpy(list->mesh.matrix, lattice->matrix, sizeof lattice->matrix);
-  const stratus_status status = update_mesh(caster, &list->mesh, &mixed, ms);
+  const stratus_status status = update_mesh(caster, &list->mesh, ms);
   if (list != caster->list) {
     stratus_tetra_list* outdated = status == STRATUS_OK ? caster->list : list;
     caster->list = status == STRATUS_OK ? list : caster->list;
@@ -192,26 +183,17 @@ static stratus_status update_list(stratus_tetra_caster* caster, const stratus_me
   return status;
 }
 
-/* Update the caster to a mesh, or to the list of a lattice that cannot be drawn directly. *drawn: the mesh that the caster now has. */
+/* Update the caster to a mesh, or to the list of a lattice that is projected. *drawn: the mesh that the caster now has. */
 static stratus_status update(
   stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options, const stratus_mesh** drawn, double* ms)
 {
-  bool listed = false;
   *drawn = mesh;
-  if (stratus_mesh_is_lattice(mesh)) {
-    const bool known = caster->list && same_mesh(&caster->list->source, mesh);
-    listed = options->method == STRATUS_TETRA_METHOD_PROJECT ||
-      (caster->mixed != 0 && (known || caster->mixed == stratus_tetra_hash(caster->context, mesh)));
-  }
-  if (!listed) {
-    TRY(update_mesh(caster, mesh, &listed, ms));
-  }
-  if (listed) {
+  if (stratus_mesh_is_lattice(mesh) && options->method == STRATUS_TETRA_METHOD_PROJECT) {
     return update_list(caster, mesh, drawn, ms);
   }
+  TRY(update_mesh(caster, mesh, ms));
   stratus_tetra_list_destroy(caster->list);
   caster->list = NULL;
-  caster->mixed = stratus_mesh_is_lattice(mesh) ? 0 : caster->mixed;
   return STRATUS_OK;
 }
 

@@ -23,7 +23,10 @@ struct stratus_tetra_mesh {
   int lattices;
   /* TETRA_CELL ints per cell, in the order of stratus_tetra_places; of a lattice a bit per point: its hexahedron shows */
   int32_t* cells;
-  size_t cell_ints, value_count; /* ints of `cells`; of values */
+  /* Of lattices whose tetrahedra turn both ways a byte per point, which says of the hexahedron what its bit in `cells` says, and which of
+   * its tetrahedra turn left (tetra_arguments.h); rays read it in place of `cells`. NULL: there is no such lattice. */
+  uint8_t* turns;
+  size_t cell_ints, value_count; /* ints that rays read of cells; values */
   /* Number of each mesh point in `cells` and `faces`: points are numbered as cells first use them. NULL: a lattice's points keep theirs. */
   int32_t* names;
   float* values;      /* a fetched value per mesh point; NULL: values belong to cells */
@@ -95,7 +98,6 @@ struct stratus_tetra_caster {
   stratus_context* context;
   stratus_mesh view;        /* the source of `mesh`; the list's where a lattice is listed */
   stratus_tetra_list* list; /* NULL: none */
-  uint64_t mixed;           /* stratus_tetra_hash() of the last lattice whose cells turn both ways; 0: none */
   stratus_tetra_mesh* mesh;
   stratus_tetra_projector* projector; /* NULL until something is projected */
   stratus_tetra_look look;            /* of the first component */

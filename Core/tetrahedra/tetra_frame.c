@@ -449,13 +449,13 @@ stratus_status stratus_tetra_frame_prepare(stratus_context* context, const strat
     return stratus_fail(context, STRATUS_UNSUPPORTED, "image of %d x %d pixels is too large to draw tetrahedra in: at most %d pixels",
       image->width, image->height, INT32_MAX);
   }
-  frame->cells = tetra->cells;
+  frame->cells = tetra->turns ? (const int32_t*)tetra->turns : tetra->cells;
   frame->cell_values = tetra->cell_values;
   frame->arguments.picture.width = image->width;
   frame->arguments.picture.height = image->height;
   frame->arguments.columns = frame->columns;
   frame->arguments.cell_values = tetra->values == NULL;
-  frame->arguments.lattice = tetra->names == NULL;
+  frame->arguments.lattice = tetra->names ? 0 : tetra->turns ? TETRA_LATTICE_TURNS : TETRA_LATTICE;
   frame->arguments.steps_most = (int)(tetra->cell_count + 1);
   TRY(find_matrix(&build));
   TRY(find_scale(&build));

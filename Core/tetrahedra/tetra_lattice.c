@@ -3,13 +3,17 @@
  * (tetra_lattice_next() in kernels/tetrahedra/tetra_march.h), so that only one bit is kept for each hexahedron: whether it shows. A
  * hexahedron is named by its first corner; the bits of points that are nobody's first corner stay 0, and so end the lattice on all sides.
  * The points of several lattices are numbered one lattice after the other. A ray that leaves one lattice by its border enters the next as
- * it enters the mesh: the same rays pass a face of both, because its points are the same floats. */
+ * it enters the mesh: the same rays pass a face of both, because its points are the same floats.
+ *
+ * Where lattices fold some tetrahedra turn left and others right. A face between two of them has both on the same side, so that it is a
+ * border face of each. Then a byte is kept for each hexahedron, so that rays know which way its tetrahedra turn (tetra_arguments.h). */
 #include "tetra_lattice.h"
 
 #include <string.h>
 
 #define POINTS_MOST (INT32_MAX / TETRA_CELL) /* cells of rays are TETRA_CELL times a point's number, as are cells of lists */
 #define WORD 32                              /* bits of a word */
+#define TETRA_TURNS_ALL 0xdb                 /* the bits of all tetrahedra */
 
 /* A lattice, its numbers counted from its own first point. */
 typedef struct lattice_build {
@@ -19,8 +23,9 @@ typedef struct lattice_build {
   int64_t step[3], corner[8];
   int64_t first, words; /* the number of its first point; its words of bits */
   uint32_t* bits;
+  uint8_t* turns; /* NULL: all lattices turn one way each */
   float* values;
-  bool left; /* its tetrahedra turn the other way */
+  bool left; /* its tetrahedra turn left */
 } lattice_build;
 
 static lattice_build build_of(stratus_tetra_mesh* tetra, const stratus_mesh* whole, int part, uint32_t* bits, float* values)
@@ -200,6 +205,13 @@ static int own_orientation(int way)
   return way < 3 ? 1 : -1;
 }
 
+/* Returns the orientation of a hexahedron's tetrahedron, whose corners are p: 1 right, -1 left, 0 flat. */
+static int orientation_of(double p[8][3], int way)
+{
+  const int one = 1 << stratus_lattice_ways[way][0], two = one | 1 << stratus_lattice_ways[way][1];
+  return own_orientation(way) * stratus_orientation(p[0], p[one], p[two], p[7]);
+}
+
 /* Finds which way the hexahedra turn, and adds their bounds. Returns true where tetrahedra turn both ways, so that some overlap. */
 static bool find_orientation(lattice_build* b)
 {
@@ -225,8 +237,7 @@ static bool find_orientation(lattice_build* b)
         }
       }
       for (int way = 0; way < 6; ++way) {
-        const int one = 1 << stratus_lattice_ways[way][0], two = one | 1 << stratus_lattice_ways[way][1];
-        const int sign = own_orientation(way) * stratus_orientation(p[0], p[one], p[two], p[7]);
+        const int sign = orientation_of(p, way);
         right += sign > 0;
         left += sign < 0;
         flat += sign == 0;
@@ -239,6 +250,94 @@ static bool find_orientation(lattice_build* b)
   memcpy(b->tetra->lo, lo, sizeof lo);
   memcpy(b->tetra->hi, hi, sizeof hi);
   return right > 0 && left > 0;
+}
+
+/* Number of the bit of a tetrahedron whose steps go along these axes. */
+static int turn_of(const int axes[3])
+{
+  return TETRA_TURN(axes[0], axes[1], axes[2]);
+}
+
+/* Sets the bytes of hexahedra that show. A flat tetrahedron turns as most of its hexahedron does. */
+static void find_turns(lattice_build* b, uint8_t* turns)
+{
+  const stratus_mesh* mesh = b->mesh;
+  b->turns = turns + b->first;
+#pragma omp parallel for num_threads(b->tetra->context->threads)
+  for (int64_t first = 0; first < mesh->point_count; ++first) {
+    double p[8][3];
+    int sign[6], sum = 0, byte = TETRA_TURNS_SHOWN;
+    if (!has_bit(b, first)) {
+      continue;
+    }
+    for (int i = 0; i < 8; ++i) {
+      stratus_mesh_point(mesh, first + b->corner[i], p[i]);
+    }
+    for (int way = 0; way < 6; ++way) {
+      sign[way] = orientation_of(p, way);
+      sum += sign[way];
+    }
+    for (int way = 0; way < 6; ++way) {
+      byte |= sign[way] < 0 || (sign[way] == 0 && sum < 0) ? 1 << turn_of(stratus_lattice_ways[way]) : 0;
+    }
+    b->turns[first] = (uint8_t)byte;
+  }
+}
+
+/* Whether a hexahedron and all its neighbours show and turn one way. */
+static bool is_inner(const lattice_build* b, int64_t first)
+{
+  const int byte = b->turns[first];
+  bool inner = byte == TETRA_TURNS_SHOWN || byte == (TETRA_TURNS_SHOWN | TETRA_TURNS_ALL);
+  for (int axis = 0; axis < 3 && inner; ++axis) {
+    const int64_t before = first - b->step[axis], behind = first + b->step[axis];
+    inner = before >= 0 && b->turns[before] == byte && behind < b->mesh->point_count && b->turns[behind] == byte;
+  }
+  return inner;
+}
+
+/* The byte of the hexahedron behind face f of a tetrahedron, and the number of the tetrahedron's bit there. */
+static int byte_behind(const lattice_build* b, int64_t first, int way, int f, int* turn)
+{
+  static const int after[4][3] = { { 1, 2, 0 }, { 1, 0, 2 }, { 0, 2, 1 }, { 2, 0, 1 } };
+  const int* axes = stratus_lattice_ways[way];
+  const int behind[3] = { axes[after[f][0]], axes[after[f][1]], axes[after[f][2]] };
+  const int64_t next = first + (f == 0 ? b->step[axes[0]] : f == 3 ? -b->step[axes[2]] : 0);
+  *turn = turn_of(behind);
+  return next >= 0 && next < b->mesh->point_count ? b->turns[next] : 0;
+}
+
+/* Lists the faces between visible hexahedra and hidden ones, and between tetrahedra that turn left and others, unless faces is NULL, and
+ * returns their count. *folded: raised by the number of the latter, of which each tetrahedron lists its own. */
+static size_t list_faces_of_turns(const lattice_build* b, stratus_tetra_face* faces, int64_t* folded)
+{
+  size_t count = 0;
+  int64_t turning = 0;
+  for (int64_t first = 0; first < b->mesh->point_count; ++first) {
+    if (!b->turns[first] || is_inner(b, first)) {
+      continue;
+    }
+    for (int part = 0; part < 24; ++part) {
+      const int way = part / 4, f = part % 4;
+      const int left = b->turns[first] >> turn_of(stratus_lattice_ways[way]) & 1;
+      int turn;
+      const int behind = byte_behind(b, first, way, f, &turn);
+      if (behind && (behind >> turn & 1) == left) {
+        continue;
+      }
+      if (faces) {
+        int32_t v[4], p[3];
+        tetrahedron(b->step, b->first + first, way, v);
+        const bool right = stratus_face_points(v, f, p) * own_orientation(way) * (left ? -1 : 1) > 0;
+        faces[count] = (stratus_tetra_face){ { p[0], p[right ? 1 : 2], p[right ? 2 : 1] }, v[f],
+          TETRA_CELL * ((int32_t)b->first + (int32_t)first) + left };
+      }
+      turning += behind != 0;
+      ++count;
+    }
+  }
+  *folded += turning;
+  return count;
 }
 
 /* Lists the faces between visible hexahedra and hidden ones, unless faces is NULL, and returns their count. */
@@ -279,7 +378,7 @@ static stratus_status make_faces(stratus_tetra_mesh* tetra, const lattice_build*
   void* memory = NULL;
   size_t count = 0;
   for (int part = 0; part < tetra->lattices; ++part) {
-    count += list_faces(builds + part, NULL);
+    count += tetra->turns ? list_faces_of_turns(builds + part, NULL, &tetra->folded) : list_faces(builds + part, NULL);
   }
   if (count > INT32_MAX / TETRA_FACE) {
     return stratus_fail(
@@ -288,16 +387,19 @@ static stratus_status make_faces(stratus_tetra_mesh* tetra, const lattice_build*
   TRY(stratus_allocate(tetra->context, count, sizeof(stratus_tetra_face), &memory));
   tetra->faces = memory;
   for (int part = 0; part < tetra->lattices; ++part) {
-    tetra->face_count += list_faces(builds + part, tetra->faces + tetra->face_count);
+    stratus_tetra_face* to = tetra->faces + tetra->face_count;
+    int64_t counted = 0;
+    tetra->face_count += tetra->turns ? list_faces_of_turns(builds + part, to, &counted) : list_faces(builds + part, to);
   }
   return STRATUS_OK;
 }
 
 /* builds: room for one of each lattice. */
-static stratus_status build(stratus_tetra_mesh* tetra, const stratus_mesh* whole, lattice_build* builds, bool* mixed)
+static stratus_status build(stratus_tetra_mesh* tetra, const stratus_mesh* whole, lattice_build* builds)
 {
   stratus_context* context = tetra->context;
   const size_t points = (size_t)tetra->point_count;
+  bool mixed = false;
   lattice_counts counts = { .low = INFINITY, .high = -INFINITY };
   void* memory = NULL;
   tetra->bias = stratus_tetra_bias(whole, 0);
@@ -311,24 +413,29 @@ static stratus_status build(stratus_tetra_mesh* tetra, const stratus_mesh* whole
     tetra->lo[axis] = INFINITY;
     tetra->hi[axis] = -INFINITY;
   }
-  *mixed = false;
   for (int part = 0; part < tetra->lattices; ++part) {
     lattice_build* b = builds + part;
     *b = build_of(tetra, whole, part, (uint32_t*)tetra->cells, memory);
     fetch_values(b, tetra->bias);
     find_shown(b, NULL, &counts);
-    *mixed = find_orientation(b) || *mixed;
+    mixed = find_orientation(b) || mixed;
   }
   keep_counts(tetra, whole, &counts);
-  if (*mixed) {
-    return STRATUS_OK;
+  if (mixed) {
+    tetra->cell_ints = (points + sizeof(int32_t) - 1) / sizeof(int32_t);
+    TRY(stratus_allocate_zero(context, tetra->cell_ints, sizeof(int32_t), &memory));
+    tetra->turns = memory;
+    for (int part = 0; part < tetra->lattices; ++part) {
+      find_turns(builds + part, tetra->turns);
+    }
   }
   TRY(make_faces(tetra, builds));
-  tetra->bytes = tetra->cell_ints * sizeof *tetra->cells + points * sizeof(float) + tetra->face_count * sizeof *tetra->faces;
+  tetra->bytes = (points + WORD - 1) / WORD * sizeof *tetra->cells + (tetra->turns ? points : 0) + points * sizeof(float) +
+    tetra->face_count * sizeof *tetra->faces;
   return STRATUS_OK;
 }
 
-stratus_status stratus_tetra_lattice_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out, bool* mixed)
+stratus_status stratus_tetra_lattice_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out)
 {
   void *memory = NULL, *builds = NULL;
   stratus_status status;
@@ -344,7 +451,7 @@ stratus_status stratus_tetra_lattice_create(stratus_context* context, const stra
   TRY_CLEANUP(number_points(tetra, mesh));
   TRY_CLEANUP(stratus_allocate_zero(context, (size_t)tetra->lattices, sizeof(lattice_build), &builds));
   tetra->geometry = stratus_tetra_hash(context, mesh);
-  TRY_CLEANUP(build(tetra, mesh, builds, mixed));
+  TRY_CLEANUP(build(tetra, mesh, builds));
   stratus_stage_end(context, &stage, "bits and border", tetra->bytes);
   *out = tetra;
   tetra = NULL;
@@ -359,10 +466,11 @@ stratus_status stratus_tetra_lattice_take_values(stratus_tetra_mesh* tetra, cons
 {
   const double bias = stratus_tetra_bias(mesh, 0);
   lattice_counts counts = { .low = INFINITY, .high = -INFINITY };
+  const size_t words = (tetra->value_count + WORD - 1) / WORD;
   void *values = NULL, *bits = NULL;
   stratus_status status;
   TRY_CLEANUP(stratus_allocate_zero(tetra->context, tetra->value_count, sizeof(float), &values));
-  TRY_CLEANUP(stratus_allocate_zero(tetra->context, tetra->cell_ints, sizeof *tetra->cells, &bits));
+  TRY_CLEANUP(stratus_allocate_zero(tetra->context, words, sizeof *tetra->cells, &bits));
   for (int part = 0; part < tetra->lattices; ++part) {
     lattice_build b = build_of(tetra, mesh, part, bits, values);
     fetch_values(&b, bias);

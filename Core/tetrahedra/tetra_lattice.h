@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Lattices of hexahedra: marched without lists of their cells, or as a list of tetrahedra. */
+ * Lattices of hexahedra: marched without lists of their cells, or projected as a list of tetrahedra. */
 #ifndef STRATUS_TETRA_LATTICE_H
 #define STRATUS_TETRA_LATTICE_H
 
@@ -10,9 +10,8 @@
 /* Whether a hexahedron shows by its flag and coordinates, whatever its values. first: its first corner; corner: distances of all from it.
  */
 bool stratus_lattice_shows(const stratus_mesh* mesh, const int64_t corner[8], int64_t first, int64_t cell);
-/* Makes the form that rays read, as stratus_tetra_mesh_create() does. *mixed: tetrahedra turn both ways, as rays through lattices cannot
- * pass them; the result has no faces, and the lattice is to be drawn from a list. */
-stratus_status stratus_tetra_lattice_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out, bool* mixed);
+/* Makes the form that rays read, as stratus_tetra_mesh_create() does. */
+stratus_status stratus_tetra_lattice_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);
 /* stratus_tetra_mesh_take_values() of a lattice. */
 stratus_status stratus_tetra_lattice_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken);
 

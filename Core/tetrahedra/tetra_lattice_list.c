@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Lists the tetrahedra of lattices, for projection and for lattices whose cells turn both ways. */
+ * Lists the tetrahedra of lattices, for projection. */
 #include "tetra_lattice.h"
 
 #include <string.h>
@@ -127,8 +127,7 @@ stratus_status stratus_tetra_list_create(stratus_context* context, const stratus
 {
   void* memory = NULL;
   if (lattice->cell_count > INT32_MAX / TETRA_CELL / 6) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED,
-      "lattice of %lld cells is too large to project, or to march through cells that turn both ways: at most %d",
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "lattice of %lld cells is too large to project: at most %d; it can be marched",
       (long long)lattice->cell_count, INT32_MAX / TETRA_CELL / 6);
   }
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_tetra_list), &memory));

@@ -12,7 +12,7 @@
 /* A border face, which only one shown cell has. A ray that enters the cell by it sees its points turn from right to up. */
 typedef struct stratus_tetra_face {
   int32_t point[3], fourth; /* fourth: the cell's point opposite the face */
-  int32_t cell;             /* where the cell's ints begin */
+  int32_t cell;             /* where the cell's ints begin; of a lattice that turns both ways 1 more where the cell turns left */
 } stratus_tetra_face;
 
 /* A border face of a frame, in the layout of kernels/tetrahedra/tetra_arguments.h. */

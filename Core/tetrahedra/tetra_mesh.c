@@ -381,6 +381,7 @@ void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh)
   if (mesh) {
     stratus_release(mesh->context, mesh->first);
     stratus_release(mesh->context, mesh->cells);
+    stratus_release(mesh->context, mesh->turns);
     stratus_release(mesh->context, mesh->values);
     stratus_release(mesh->context, mesh->cell_values);
     stratus_release(mesh->context, mesh->names);

@@ -33,6 +33,15 @@
 #define TETRA_PLANES 12  /* of clip planes and the sides of a box */
 #define TETRA_CONTOURS 16
 
+/* A bit says of each hexahedron whether it shows. */
+#define TETRA_LATTICE 1
+/* A byte says so by TETRA_TURNS_SHOWN, and by the bit TETRA_TURN() of each of its tetrahedra whether that turns left. A tetrahedron's
+ * points in rising order are a hexahedron's first corner and then one step d along each axis; steps along x are the smallest, along z the
+ * largest. */
+#define TETRA_LATTICE_TURNS 2
+#define TETRA_TURNS_SHOWN 4
+#define TETRA_TURN(d0, d1, d2) (((d0) < (d1)) + 2 * ((d0) < (d2)) + 4 * ((d1) < (d2))) /* 0, 1, 3, 4, 6, 7 */
+
 /* Values of several components: each has a table of its own, of which points know the places. */
 typedef struct stratus_tetra_media_arguments {
   int components;                /* 0: one, and the rest means nothing */
@@ -61,7 +70,7 @@ typedef struct stratus_tetra_arguments {
   float per_z, per_frame; /* world lengths along `forward` of a unit of z, and of the middle's c */
   int columns;            /* of tiles */
   int cell_values;
-  int lattice; /* 1: cells of a lattice, whose neighbours follow from the names of their points */
+  int lattice; /* TETRA_LATTICE...: cells of a lattice, whose neighbours follow from the names of their points; 0: listed cells */
   int mode;
   float sign; /* extremes: 1, or -1 for the smallest value */
   float grey; /* sums: factor of the sum; 0: it is divided by the length over which values count */

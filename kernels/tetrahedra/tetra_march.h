@@ -14,7 +14,7 @@
 /* The mesh and the sums, which all rays read. */
 typedef struct stratus_tetra_scene {
   /* eight ints a cell: for each of its points, lowest name first, the next cell behind the opposite face, and that cell's fourth point. Of
-   * a lattice: a bit for each point, whether the hexahedron whose first corner it is shows. */
+   * a lattice: a bit or a byte for each point, of the hexahedron whose first corner it is (tetra_arguments.h). */
   GLOBAL const int* cells;
   GLOBAL const float* points; /* x, y, z and value of each */
   GLOBAL const int* sums; /* stratus_tetra_sums(): running sums up to each entry's middle, then each entry's own, then the opaque entries */
@@ -34,7 +34,7 @@ typedef struct stratus_tetra_ray {
   vfloat x[3], y[3], z[3], s[3]; /* the face's points and their values; the turn from the first point to the second and third is positive */
   vfloat edge[3];                /* opposite each point: twice the area of the triangle of the other two and the ray, >= 0 */
   vint name[3], fourth;
-  vint cell;                 /* where the cell's ints begin; negative: the ray is outside */
+  vint cell;                 /* as in stratus_tetra_face; negative: the ray is outside */
   vfloat at, value;          /* z where the ray entered the cell, and the field there */
   stratus_tetra_place place; /* place of that value in the table */
 } stratus_tetra_ray;
@@ -107,11 +107,20 @@ INLINE void tetra_turn(stratus_tetra_ray* r, const vmask mask[3], const vfloat d
   }
 }
 
-/* The next cell of a lattice, next[0], and its fourth point, next[1]. The points of a tetrahedron, in rising order, go from a hexahedron's
+/* The number of a tetrahedron's bit, TETRA_TURN() of its steps. */
+INLINE vint tetra_turn_bit(vint d0, vint d1, vint d2)
+{
+  const vint zero = vi_set(0);
+  return vi_select(vi_lt(d0, d1), vi_set(1), zero) + vi_select(vi_lt(d0, d2), vi_set(2), zero) + vi_select(vi_lt(d1, d2), vi_set(4), zero);
+}
+
+/* The next cell of a lattice, next[0], and its fourth point, next[1]. A path ends where tetrahedra that turn left meet others: there both
+ * are on the same side of their face, which is a border face of each. The points of a tetrahedron, in rising order, go from a hexahedron's
  * first corner to its last along three edges. In the tetrahedron behind a face two of these edges have changed places, or the first has
  * become the last, or the last the first: its fourth point is the sum of those before and after the dropped one, in a ring, less that. Its
  * lowest point names its hexahedron. */
-INLINE void tetra_lattice_next(const stratus_tetra_scene* scene, const stratus_tetra_ray* r, vint dropped, vmask live, vint next[2])
+INLINE void tetra_lattice_next(
+  CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r, vint dropped, vmask live, vint next[2])
 {
   const vint low = vi_min(r->name[0], r->name[1]), high = vi_max(r->name[0], r->name[1]);
   const vint other_low = vi_min(r->name[2], r->fourth), other_high = vi_max(r->name[2], r->fourth);
@@ -120,13 +129,25 @@ INLINE void tetra_lattice_next(const stratus_tetra_scene* scene, const stratus_t
   const vint second = vi_min(middle, other_middle), third = vi_max(middle, other_middle);
   const vmask is_first = vi_lt(dropped, second), is_last = vi_lt(third, dropped);
   const vint opposite = vi_select(is_first, third, vi_select(vi_lt(dropped, third), last, vi_select(is_last, second, first)));
-  const vint fourth = (first + second + third + last) - (dropped + dropped + opposite);
+  const vint fourth = (first - dropped) + (second - dropped) + (third - opposite) + last;
   const vint cell = vi_select(is_first, second, vi_select(is_last, fourth, first));
   const vmask inside = live & vi_ge(cell, vi_set(0));
-  const vint at = cell >> vi_set(5), bits = v_gather_ints(scene->cells, at, inside) >> (cell - (at << vi_set(5)));
-  const vmask shown = m_andnot(inside, vi_zero(bits - ((bits >> vi_set(1)) << vi_set(1))));
-  next[0] = vi_select(shown, cell << vi_set(3), vi_set(-1));
   next[1] = fourth;
+  if (a->lattice == TETRA_LATTICE) {
+    const vint at = cell >> vi_set(5), bits = v_gather_ints(scene->cells, at, inside) >> (cell - (at << vi_set(5)));
+    const vmask shown = m_andnot(inside, vi_zero(bits & vi_set(1)));
+    next[0] = vi_select(shown, cell << vi_set(3), vi_set(-1));
+  } else {
+    const vint d0 = second - first, d1 = third - second, d2 = last - third; /* the tetrahedron's steps, and the next tetrahedron's */
+    const vmask is_low = vi_lt(dropped, third);
+    const vint n0 = vi_select(is_last, d2, vi_select(is_low, d1, d0));
+    const vint n1 = vi_select(is_first, d2, vi_select(is_last, d0, vi_select(is_low, d0, d2)));
+    const vint n2 = vi_select(is_first, d0, vi_select(is_last, d1, vi_select(is_low, d2, d1)));
+    const vint at = cell >> vi_set(2), byte = v_gather_ints(scene->cells, at, inside) >> ((cell - (at << vi_set(2))) << vi_set(3));
+    const vint left = (byte >> tetra_turn_bit(n0, n1, n2)) & vi_set(1), turns = left - (r->cell & vi_set(1));
+    const vmask goes_on = m_andnot(inside & vi_zero(turns), vi_zero(byte & vi_set(TETRA_TURNS_SHOWN)));
+    next[0] = vi_select(goes_on, (cell << vi_set(3)) + left, vi_set(-1));
+  }
 }
 
 /* Moves the rays through one cell to its next face. */
@@ -158,7 +179,7 @@ INLINE stratus_tetra_passage tetra_pass(
   const vint dropped = vi_select(drop[0], r->name[0], vi_select(drop[1], r->name[1], r->name[2]));
   vint next[2];
   if (a->lattice) {
-    tetra_lattice_next(scene, r, dropped, live, next);
+    tetra_lattice_next(a, scene, r, dropped, live, next);
   } else {
     const vint two = vi_set(2), none = vi_set(0);
     vint at = r->cell + vi_select(vi_lt(r->fourth, dropped), two, none);

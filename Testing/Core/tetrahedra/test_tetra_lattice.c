@@ -217,6 +217,45 @@ static void collapsed_cells(void** state)
   end_case();
 }
 
+/* Whether rays take the same ways through a lattice and through its listed cells: the same numbers of segments, the same largest values
+ * and sums. Where cells overlap, ways overlap, and are composited one after the other. Which of two that begin at one face comes first
+ * depends on how faces are numbered, so that composited pictures agree only as far as matter is thin. */
+static void takes_the_same_ways(stratus_context* context, const tetra_case* cells, const tetra_case* lattice, const char* what)
+{
+  static const stratus_tetra_mode modes[] = { STRATUS_TETRA_MAXIMUM, STRATUS_TETRA_ADDITIVE, STRATUS_TETRA_COMPOSITE };
+  tetra_method = STRATUS_TETRA_METHOD_MARCH;
+  for (int m = 0; m < 3; ++m) {
+    tetra_case one = *cells, other = *lattice;
+    double largest, listed[4 * TETRA_PIXELS];
+    int differ = 0;
+    one.options.mode = other.options.mode = modes[m];
+    one.options.method = other.options.method = STRATUS_TETRA_METHOD_MARCH;
+    one.transfer.unit_distance = other.transfer.unit_distance = m == 2 ? 500.0 : 1.0;
+    tetra_draw(context, &one, &theirs);
+    tetra_draw(context, &other, &ours);
+    for (int n = 0; n < 4 * TETRA_PIXELS; ++n) {
+      listed[n] = (double)theirs.rgba[n];
+      differ += n < TETRA_PIXELS && ours.samples[n] != theirs.samples[n];
+    }
+    const double error = tetra_error(ours.rgba, listed, &largest);
+    if (differ > 0 || !(error < 0.01)) {
+      print_error("%s, %s: %.5f of 255, %d pixels with other segments\n", what, stratus_tetra_mode_name(modes[m]), error, differ);
+    }
+    assert_int_equal(differ, 0);
+    assert_true(error < 0.01);
+  }
+}
+
+static void lattice_takes_the_same_ways(stratus_context* context, const char* what)
+{
+  tetra_case lattice = c.listed;
+  lattice.mesh = c.lattice;
+  memcpy(lattice.mesh.matrix, c.listed.mesh.matrix, sizeof lattice.mesh.matrix);
+  takes_the_same_ways(context, &c.listed, &lattice, what);
+  assert_true(ours.report.inverted > 0 && ours.report.inverted < 6 * HEXAHEDRA);
+  assert_int_equal(ours.report.folded_faces, theirs.report.folded_faces);
+}
+
 /* A layer that lies partly below the one beneath: its cells overlap, and both count, as in a list. */
 static void layers_that_cross(void** state)
 {
@@ -224,15 +263,49 @@ static void layers_that_cross(void** state)
   c.points[3 * point_at(2, 1, 3) + 2] -= 1.6;
   list_cells();
   tetra_camera(*state, &c.listed, 4, 1, 0);
-  tetra_draw(*state, &c.listed, &theirs);
-  draw_lattice(*state, STRATUS_TETRA_METHOD_MARCH, &ours);
-  assert_true(ours.report.inverted > 0 && ours.report.inverted < 6 * HEXAHEDRA);
-  double largest, listed[4 * TETRA_PIXELS];
-  for (int i = 0; i < 4 * TETRA_PIXELS; ++i) {
-    listed[i] = (double)theirs.rgba[i];
-  }
-  assert_true(tetra_error(ours.rgba, listed, &largest) < 0.01);
+  lattice_takes_the_same_ways(*state, "layers that cross");
   end_case();
+}
+
+/* Lattices of which a part has been turned over about a fold, as tripolar ocean grids are beyond their poles; folds that close in the
+ * middle of the lattice, and that meet; one point whose cells are the only ones that turn; and flat cells at such cells. */
+static void folds_of_any_shape(void** state)
+{
+  static const char* const shapes[] = { "half turned over", "a closed fold", "all but one point", "two folds", "flat cells" };
+  for (int shape = 0; shape < 5; ++shape) {
+    for (int cell_values = 0; cell_values < 2; ++cell_values) {
+      start_case(cell_values);
+      for (int p = 0; p < POINTS; ++p) {
+        const int i = p % 5, j = p / 5 % 4, k = p / 20;
+        double* x = c.points + 3 * p;
+        switch (shape) {
+          case 0:
+            x[0] = i > 2 ? x[0] - 2.1 * (i - 2) : x[0];
+            break;
+          case 1:
+            x[1] += i == 2 && j == 2 && k > 0 && k < 5 ? -2.3 : 0.0;
+            break;
+          case 2:
+            x[2] = p == point_at(2, 2, 2) ? x[2] : -x[2];
+            break;
+          case 3:
+            x[0] = i > 2 ? x[0] - 1.9 * (i - 2) : x[0];
+            x[2] = k > 3 ? x[2] - 1.6 * (k - 3) : x[2];
+            break;
+          default:
+            x[0] = i == 3 ? c.points[3 * (p - 1)] : x[0];
+            x[1] += i == 1 && j == 1 ? 1.7 : 0.0;
+            break;
+        }
+      }
+      list_cells();
+      for (int view = 0; view < 5; ++view) {
+        tetra_camera(*state, &c.listed, 4, view, view == 1);
+        lattice_takes_the_same_ways(*state, shapes[shape]);
+      }
+      end_case();
+    }
+  }
 }
 
 /* Steps of a simulation on a lattice: nothing but values is taken, unless other cells show. */
@@ -259,7 +332,7 @@ static void steps_take_values_alone(void** state)
       draw_lattice(*state, STRATUS_TETRA_METHOD_MARCH, &theirs);
       assert_memory_equal(ours.rgba, theirs.rgba, sizeof ours.rgba);
     }
-    assert_true((caster->list != NULL) == (mixed != 0));
+    assert_null(caster->list);
     stratus_tetra_caster_destroy(caster);
     end_case();
   }
@@ -303,8 +376,8 @@ static void memory_of_a_cell(void** state)
   end_case();
 }
 
-/* Lattices whose points lie anywhere near their places, some cells upside down: the pictures of their listed tetrahedra, by both methods.
- */
+/* Lattices whose points lie anywhere near their places: the pictures of their listed tetrahedra, by both methods, or where some cells are
+ * upside down their ways. */
 static void random_lattices(void** state)
 {
   int mixed = 0;
@@ -333,30 +406,32 @@ static void random_lattices(void** state)
       right[i] = (double)theirs.rgba[i];
     }
     const double error = tetra_error(ours.rgba, right, &largest);
-    if (!(error < 0.02)) {
-      print_error("seed %u: %.4f of 255, at most %.2f\n", (unsigned)seed, error, largest);
+    print_message("seed %u: %.4f of 255, at most %.2f\n", (unsigned)seed, error, largest);
+    if (ours.report.inverted > 0 && ours.report.inverted < ours.report.cells) {
+      ++mixed;
+      takes_the_same_ways(*state, &listed, &lattice, "a random lattice");
+    } else {
+      assert_true(error < 0.02);
     }
-    assert_true(error < 0.02);
-    mixed += ours.report.inverted > 0 && ours.report.inverted < ours.report.cells;
     tetra_destroy(&listed);
   }
   assert_true(mixed > 3);
 }
 
-/* Memory that is refused at any call leaves an error, and the caster ready; lattices as they are, and listed ones. */
+/* Memory that is refused at any call leaves an error, and the caster ready; of lattices that turn one way, and of some that fold. */
 static void memory_refused_at_any_call(void** state)
 {
   (void)state;
-  for (int listed = 0; listed < 2; ++listed) {
+  for (int folds = 0; folds < 2; ++folds) {
     faulty_allocator allocator = { 0 };
     const stratus_context_options options = faulty_options(&allocator, "host");
     stratus_context* context = NULL;
     stratus_tetra_caster* caster = NULL;
     assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
     assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
-    start_case(listed);
-    c.points[3 * point_at(2, 1, 3) + 2] -= listed ? 1.6 : 0.0;
-    c.points[7] = listed ? NAN : c.points[7];
+    start_case(folds);
+    c.points[3 * point_at(2, 1, 3) + 2] -= folds ? 1.6 : 0.0;
+    c.points[7] = folds ? NAN : c.points[7];
     tetra_camera(context, &c.listed, 4, 0, 0);
     const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba };
     int refused = 0;
@@ -433,6 +508,7 @@ int test_tetra_lattice(void)
     cmocka_unit_test_setup_teardown(thin_layers_over_rough_ground, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(collapsed_cells, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(layers_that_cross, tetra_start, tetra_stop),
+    cmocka_unit_test_setup_teardown(folds_of_any_shape, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(steps_take_values_alone, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(memory_of_a_cell, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(random_lattices, tetra_start, tetra_stop),
