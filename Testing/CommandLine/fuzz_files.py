@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """fuzz_files.py STRATUS FOLDER COUNT SEED: damaged files through the command line, COUNT of them. Each must be drawn, or refused with a sentence and
-exit status 1; a signal, a silent failure, an output of what was refused and a file left over are findings. A finding names its file, which stays in
+exit status 1; a signal, a silent failure, an output after a refusal and a file left over are findings. A finding names its file, which stays in
 FOLDER; the same seed makes the same files again."""
 import gzip
 import os
@@ -76,7 +76,7 @@ def damage(data):
     """One wound, or up to three."""
     data = bytearray(data)
     for _ in range(chance.choice((1, 1, 1, 2, 3))):
-        head = min(len(data), 600) if chance.random() < 0.7 else len(data)  # headers are what readers believe
+        head = min(len(data), 600) if chance.random() < 0.7 else len(data)  # readers believe headers
         kind = chance.randrange(6)
         at = chance.randrange(max(1, head))
         if kind == 0 and data:
@@ -96,13 +96,13 @@ def damage(data):
 
 
 def bounded():
-    """A header may ask for any amount of memory."""
+    """A header may request any amount of memory."""
     resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 sound = dict(files())
-told = {0: 0, 1: 0}
+endings = {0: 0, 1: 0}
 findings = 0
 for case in range(count):
     name = chance.choice(sorted(sound))
@@ -121,14 +121,14 @@ for case in range(count):
     try:
         ran = subprocess.run([stratus, *command, "--read-timeout", "20"] + (["--device", "host"] if command[0] != "info" else []),
                              capture_output=True, text=True, errors="replace", timeout=120, preexec_fn=bounded)
-        if ran.returncode not in told:
+        if ran.returncode not in endings:
             wrong = f"exit status {ran.returncode}"
         elif ran.returncode and not ran.stderr.strip():
             wrong = "refused without a word"
         elif output and os.path.exists(output) != (ran.returncode == 0):
             wrong = f"exit status {ran.returncode}, and {'an' if ran.returncode else 'no'} output"
         else:
-            told[ran.returncode] += 1
+            endings[ran.returncode] += 1
     except subprocess.TimeoutExpired:
         wrong = "no end after 120 s"
     left = set(os.listdir(folder)) - before - {"out.png", "out.vtp"}
@@ -141,5 +141,5 @@ for case in range(count):
     for file in (picture, boxes):
         if os.path.exists(file):
             os.remove(file)
-print(f"{count} damaged files: {told[0]} drawn, {told[1]} refused, {findings} findings")
+print(f"{count} damaged files: {endings[0]} drawn, {endings[1]} refused, {findings} findings")
 sys.exit(1 if findings else 0)

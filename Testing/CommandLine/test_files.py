@@ -189,12 +189,12 @@ def test_modes_of_grids():
 
 
 def test_bad_grids():
-    for name, bad, told in (("back", [0, 1, 2, 1.5, 3, 4], r"along z .* number 3 is 1\.5, after 2$"),
+    for name, bad, words in (("back", [0, 1, 2, 1.5, 3, 4], r"along z .* number 3 is 1\.5, after 2$"),
                             ("twice", [0, 0, 2, 3, 4, 5], r"along z .* number 1 is 0, after 0$"),
                             ("nan", [0, 1, math.nan, 3, 4, 5], r"along z .* number 2 is (-)?nan")):
         write(vtkXMLRectilinearGridWriter, fill(axes(range(5), range(4), bad)), name + ".vtr")
         if name != "nan":  # VTK's parser refuses the word itself
-            expect(1, told, "render", name + ".vtr", "-o", "no.png")
+            expect(1, words, "render", name + ".vtr", "-o", "no.png")
     write(vtkXMLStructuredGridWriter, fill(curved(range(5), range(4), range(6))), "whole.vts")
     for name in ("stretched.vtr", "whole.vts", "halves.vtm"):
         with open(name, "rb") as file:
@@ -368,8 +368,8 @@ def test_annotations():
 
 
 def test_colors_and_logarithm():
-    told = run("--help").stdout.replace("\n", " ")
-    names = re.search(r"--color NAME\|LIST +a colour map, ([a-z, -]+), stretched", told).group(1).split(", ")
+    text = run("--help").stdout.replace("\n", " ")
+    names = re.search(r"--color NAME\|LIST +a colour map, ([a-z, -]+), stretched", text).group(1).split(", ")
     if not {"viridis", "cividis", "temperature", "salinity", "algae", "sediment", "oxygen", "depth"} <= set(names):
         fail(f"colour maps are {names}")
     if len({picture("image.vti", "--color", name) for name in names}) != len(names):
@@ -490,7 +490,7 @@ def test_vectors():
     for name, scale in (("U", 5), ("U.x", 3)):
         words = ("--variable", name, "--opacity", f"0:0,{30 * scale}:.6", "--color", f"0:0:0:1,{30 * scale}:1:1:0")
         if abs(drawn("wind.vts", *words) - single).max() > 1:
-            fail(f"{name} of wind.vts is another picture than what it is a multiple of")
+            fail(f"{name} of wind.vts is another picture than its multiple")
     expect(1, r"no array 'U\.w'; the arrays are: U$", "render", "wind.vts", "-o", "no.png", "--variable", "U.w")
 
 
@@ -525,7 +525,7 @@ def test_raw():
     of_image = expect(0, "hits|why", "tree", "image.vti", "--lower", "10", "--device", "host")
     count = lambda text: re.findall(r"^  (voxels|nodes) +(.*)$", text, re.MULTILINE)
     if not count(of_raw) or count(of_raw) != count(of_image):
-        fail(f"the tree of values.raw is another than that of image.vti:\n{of_raw}{of_image}")
+        fail(f"the tree of values.raw is another than image.vti's:\n{of_raw}{of_image}")
     shown = numpy.zeros(120, dtype=numpy.uint8)
     shown[60:] = 1
     shown.tofile("mask.raw")
@@ -627,7 +627,7 @@ def test_ensight():
 
 
 def test_refined():
-    """AMR looks as one fine grid of its field does, from levels that all are read; what it can't be is refused."""
+    """AMR looks as one fine grid of its field does, from levels that all are read; unsupported data is refused."""
     from vtkmodules import vtkCommonDataModel
 
     data = Refined(uneven())
@@ -687,7 +687,7 @@ def pixels_of_tiff(name):
 
 
 def test_picture_formats():
-    """A picture is what its name says, by the file's first bytes and its pixels."""
+    """A picture has the format of its name, by the file's first bytes and its pixels."""
     render = ("render", "image.vti", *LOOK)
     expect(0, "picture", *render, "-o", "out.png")
     sound = pixels("out.png")
@@ -702,9 +702,9 @@ def test_picture_formats():
         if difference.max() > most or difference.mean() > most / 10:
             fail(f"{name} is up to {difference.max()} of 255 from the PNG")
     for name in "out.webp", "out.gif", "out.pdf", "out.0001":
-        told = expect(2, rf"'{name}': pictures can't be written as \{name[3:]}, but as \.png, \.jpg, \.tif, \.bmp", *render, "-o", name)
+        output = expect(2, rf"'{name}': pictures can't be written as \{name[3:]}, but as \.png, \.jpg, \.tif, \.bmp", *render, "-o", name)
         if os.path.exists(name):
-            fail(f"{name} was written: {told}")
+            fail(f"{name} was written: {output}")
     expect(2, r"'out-%d\.webp': pictures can't be written as \.webp", "render", "image.vti", *LOOK, "--frames", "out-%d.webp")
     for name in "out.jpg", "out.tif", "out.bmp":
         expect(2, rf"'{name}': only .png and .exr pictures can be transparent", *render, "-o", name, "--background", "transparent")
@@ -724,7 +724,7 @@ def test_picture_formats():
 
 
 def test_scans():
-    """Where a scan lies, and what its values are; vtkStratusImageReader's own test has the rest."""
+    """A scan's position and values; vtkStratusImageReader's own test has the rest."""
     raw = numpy.arange(4 * 3 * 2, dtype=">i2").tobytes()
     with open("turned.mhd", "w") as file:
         file.write("ObjectType = Image\nNDims = 3\nDimSize = 4 3 2\nElementByteOrderMSB = True\nTransformMatrix = 0 1 0 -1 0 0 0 0 1\n"

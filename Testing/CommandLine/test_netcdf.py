@@ -34,7 +34,7 @@ def picture(name, *words):
 
 
 def ranges(said):
-    """What info tells of the variables' values."""
+    """Returns the variables' ranges as info prints them."""
     return {name: (float(low), float(high)) for name, low, high in re.findall(r"variable +'(.*?)'.*?, (\S+) \.\. (\S+)$", said, re.MULTILINE)}
 
 
@@ -59,15 +59,15 @@ def test_select():
                                 (("--select", "pool=1", "--select", "number=1"), 1, 1)):
         said = expect(0, rf"'number' at index {number} of 0\.\.2" + ("$" if "number" in str(words) else ", select number=INDEX for another"), "info",
                       "ensemble.nc", *words)
-        told = ranges(said)
-        if told != {"q": (q[number].min(), q[number].max()), "r": (r[:, pool].min(), r[:, pool].max())}:
-            fail(f"info {words} has the ranges {told}")
+        printed = ranges(said)
+        if printed != {"q": (q[number].min(), q[number].max()), "r": (r[:, pool].min(), r[:, pool].max())}:
+            fail(f"info {words} has the ranges {printed}")
     with netCDF4.Dataset("member.nc", "w") as file:
         for dimension, size in zip("zyx", (4, 5, 6)):
             file.createDimension(dimension, size)
         file.createVariable("q", "f4", tuple("zyx"))[:] = q[2]
     if picture("2.png", "ensemble.nc", "--select", "number=2") != picture("member.png", "member.nc"):
-        fail("--select draws another picture than a file of this member alone")
+        fail("--select draws another picture than a file of only this member")
     if picture("0.png", "ensemble.nc") == picture("2.png", "ensemble.nc", "--select", "number=2"):
         fail("all members are one picture")
     both = picture("both.png", "ensemble.nc", "--select", "number=2", "ensemble.nc", "--select", "number=1")

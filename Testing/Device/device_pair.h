@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * An OpenCL device and the host beside it, for tests that compare the two. Includers bring make_context() (structures.h). */
+ * An OpenCL device and the host, for tests that compare the two. Includers bring make_context() (structures.h). */
 #ifndef STRATUS_TESTING_DEVICE_PAIR_H
 #define STRATUS_TESTING_DEVICE_PAIR_H
 

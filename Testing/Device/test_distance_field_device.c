@@ -15,11 +15,11 @@ static void compare_reports(stratus_field_report* a, stratus_field_report* b)
 
 static void compare_method(const test_set* s, stratus_field_method method, int is_signed)
 {
-  stratus_field_report told[2];
-  memset(told, 0, sizeof told);
-  stratus_field* a = make_field(host_context, s, method, is_signed, &told[0]);
+  stratus_field_report reports[2];
+  memset(reports, 0, sizeof reports);
+  stratus_field* a = make_field(host_context, s, method, is_signed, &reports[0]);
   const uint64_t launched = device->report.launched;
-  stratus_field* b = make_field(device, s, method, is_signed, &told[1]);
+  stratus_field* b = make_field(device, s, method, is_signed, &reports[1]);
   const int64_t total = set_voxels(s);
   for (int64_t v = 0; v < total; ++v) {
     if (distance_at(a, v) != distance_at(b, v)) {
@@ -34,7 +34,7 @@ static void compare_method(const test_set* s, stratus_field_method method, int i
     /* A processor takes planes and tiles of columns, a GPU and 64 bits an axis after the other. */
     assert_int_equal(device->report.launched - launched, device->device->is_cpu && b->bytes == 4 ? 2 : 3);
   }
-  compare_reports(&told[0], &told[1]);
+  compare_reports(&reports[0], &reports[1]);
   stratus_field_destroy(a);
   stratus_field_destroy(b);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Pictures of several volumes by the OpenCL device equal the host's to the bit, by packets and by one work item a ray, of one type of
- * values and of different ones. The device keeps what did not change, and what it cannot draw the host draws. */
+ * values and of different ones. The device keeps unchanged data, and the host draws pictures that the device cannot draw. */
 #include "grid_case.h"
 #include "several_case.h"
 #include "transfer_2d_case.h"
@@ -48,8 +48,8 @@ static void make_case(stratus_context* context, uint32_t seed, several_case* m, 
   }
 }
 
-/* Sharp functions by cells (seed below 3), clouds of haze with a rough box by rule local, and nearest values by boxes, beside a volume by
- * samples. */
+/* Sharp functions by cells (seed below 3), clouds of haze with a rough box by rule local, and nearest values by boxes, together with a
+ * volume by samples. */
 static void make_sharp_case(stratus_context* context, uint32_t seed, several_case* m)
 {
   several_create(context, m, 2, 720 + seed);
@@ -78,7 +78,7 @@ static void make_sharp_case(stratus_context* context, uint32_t seed, several_cas
   m->of[0].options.jitter = seed == 2;
 }
 
-/* A function of two variables (seed 0), components and labels, beside a volume of one medium. */
+/* A function of two variables (seed 0), components and labels, together with a volume of one medium. */
 typedef struct media_case {
   stratus_transfer transfers[3];
   transfer_2d_case function;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Effective voxels and trees made by an OpenCL device, equal to the byte to the host's: by work-groups of a GPU, and by the single items
- * that a processor gets. Pieces of a volume, and what does not fit the device. */
+ * that a processor gets. Pieces of a volume, and volumes that do not fit the device. */
 #include "voxel_sets.h"
 
 #include "device_pair.h"

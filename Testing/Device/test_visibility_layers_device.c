@@ -81,7 +81,7 @@ static stratus_camera make_camera(int number)
   return camera;
 }
 
-/* kind 0: a grid; 1: its cells scattered; 2: beside it stand irises, whose blades hide one another in rings as seen along z. */
+/* kind 0: a grid; 1: its cells scattered; 2: with irises, whose blades hide one another in rings as seen along z. */
 static mesh_case make_mesh(int kind)
 {
   const int side = tiny ? 2 : 9, n[3] = { side, side, side };

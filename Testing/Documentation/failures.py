@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""docs/failures.md, made from the tables of failures beside the tests.
+"""docs/failures.md, made from the tables of failures next to the tests.
 
 Usage: failures.py [--write] [ROOT-OF-THE-REPOSITORY]
 
-Without --write the program compares: it fails where the committed page differs from what it would write, where a row names a test or a
+Without --write the program compares: it fails if the committed page differs from its output, if a row names a test or a
 case that is not there, where a figure is not what the CSV or the test has, and where a test of Testing/Stability has no row.
 
 Testing/*/failures.toml has a [[row]] for each failure:
@@ -19,7 +19,7 @@ Testing/*/failures.toml has a [[row]] for each failure:
     ours    = "what Stratus does"
     tests   = ["test_name", "test_name:a_case_of_it"]   none: no test shows it, and the page says so
 
-Expressions are those of test_measurements.py, whose metrics take a method and a scene. In failures.md.in, `@rows SECTION` stands for the
+Expressions are as in test_measurements.py, whose metrics take a method and a scene. In failures.md.in, `@rows SECTION` stands for the
 table of a section, and `@cases FOLDER` for all cases of the tests in a folder.
 """
 import difflib
@@ -73,7 +73,7 @@ class Tests:
 
 
 def number_of(row, root, wrong):
-    """The row's number, with its expressions replaced by what they give."""
+    """Returns the row's number, with its expressions replaced by their values."""
     text = row.get("number", "")
     if not re.search(r"\{.*\}", text):
         return text
@@ -102,7 +102,7 @@ def check_row(row, where, tests, wrong):
             wrong.append(f"{where}: {name} has no case {case}")
     for text in row.get("stands", []):
         if not row["tests"] or text not in tests.read(tests.source.get(row["tests"][0].partition(":")[0], PAGE)):
-            wrong.append(f"{where}: {row['case']}: {text} does not stand in the source of its first test")
+            wrong.append(f"{where}: {row['case']}: {text} is not in the source of its first test")
 
 
 def rows_of(root, tests, wrong):

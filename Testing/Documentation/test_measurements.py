@@ -4,7 +4,7 @@
 
 Usage: test_measurements.py [ROOT-OF-THE-REPOSITORY]
 
-A comment before each table tells where its cells come from:
+A comment before each table says where its cells come from:
 
     <!-- figures: Testing/Benchmarks/results/MACHINE/volume.csv
     scene = text
@@ -14,11 +14,11 @@ A comment before each table tells where its cells come from:
     row cloud, lit = cloud+shade
     -->
 
-- COLUMN = TEMPLATE: what stands outside the braces stands so in the cell. An expression is Python's. METRIC(METHOD, SCENE) is a value of
+- COLUMN = TEMPLATE: text outside the braces is in the cell as it is. An expression is Python's. METRIC(METHOD, SCENE) is a value of
   the CSV; METRIC.all(METHODS, SCENES) lists those that match (* and ?); METRIC.over(METHOD, OTHER, SCENES) lists the first method's over
   the other's, scene by scene. Without SCENE it is the row's. The cell's number must be the value, rounded to the digits that it shows. It
-  is `-` where the CSV lacks a value that the expression asks for, and only there.
-- {text}, or a template `text` alone: not checked.
+  is `-` where the CSV lacks a value that the expression needs, and only there.
+- {text}, or a template that is only `text`: not checked.
 - row LABEL = NAME: what `scene` is in the row whose first cell is LABEL; else it is the first cell itself.
 - `figures: none, REASON` for a table whose digits come from no CSV; all of its cells are text.
 
@@ -57,7 +57,7 @@ class Table:
             raise ValueError(path + ": not a table of stratus-bench")
         for _, scene, method, metric, value, _ in rows[1:]:
             if (scene, method, metric) in self.values:
-                raise ValueError(f"{path}: {scene}, {method}, {metric} stands there twice")
+                raise ValueError(f"{path}: {scene}, {method}, {metric} is there twice")
             self.values[scene, method, metric] = float(value)
         for origin in self.origins:
             for name in ("processor", "cores", "compiler", "commit", "date", "scenes"):
@@ -66,7 +66,7 @@ class Table:
         covered = {scene for origin in self.origins for scene in origin["scenes"].split(",")}
         uncovered = {scene for scene, _, _ in self.values} - covered
         if uncovered:
-            raise ValueError(f"{path}: nothing tells where {', '.join(sorted(uncovered))} come from")
+            raise ValueError(f"{path}: nothing says where {', '.join(sorted(uncovered))} come from")
 
 
 class Metric:
@@ -206,7 +206,7 @@ class Document:
             if comment is None:
                 visible = re.sub(r"`[^`]*`|\]\([^)]*\)", "", " ".join(" ".join(cells) for _, cells in [(line, header)] + rows))
                 if self.strict or re.search(r"\d", visible):
-                    self.fail(line, "no comment tells where this table's figures come from")
+                    self.fail(line, "no comment says where this table's figures come from")
             elif comment.startswith("none"):
                 if not re.match(r"none, \S", comment):
                     self.fail(line, "a table without figures of ours needs a reason: none, REASON")
@@ -234,7 +234,7 @@ class Document:
                 columns[name] = template.strip()
         for name in header:
             if name not in columns:
-                self.fail(line, f"nothing tells what column '{name}' is")
+                self.fail(line, f"nothing describes column '{name}'")
         for name in columns.keys() - set(header):
             self.fail(line, f"there is no column '{name}'")
         for label in scenes.keys() - {cells[0] for _, cells in rows}:
@@ -294,7 +294,7 @@ def check_judge():
     apart = (("5.2", 5.2501), ("-", 1.0), ("1", None), ("0", 0.2), ("2", 2.5), ("66", 66.64), ("5,527,203", 5527204.0))
     for text, value, right in [(*pair, True) for pair in alike] + [(*pair, False) for pair in apart]:
         if (judge(text, value) is None) != right:
-            return f"'{text}' beside {value} was judged wrongly"
+            return f"'{text}' next to {value} was judged wrongly"
     return None
 
 

@@ -55,13 +55,13 @@ def run(page):
                                           stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
             python.stdin.write(f"{len(code)}\n{code}")
             python.stdin.flush()
-            told = ""
+            output = ""
             for line in python.stdout:
                 if line == "block done\n":
                     break
-                told += line
+                output += line
             else:
-                return [f"{code}\n{told}"]
+                return [f"{code}\n{output}"]
         elif kind == "sh":
             done = subprocess.run(["bash", "-e", "-o", "pipefail", "-c", code], cwd=place, env=own, capture_output=True, text=True)
             if done.returncode:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pieces that don't go together, on several ranks: pvbatch --sym bad_on_ranks.py PLUGIN FOLDER, by mpiexec. Rank 0 writes
-FOLDER/bad-pictures, a line a case: its name and how many pixels are lit. What is told goes to the output."""
+FOLDER/bad-pictures, a line a case: its name and how many pixels are lit. Messages go to the output."""
 import os
 import sys
 
@@ -48,7 +48,7 @@ def cells(image):
 
 
 class Scene:
-    """A view of what each rank hands in."""
+    """A view of the data that each rank hands in."""
 
     def __init__(self, data, representation):
         self.view = make_view(300, 200)

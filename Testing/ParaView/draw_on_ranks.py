@@ -113,7 +113,7 @@ def second_array(view, shown):
 
 
 def after_another(view, shown):
-    """Several ranks draw a step in time that asks for another distance of samples before. One rank does not."""
+    """Several ranks draw a step in time that needs another distance of samples before. One rank does not."""
     if ranks > 1:
         shown.Input.FileName = [os.path.join(folder, name) for name in ("early.vti", "even.vti")]
         used = []

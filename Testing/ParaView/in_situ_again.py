@@ -31,8 +31,8 @@ again = os.path.splitext(picture)[0] + "-again.png"
 simple.SaveScreenshot(again, view, ImageResolution=[400, 300], TransparentBackground=0)
 drawn, wanted = pixels(picture), pixels(again)
 lit = (abs(wanted - wanted[0]).max(axis=1) > 20).reshape(300, 400)
-halves = lit[:, :200].sum(), lit[:, 200:].sum()  # about what each of two ranks has
+halves = lit[:, :200].sum(), lit[:, 200:].sum()  # about each of two ranks' share
 difference = abs(drawn - wanted).max()
-print(f"in situ beside its data drawn on one rank: differs by {difference} of 255, {halves[0]} and {halves[1]} pixels are lit on the sides")
+print(f"in situ compared with its data drawn on one rank: differs by {difference} of 255, {halves[0]} and {halves[1]} pixels are lit on the sides")
 sys.stdout.flush()
 os._exit(0 if difference <= 1 and min(halves) > 2000 else 1)

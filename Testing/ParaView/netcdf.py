@@ -24,7 +24,7 @@ def _attribute(name, value):
 
 
 def write(path, dimensions, variables):
-    """dimensions: sizes by name. variables: by name, what dimensions, what values, and what attributes."""
+    """dimensions: sizes by name. variables: by name: dimensions, values and attributes."""
     order = list(dimensions)
     heads, bodies = [], []
     for name, (of, values, attributes) in variables.items():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pvbatch with the plugin: each kind of data set looks as `stratus render` draws it: rectilinear, unstructured and structured grids, blocks
-of composite data, vectors by magnitude and component, projections, light, a crop box, a solid colour; and the panel tells of the last picture.
+of composite data, vectors by magnitude and component, projections, light, a crop box, a solid colour; and the panel reports the last picture.
 pvbatch test_datasets.py PLUGIN STRATUS COMPARE-PICTURES FOLDER, in the repository's root."""
 import os
 import sys

@@ -22,7 +22,7 @@ def values_of(source, name, of="GetPointData"):
 
 
 def readers_of(path):
-    """The names of the readers among which the dialog of File > Open asks for one."""
+    """Returns the names of the readers that the dialog of File > Open offers."""
     factory = simple.servermanager.vtkSMProxyManager.GetProxyManager().GetReaderFactory()
     if factory.GetNumberOfRegisteredPrototypes() == 0:
         factory.UpdateAvailableReaders()
@@ -114,7 +114,7 @@ def grid_of_cf():
         "y": (("y",), [0.0, 2], {"units": "m", "axis": "Y"}), "x": (("x",), [10.0, 11, 12, 13], {"units": "m", "axis": "X"}),
         "qc": (("time", "z", "y", "x"), numpy.arange(48.0).reshape(2, 3, 2, 4), {"units": "g/kg"})})
     offered = readers_of(path)
-    check("StratusCFReader" in offered and "StratusUGRIDReader" not in offered, f"CF's grids are offered alone, not {offered}")
+    check("StratusCFReader" in offered and "StratusUGRIDReader" not in offered, f"only CF's grids are offered, not {offered}")
     reader = simple.StratusCFReader(FileName=path)
     reader.UpdatePipeline(4)
     check(list(reader.TimestepValues) == [3, 4] and variables_of(reader) == ["qc"] and "z" in reader.Description, "times and variables")
@@ -156,7 +156,7 @@ def sparse_grids():
     check(values.min() == -2.5 and values.max() > 40, "the cloud and its background")  # of Testing/VTK/vdb_testing.h
     reader.Layout = "Blocks"
     reader.UpdatePipeline()
-    check(reader.GetClientSideObject().GetOutputDataObject(0).IsA("vtkPartitionedDataSet"), "blocks where they are asked for")
+    check(reader.GetClientSideObject().GetOutputDataObject(0).IsA("vtkPartitionedDataSet"), "blocks if they are requested")
     return True
 
 

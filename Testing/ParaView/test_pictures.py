@@ -43,9 +43,9 @@ def pixels(path):
 def translucent(shown, view):
     """A sheet across the view before, within and behind the volume: ParaView peels volumes. Opaque sheets in the place of the sheet within
     show the part of the volume before it."""
-    alone = shot(view, "cloud-on-black")
+    plain = shot(view, "cloud-on-black")
     view.Background = [1, 1, 1]
-    clear = shot(view, "cloud-on-white") - alone  # the part of the background that the volume lets through
+    clear = shot(view, "cloud-on-white") - plain  # the part of the background that the volume lets through
     view.Background = [0, 0, 0]
     eye, focus = numpy.array(view.CameraPosition), numpy.array(view.CameraFocalPoint)
     forward = (focus - eye) / numpy.linalg.norm(focus - eye)
@@ -70,13 +70,13 @@ def translucent(shown, view):
         simple.Delete(surface)
         simple.Delete(sheet)
         front, through = near[0], near[1] - near[0]
-        meant = front + through * opacity * color + (1 - opacity) * (alone - front)
+        meant = front + through * opacity * color + (1 - opacity) * (plain - front)
         error = numpy.abs(seen - meant).max(axis=1) * 255
         # Three pictures that were rounded to bytes go into what is expected, and layers of bytes into what is seen.
         print(f"a translucent sheet {name} the volume: {error.max():.2f} of 255")
         check(error.max() <= 2.5, f"a translucent sheet {name} the volume: {error.max():.2f} of 255")
         if name == "within":
-            whole = numpy.minimum(abs(seen - opacity * color - (1 - opacity) * alone), abs(seen - alone - clear * opacity * color))
+            whole = numpy.minimum(abs(seen - opacity * color - (1 - opacity) * plain), abs(seen - plain - clear * opacity * color))
             check((whole.max(axis=1)[lit] * 255 > 6).sum() > 1000, "a sheet within the volume has some of it before and some behind it")
 
 
@@ -126,16 +126,16 @@ def filters(cloud, shown, view, before):
 
 
 def statistics(shown):
-    """The panel tells of the last picture, whose step was set to 5."""
+    """The panel reports the last picture, whose step was set to 5."""
     simple.Render()
-    check(shown.StratusSamplesTaken > 0 and shown.StratusCastTime > 0 and shown.StratusDeviceUsed, "samples, time and device are told")
+    check(shown.StratusSamplesTaken > 0 and shown.StratusCastTime > 0 and shown.StratusDeviceUsed, "samples, time and device are reported")
     by_cells = shown.StratusSamplingUsed == "cells"
     check(shown.StratusUsedSampleDistance == (0 if by_cells else 5), f"a step of {shown.StratusUsedSampleDistance} by {shown.StratusSamplingUsed}")
     check(("cell error" if by_cells else "sample distance 5") in shown.StratusReason, f"the reason: {shown.StratusReason}")
     shown.StratusSampling = "Midpoint"
     simple.Render()
-    check(shown.StratusUsedSampleDistance == 5, "the step is told")
-    check(shown.StratusStructureUsed == "hybrid" and shown.StratusSamplingUsed == "midpoint" and shown.StratusReason, "what was chosen is told")
+    check(shown.StratusUsedSampleDistance == 5, "the step is reported")
+    check(shown.StratusStructureUsed == "hybrid" and shown.StratusSamplingUsed == "midpoint" and shown.StratusReason, "the choices are reported")
 
 
 load()

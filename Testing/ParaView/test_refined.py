@@ -14,7 +14,7 @@ from grids import COLORS, OPACITY, refined, write
 load()
 path = write(refined(), vtkIOXML.vtkXMLUniformGridAMRWriter(), folder, "refined.vthb")
 _, shown, view, *_ = draw(path, "hill", OPACITY, COLORS, 1.0, 55, of="CELLS")
-check(shown.StratusSamplesTaken > 1e4 and shown.StratusReason and shown.StratusDeviceUsed, f"the panel tells of the picture: {shown.StratusReason}")
+check(shown.StratusSamplesTaken > 1e4 and shown.StratusReason and shown.StratusDeviceUsed, f"the panel reports the picture: {shown.StratusReason}")
 check("StratusShade" not in shown.ListProperties(), "light is not offered")
 before = shot(view, "refined-before")
 draw(path, "hill", OPACITY, COLORS, 1.0, 53, of="CELLS", settings={"StratusBlendMode": "Slice",

@@ -36,7 +36,7 @@ def first_place(x, y):
 
 
 def chosen(source, what, view, rectangle):
-    """The kind of the selection, its numbers, and the bounds of what it extracts; None where nothing is selected."""
+    """Returns the kind of the selection, its numbers, and the bounds of the extracted data; None if nothing is selected."""
     simple.ClearSelection(source)
     getattr(simple, what)(Rectangle=rectangle, View=view)
     selection = source.GetSelectionInput(0)
@@ -45,8 +45,8 @@ def chosen(source, what, view, rectangle):
     inner = _getPyProxy(selection).Input[0]
     extract = simple.ExtractSelection(Input=source)
     extract.UpdatePipeline()
-    told = extract.GetDataInformation()
-    answer = inner.GetXMLName(), list(getattr(inner, "IDs", [])), told.GetBounds(), told.GetNumberOfCells(), told.GetNumberOfPoints()
+    extracted = extract.GetDataInformation()
+    answer = inner.GetXMLName(), list(getattr(inner, "IDs", [])), extracted.GetBounds(), extracted.GetNumberOfCells(), extracted.GetNumberOfPoints()
     simple.Delete(extract)
     return answer
 
@@ -79,8 +79,8 @@ def end(source, view):
 
 
 def beside_volume(path):
-    """"Volume" tells that an image is picked, and the number of the cell where a ray ends, with a process that is none: nothing is selected.
-    It tells no points. Both draw frusta alike, which ask the data alone."""
+    """"Volume" reports that an image is picked, and the number of the cell where a ray ends, with an invalid process: nothing is selected.
+    It reports no points. Both draw frusta alike, which use only the data."""
     source, view = show(path, None, "Volume")
     cell, frusta = chosen(source, "SelectSurfaceCells", view, [60, 48, 60, 48]), through(source, view)
     print(f'"Volume": cells {cell[1]}, of which {cell[3]} are in the data')
@@ -103,7 +103,7 @@ def picks(path, representation):
         for what, most in ("SelectSurfaceCells", 2.3), ("SelectSurfacePoints", 4.0):
             answer = chosen(source, what, view, [*pixel, *pixel])
             check(answer and len(answer[1]) in (2, 3) and outside(answer[2], right) < most,
-                  f"{name}: {what} at {pixel} tells {answer}, the ray first shows {right.round(1)}")
+                  f"{name}: {what} at {pixel} reports {answer}, the ray first shows {right.round(1)}")
     check(chosen(source, "SelectSurfaceCells", view, [2, 2, 2, 2]) is None, f"{name}: nothing is selected where nothing is")
     place, normal = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
     found = view.SMProxy.ConvertDisplayToPointOnSurface([60, 48], place, normal, False)
@@ -168,7 +168,7 @@ def recorded():
     for key in (*IMAGE, *MESH):
         check(f".{key} = " in trace, f"the trace has {key}")
     for key in "StratusReason", "StratusSamplesTaken", "StratusCastTime", "StratusCellsReason", "StratusCellsSegments":
-        check(f".{key} = " not in trace, f"the trace sets {key}, which tells of pictures alone")
+        check(f".{key} = " not in trace, f"the trace sets {key}, which only reports on pictures")
     script = smstate.get_state()
     state = os.path.join(folder, "session.pvsm")
     simple.SaveState(state)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What test_window runs in the Python shell of ParaView's window: write_series() makes the data that the session opens, and look() keeps a
-picture of the whole window and a line in looks.json that tells what the active source is shown as. The folder is STRATUS_WINDOW_FOLDER."""
+picture of the whole window and a line in looks.json with the active source's representation. The folder is STRATUS_WINDOW_FOLDER."""
 import json
 import os
 import shutil
@@ -41,12 +41,12 @@ def look():
     view = simple.GetActiveView()
     source = simple.GetActiveSource() or next(iter(simple.GetSources().values()))  # a state that is loaded has no active one
     shown = simple.GetDisplayProperties(source, view)
-    told = {"representation": shown.Representation, "array": shown.ColorArrayName[1], "camera": list(view.CameraPosition),
+    seen = {"representation": shown.Representation, "array": shown.ColorArrayName[1], "camera": list(view.CameraPosition),
             "opacity": list(shown.ScalarOpacityFunction.Points), "unit": shown.ScalarOpacityUnitDistance,
             "samples": shown.StratusSamplesTaken,
             "reason": str(shown.StratusReason), "time": simple.GetAnimationScene().AnimationTime}
     with open(looks, "a", encoding="utf-8") as file:
-        file.write(json.dumps(told, default=str) + "\n")
+        file.write(json.dumps(seen, default=str) + "\n")
 
 
 def start_trace():
@@ -55,13 +55,13 @@ def start_trace():
 
 
 def stop_trace():
-    """Writes trace.py, what the window has recorded since start_trace()."""
+    """Writes trace.py, the window's trace since start_trace()."""
     with open(os.path.join(folder, "trace.py"), "w", encoding="utf-8") as file:
         file.write(smtrace.stop_trace())
 
 
 def run(name):
-    """What fails here would show in the shell's panel alone."""
+    """A failure here would show only in the shell's panel."""
     try:
         {"look": look, "write_series": write_series, "start_trace": start_trace, "stop_trace": stop_trace}[name]()
     except Exception:

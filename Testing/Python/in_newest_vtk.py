@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The wheel stratus-vtk in its VTK: pictures are those of Debian's VTK to the bit, pyvista takes the mappers, unchanged programs draw by them.
+"""The wheel stratus-vtk in its VTK: pictures equal Debian's VTK's to the bit, pyvista takes the mappers, unchanged programs draw by them.
 in_newest_vtk.py FOLDER BUILD"""
 import os
 import re
@@ -77,14 +77,14 @@ check(tree.GetOutputDataObject(1).GetNumberOfCells() > 0, "a tree")
 
 # An unchanged program.
 factory = os.path.join(os.path.dirname(stratus.__file__), "stratus", "factory")
-told = subprocess.run([sys.executable, "-c", "import cvista.vtkRenderingVolumeOpenGL2; from cvista.vtkRenderingVolume import vtkGPUVolumeRayCastMapper as mapper; "
+ran = subprocess.run([sys.executable, "-c", "import cvista.vtkRenderingVolumeOpenGL2; from cvista.vtkRenderingVolume import vtkGPUVolumeRayCastMapper as mapper; "
                        "print(mapper().GetClassName())"], env=dict(os.environ, VTK_AUTOLOAD_PATH=factory), capture_output=True, text=True)
-check("vtkStratusFactoryVolumeMapper" in told.stdout, f"the object factory: {told}")
+check("vtkStratusFactoryVolumeMapper" in ran.stdout, f"the object factory: {ran}")
 
 # Two VTKs in one process, each with its own objects.
 both = subprocess.run([sys.executable, "-c", "import warnings; warnings.simplefilter('error')\nimport vtkmodules.vtkCommonDataModel as other\n"
-                       "try:\n    import stratus\nexcept RuntimeWarning as told:\n    print(told)\nwarnings.simplefilter('ignore')\nimport stratus\n"
-                       "try:\n    stratus.show(other.vtkImageData())\nexcept TypeError as told:\n    print(told)"], capture_output=True, text=True)
+                       "try:\n    import stratus\nexcept RuntimeWarning as error:\n    print(error)\nwarnings.simplefilter('ignore')\nimport stratus\n"
+                       "try:\n    stratus.show(other.vtkImageData())\nexcept TypeError as error:\n    print(error)"], capture_output=True, text=True)
 said = both.stdout.splitlines()
 check(both.returncode == 0 and len(said) == 2 and "two VTKs" in said[0] and "vtkmodules is" in said[0] and "a vtkmodules." in said[1]
       and said[1].endswith("of cvista"), f"two VTKs: {both}")
@@ -123,8 +123,8 @@ for part in "_needed.py", "libstratus-core.so.0.1", "no_opencl/libOpenCL.so.1":
     os.remove(path)
     with open(path.replace("libOpenCL", "libOpenCX"), "wb") as file:
         file.write(content)
-for beside in "cvista", "cvista.libs":  # where the libraries look for them
-    os.symlink(os.path.join(os.path.dirname(package), beside), os.path.join(folder, "without", beside))
+for folder_name in "cvista", "cvista.libs":  # where the libraries look for them
+    os.symlink(os.path.join(os.path.dirname(package), folder_name), os.path.join(folder, "without", folder_name))
 shown = subprocess.run([sys.executable, "-c", "import numpy, stratus\nz = numpy.mgrid[:9, :9, :9][0] + 0.0\n"
                         "print(stratus.__file__, stratus.show(z, opacity=[(0, 0), (8, 0.5)], size=(60, 40))[..., 0].max())"],
                        env=dict(os.environ, PYTHONPATH=os.path.dirname(copy)), cwd=folder, capture_output=True, text=True)

@@ -36,7 +36,7 @@ def by_sliders():
     check(own.look["mode"] == "maximum" and own.image.value == before, "what is wrong is raised, and the picture stays")
     own.look["mode"] = "glow"
     own.azimuth.value = 10
-    check(own.image.value == before and "glow" in own.message.value, f"within a move it is told below the picture, which stays: {own.message.value}")
+    check(own.image.value == before and "glow" in own.message.value, f"within a move the error is below the picture, which stays: {own.message.value}")
     own.look["mode"] = "composite"
     own.azimuth.value = 20
     check(own.message.value == "" and own.image.value != before, "and the next picture takes the message away")
@@ -80,7 +80,7 @@ async def while_it_moves():
     send(dict(type="mousemove", relativeX=40, relativeY=-60, timeStamp=270))
     check(own.image.value != draft and own.is_draft, "which is drawn where it is in time")
     await asyncio.sleep(0.5)
-    check(not own.is_draft and same(own, own.camera), "and the full picture is that of the last")
+    check(not own.is_draft and same(own, own.camera), "and the full picture is the last one's")
 
 
 def refusals():
@@ -91,7 +91,7 @@ def refusals():
     refuse(TypeError, "audit", view, field, audit=True)
     found = sys.modules["ipyevents"]
     sys.modules["ipyevents"] = None
-    check(view(field, **host)._events is None, "sliders alone where ipyevents is missing")
+    check(view(field, **host)._events is None, "only sliders if ipyevents is missing")
     sys.modules["ipyevents"] = found
     sys.modules["ipywidgets"] = None
     refuse(ImportError, "pip install ipywidgets", view, field)

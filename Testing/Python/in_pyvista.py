@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""stratus_volume in scenes of pyvista, beside the volumes that VTK's own mapper draws there. `wheel` runs it where pyvista is installed."""
+"""stratus_volume in scenes of pyvista, compared with the volumes that VTK's own mapper draws there. `wheel` runs it where pyvista is installed."""
 import gc
 import warnings
 import weakref
@@ -84,11 +84,11 @@ def lives():
     volume.visibility = True
     plotter.render()
     check(not numpy.array_equal(plain, plotter.screenshot(return_img=True)), "it can be hidden")
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         volume.set(structure="bush")
         volume.set(structure="none")
-    check(any("bush" in str(one.message) for one in told), "what fails within a frame is a warning")
+    check(any("bush" in str(one.message) for one in caught), "a failure within a frame is a warning")
     shear = numpy.eye(4)
     shear[0, 1] = 1
     volume.user_matrix = shear

@@ -14,13 +14,13 @@ warnings.simplefilter("error")
 
 def reason(data, **options):
     """The one warning of a picture, "" where there is none."""
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         render(data, **{**host, **options})
-    check(len(told) <= 1, f"one warning, not {len(told)}")
-    for one in told:
+    check(len(caught) <= 1, f"one warning, not {len(caught)}")
+    for one in caught:
         check(one.category is NothingShown and one.filename == __file__, f"at the caller's line: {one.filename}")
-    return str(told[0].message) if told else ""
+    return str(caught[0].message) if caught else ""
 
 
 # Sampling is fixed where pictures must be the same to the bit: a probe chooses by rays, and rounds with the values.
@@ -95,7 +95,7 @@ def masks():
     turned = numpy.ma.masked_array(field, mask).transpose(2, 1, 0)
     check(apart(render(turned, axes="xyz", opacity=points, **exact), wanted) < 2e-3, "a mask in another order")
     shared = numpy.ma.masked_array((100 * field).astype(numpy.uint8), mask)
-    check(numpy.shares_memory(Volume(shared).grid.values, shared.data), "masked bytes are not copied where their range is that of the others")
+    check(numpy.shares_memory(Volume(shared).grid.values, shared.data), "masked bytes are not copied if their range is the others'")
     nothing = numpy.ma.masked_array(field)
     check(apart(render(nothing, **host), render(field, **host)) == 0, "a mask of nothing")
 
@@ -143,37 +143,37 @@ def scales():
         check(box[30, 30] > 0.4 and box[0, 0] == 0, f"{value} everywhere is a box: {box[30, 30]}")
     spiked = field.copy()
     spiked[0, 0, 0] = 1e300
-    check(apart(own, render(spiked, opacity=points, **host)) < 3e-3, "one value of 1e300 beside a function of 0..1")
+    check(apart(own, render(spiked, opacity=points, **host)) < 3e-3, "one value of 1e300 and a function of 0..1")
 
 
 def reasons():
     for data, words in (numpy.full((8, 8, 8), numpy.nan), "512 NaN or infinite"), (numpy.full((8, 8, 8), numpy.inf), "512 NaN or infinite"), \
             (numpy.ma.masked_all((8, 8, 8)), "512 masked"), \
             (numpy.ma.masked_array(numpy.full((8, 8, 8), numpy.nan), numpy.arange(512).reshape(8, 8, 8) < 12), "12 masked and 500 NaN"):
-        told = reason(data)
-        check(words in told and "none of the 512" in told, f"'{words}' in the warning: {told}")
+        warning = reason(data)
+        check(words in warning and "none of the 512" in warning, f"'{words}' in the warning: {warning}")
         check(render_quietly(data).rgba.max() == 0 and numpy.isinf(render_quietly(data).depth).all(), "the picture is empty")
-    check("all values are 7" in reason(numpy.full((8, 8, 8), 7.0), opacity=[(8, 0), (9, 1)]), "constant, beside the function")
+    check("all values are 7" in reason(numpy.full((8, 8, 8), 7.0), opacity=[(8, 0), (9, 1)]), "constant, outside the function")
     check("opacity is 0 for every value" in reason(numpy.full((8, 8, 8), 7.0), opacity=0), "constant and transparent")
     check("opacity is 0 for every value" in reason(field, opacity=[(0, 0), (1, 0)]), "a transparent function")
-    told = reason(field, opacity=[(0, 0), (2, 0), (3, 1), (4, 0)])
-    check("0..1" in told and "2..4" in told, f"a function beside the values: {told}")
-    told = reason(field * 1e300, opacity=[(0, 0), (2e300, 0), (3e300, 1), (4e300, 0)])
-    check("0..1e+300" in told and "2e+300..4e+300" in told, f"in the values' own unit: {told}")
+    warning = reason(field, opacity=[(0, 0), (2, 0), (3, 1), (4, 0)])
+    check("0..1" in warning and "2..4" in warning, f"a function outside the values: {warning}")
+    warning = reason(field * 1e300, opacity=[(0, 0), (2e300, 0), (3e300, 1), (4e300, 0)])
+    check("0..1e+300" in warning and "2e+300..4e+300" in warning, f"in the values' own unit: {warning}")
     noise = numpy.random.default_rng(1).random((12, 12, 12))
     for far in 1e300, -1e300, 1e30, 1e9:
         spiked = noise.copy()
         spiked[3, 4, 5] = far
         for own in None, 0.5:
-            told = reason(spiked, opacity=own)
-            check("next to nothing shows" in told and "95 %" in told and "Mask" in told, f"a spike of {far}: {told}")
-    told = reason(10 ** (300 * noise))
-    check("next to nothing shows" in told, f"from 1 to 1e300 by powers of 10: {told}")
-    told = reason(field, opacity=[(0, 0), (1, 1e-5)])
-    check("half a step" in told and "unit_distance" in told, f"too thin: {told}")
+            warning = reason(spiked, opacity=own)
+            check("next to nothing shows" in warning and "95 %" in warning and "Mask" in warning, f"a spike of {far}: {warning}")
+    warning = reason(10 ** (300 * noise))
+    check("next to nothing shows" in warning, f"from 1 to 1e300 by powers of 10: {warning}")
+    warning = reason(field, opacity=[(0, 0), (1, 1e-5)])
+    check("half a step" in warning and "unit_distance" in warning, f"too thin: {warning}")
     check("no contour" in reason(field, mode="isosurface", contours=[2], opacity=[(0, 1), (2, 1)]), "a contour beyond the values")
     check("no ray" in reason(field, camera=dict(position=(10, 9, 60), focal_point=(10, 9, 90), view_up=(0, 1, 0))), "a camera that looks away")
-    check("no ray" in reason(field, crop=(100, 120, 0, 1, 0, 1)), "a crop beside the volume")
+    check("no ray" in reason(field, crop=(100, 120, 0, 1, 0, 1)), "a crop outside the volume")
     check("mode minimum" in reason(field, mode="minimum"), "the smallest value of each ray is transparent")
     # Visible pictures give no warning.
     sparse = numpy.zeros((40, 40, 40))
@@ -210,7 +210,7 @@ def labelled():
     for dims in ("lev", "lat", "lon"), ("z", "y", "x"), ("a", "b", "c"):
         check(apart(render(Labelled(field, dims), opacity=points, **exact), wanted) == 0, f"dimensions {dims}")
     turned = Labelled(field.transpose(2, 1, 0), ("longitude", "latitude", "height"))
-    check(apart(render(turned, opacity=points, **exact), wanted) < 2e-3, "the names tell the axes")
+    check(apart(render(turned, opacity=points, **exact), wanted) < 2e-3, "the names give the axes")
     even = {name: Coordinate(numpy.arange(n) * 2.0 + 5, units="m") for name, n in zip("zyx", field.shape)}
     picture = render(Labelled(field, tuple("zyx"), even), opacity=points, **host)
     check(apart(picture, render(field, spacing=(2, 2, 2), origin=(5, 5, 5), opacity=points, **host)) < 3e-3, "coordinates are places")
@@ -222,7 +222,7 @@ def labelled():
     degrees = dict(z=Coordinate(numpy.arange(16) * 1000.0, units="m"), y=Coordinate(numpy.arange(18) * 0.1, units="degrees_north"),
                    x=Coordinate(numpy.arange(20) * 0.1, units="degrees_east"))
     check(apart(render(Labelled(field, tuple("zyx"), degrees), opacity=points, **host), render(field, opacity=points, **host)) < 3e-3,
-          "metres beside degrees: each axis by its count")
+          "metres next to degrees: each axis by its count")
     filled = Labelled(numpy.where(field < 0.3, -999, field), tuple("zyx"), _FillValue=-999)
     check(apart(render(filled, **host), render(numpy.where(field < 0.3, numpy.nan, field), **host)) == 0, "a fill value is masked")
     refuse(ValueError, "isel", render, Labelled(field[0], ("lat", "lon")))
@@ -290,5 +290,5 @@ scales()
 reasons()
 labelled()
 vtk()
-check(stratus_volume.__doc__ and len(render.__doc__) > 1000, "help() tells")
+check(stratus_volume.__doc__ and len(render.__doc__) > 1000, "help() describes")
 done()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""stratus_volume's calls of the core: contexts, pictures, cameras, errors, cancelling, threads, what is freed."""
+"""stratus_volume's calls of the core: contexts, pictures, cameras, errors, cancelling, threads, freed memory."""
 import gc
 import multiprocessing
 import os
@@ -46,12 +46,12 @@ def pictures():
     check(rgba[30, 45, 3] > 0.8 and rgba[2, 2].max() == 0, f"opaque in the middle, nothing in the corner: {rgba[30, 45]}")
     check(abs(rgba[30, 45, 1] - 0.5 * rgba[30, 45, 0]) < 1e-3, "colours are premultiplied")
     check(numpy.isinf(depth[2, 2]) and numpy.isfinite(depth[30, 45]), "depth where something shows")
-    check(numpy.array_equal(numpy.isfinite(depth), rgba[..., 3] > 0), "depth and alpha tell of the same pixels")
+    check(numpy.array_equal(numpy.isfinite(depth), rgba[..., 3] > 0), "depth and alpha show the same pixels")
     check(counters["samples"] > 1000 and counters["rays"] > 100 and counters["structure"] in ("none", "block", "distance", "octant", "hybrid"),
           f"counters: {counters}")
     picture = rendering.picture(background=(0, 0, 1))
     check(tuple(picture[0, 0]) == (0, 0, 255, 255) and picture.dtype == numpy.uint8, "over a background")
-    check(picture._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n" and picture[0]._repr_png_() is None, "notebooks get PNG of pictures alone")
+    check(picture._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n" and picture[0]._repr_png_() is None, "notebooks get PNG only of pictures")
     high = ball((20, 20, 20), (16, 10, 10), 3)
     up = show(high, opacity=[(0, 0), (0.5, 0.9)], background=None, camera=dict(elevation=0, zoom=1), size=(60, 60), device="host")[..., 3]
     check((up.astype(float).sum(1) * numpy.arange(60)).sum() / up.sum() < 25, "z points up, the first row is the top one")
@@ -115,7 +115,7 @@ def kept():
     before = volume.render(size=(60, 60))
     own[:, :, :12] = 0
     volume.modified()
-    check(not numpy.array_equal(volume.render(size=(60, 60)).rgba, before.rgba), "values that changed in place, when it is told")
+    check(not numpy.array_equal(volume.render(size=(60, 60)).rgba, before.rgba), "values that changed in place, after modified()")
     refuse(ValueError, "spacing", render, volume, spacing=(1, 1, 1))
 
 
@@ -138,9 +138,9 @@ def refusals():
 
 
 def cancelled():
-    told = []
-    render(field, progress=lambda stage, fraction: told.append((stage, fraction)), **host)
-    check(told and all(isinstance(stage, str) and 0 <= fraction <= 1 for stage, fraction in told), f"progress: {told[:3]}")
+    calls = []
+    render(field, progress=lambda stage, fraction: calls.append((stage, fraction)), **host)
+    check(calls and all(isinstance(stage, str) and 0 <= fraction <= 1 for stage, fraction in calls), f"progress: {calls[:3]}")
     refuse(stratus_volume.Cancelled, "", render, field, progress=lambda stage, fraction: True, **host)
 
     def interrupt(stage, fraction):
@@ -268,7 +268,7 @@ def ask_for_threads():
 
 
 def missing():
-    """Where libOpenCL or libgomp is missing: names of libraries that are nowhere stand in for them in a copy of the package."""
+    """Where libOpenCL or libgomp is missing: names of libraries that do not exist replace them in a copy of the package."""
     own = os.path.dirname(os.path.abspath(stratus_volume.__file__))
     code = "import numpy, stratus_volume as s; print(s.devices(), s.render(numpy.eye(4) * numpy.ones((4, 4, 4)), size=(9, 9)).rgba.max() > 0)"
     with tempfile.TemporaryDirectory() as folder:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What declare.py made of the public headers is what a C compiler makes of them: sizes, offsets, enums, macros, and the library's functions."""
+"""declare.py's declarations of the public headers agree with a C compiler: sizes, offsets, enums, macros, and the library's functions."""
 import ast
 import ctypes
 import glob
@@ -42,9 +42,9 @@ with tempfile.TemporaryDirectory() as folder:
         file.write("#include <stddef.h>\n#include <stdio.h>\n#include <stratus.h>\nint main(void)\n{\n" + "\n".join(lines) + "\nreturn 0;\n}\n")
     program = os.path.join(folder, "layout")
     subprocess.run([compiler, "-std=c11", "-I" + os.path.join(root, "Core"), "-o", program, path], check=True)
-    told = subprocess.run([program], check=True, capture_output=True, text=True).stdout.split()
-check(len(told) == len(wanted) > 600, f"{len(told)} numbers for {len(wanted)}")
-for (name, value), line in zip(wanted, told):
+    printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout.split()
+check(len(printed) == len(wanted) > 600, f"{len(printed)} numbers for {len(wanted)}")
+for (name, value), line in zip(wanted, printed):
     check(float(line) == value, f"{name} is {value}, the compiler says {line}")
 
 # Every function that the headers mark, by another way of looking at them, and every one of the library.
@@ -79,15 +79,15 @@ check(sorted(stubs) == sorted(stratus_volume.__all__), f"stubs: {sorted(set(stub
 
 def compare(stub, own, name):
     parameters = inspect.signature(own).parameters
-    told = [each.arg for each in stub.args.args] + ([stub.args.kwarg.arg] if stub.args.kwarg else [])
-    check(told == list(parameters), f"stub of {name}: {told} and {list(parameters)}")
+    names = [each.arg for each in stub.args.args] + ([stub.args.kwarg.arg] if stub.args.kwarg else [])
+    check(names == list(parameters), f"stub of {name}: {names} and {list(parameters)}")
     defaults = sum(each.default is not inspect.Parameter.empty for each in parameters.values())
     check(len(stub.args.defaults) == defaults, f"stub of {name}: {len(stub.args.defaults)} defaults, not {defaults}")
 
 
 for name, stub in stubs.items():
     own = getattr(stratus_volume, name)
-    check(len(own.__doc__ or "") > 20, f"{name} is told")
+    check(len(own.__doc__ or "") > 20, f"{name} is described")
     for method in [stub] if isinstance(stub, ast.FunctionDef) else [node for node in stub.body if isinstance(node, ast.FunctionDef)]:
         one = own if method is stub else inspect.getattr_static(own, method.name)
         one = one.fget if isinstance(one, property) else one.__func__ if isinstance(one, classmethod) else one

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The versions of the C library's functions that wheels ask for (Python/glibc_2_28.h) give the bits of today's, and none that the core calls
+"""The versions of the C library's functions that wheels need (Python/glibc_2_28.h) give the bits of today's, and none that the core calls
 is left out. The same library is made with the header and without, and called with the same numbers."""
 import ctypes
 import os
@@ -38,12 +38,13 @@ HEADER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "P
 
 def versions(library):
     """The version of glibc that each function of the C library is taken from."""
-    told = subprocess.run(["objdump", "-T", library], check=True, capture_output=True, text=True).stdout
-    return {name: tuple(map(int, version.split("."))) for version, name in re.findall(r"\*UND\*\s.*\(GLIBC_([0-9.]+)\)\s+(\w+)", told)}
+    symbols = subprocess.run(["objdump", "-T", library], check=True, capture_output=True, text=True).stdout
+    return {name: tuple(map(int, version.split("."))) for version, name in re.findall(r"\*UND\*\s.*\(GLIBC_([0-9.]+)\)\s+(\w+)", symbols)}
 
 
 def numbers(n):
-    """Of all magnitudes, and those of functions, cameras and optical depths; zeros, infinities, NaN, where results overflow and vanish."""
+    """Returns arguments of all magnitudes, and as functions, cameras and optical depths have them; zeros, infinities, NaN, and arguments whose
+    results overflow or vanish."""
     random = numpy.random.default_rng(28)
     ends = [0.0, -0.0, 1.0, -1.0, numpy.inf, -numpy.inf, numpy.nan, 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308,
             709.782712893384, 709.7827128933841, -745.1332191019411, -745.1332191019412, 1024.0, -1075.0, 0.5, 2.0]
@@ -61,7 +62,7 @@ with tempfile.TemporaryDirectory() as folder:
         needed = versions(library)
         check(set(NAMES) <= set(needed), f"{name} calls them all: {needed}")
         if options:
-            check(max(needed[one] for one in NAMES) <= (2, 28), f"glibc 2.28 has what {name} asks for: {needed}")
+            check(max(needed[one] for one in NAMES) <= (2, 28), f"glibc 2.28 has the functions that {name} needs: {needed}")
         calls.append(ctypes.CDLL(library).each)
     x = numbers(400000)
     y = numpy.random.default_rng(29).permutation(x)

@@ -137,7 +137,7 @@ def labels():
         holds(render(values, labels=marks.astype(kind), looks=looks, **look, **straight), [opacity], [colors], f"labels of {kind.__name__}")
     turned, order = values.transpose(2, 1, 0), numpy.asfortranarray(values)
     holds(render(turned, axes="xyz", labels=marks.transpose(2, 1, 0), looks=looks, **look, **straight), [opacity], [colors], "labels in another order")
-    holds(render(order, labels=marks, looks=looks, **look, **straight), [opacity], [colors], "beside values in Fortran order")
+    holds(render(order, labels=marks, looks=looks, **look, **straight), [opacity], [colors], "with values in Fortran order")
     volume = Volume(values, device="host")
     kept, bytes_of = {name: value for name, value in straight.items() if name != "device"}, marks.astype(numpy.uint8)
     volume.render(labels=bytes_of, looks=looks, **look, **kept)
@@ -165,7 +165,7 @@ def two_variables():
     rows = numpy.broadcast_to(numpy.linspace(0, 1, 257)[None, :, None] * (0.9, 0.5, 0.2, 0.6), (4, 257, 4))
     plain = render(field, opacity=[(0, 0), (1, 0.6)], color=[(0, 0, 0, 0), (1, 0.9, 0.5, 0.2)], tolerance=0, **host)
     same = render(field, function_2d=dict(rgba=rows, value_range=(-1 / 512, 1 + 1 / 512), second_range=(0, 1)), tolerance=0, **host)
-    check(apart(plain, same) < 5e-3, f"of the value alone: {apart(plain, same)}")
+    check(apart(plain, same) < 5e-3, f"of only the value: {apart(plain, same)}")
     steep = numpy.array(rows)
     steep[:2, :, 3] = 0
     check(apart(render(field, function_2d=dict(rgba=steep, value_range=(0, 1), second_range=(0, 0.25)), **host), plain) > 0.05,
@@ -246,7 +246,7 @@ def several():
     check(apart(mixed, both) < 6e-3 and mixed.rgba[..., 3].max() > 0.5, f"two volumes of one grid are two components: {apart(mixed, both)}")
     check(apart(render_several([(second, other), (first, look)], **host), mixed) < 4e-3, "in any order")
     check(len(mixed.counters["items"]) == 2 and mixed.counters["samples"] > 0 and "structure" in mixed.counters["items"][1], "counters of each")
-    check(apart(render_several([(first, look)], **host), render(first, **look, **host)) == 0, "one alone is render's picture")
+    check(apart(render_several([(first, look)], **host), render(first, **look, **host)) == 0, "a single one is render's picture")
     check(apart(render_several([(first[:, :, :14], look), (first[:, :, 13:], dict(look, origin=(13, 0, 0)))], **host), render(first, **look, **host)) < 8e-3,
           "each has a place of its own")
     mesh = Tetrahedra(*lattice(second), device="host")
@@ -282,7 +282,7 @@ def matrices():
     volume = Volume(field, matrix=turned, device="host")
     check(numpy.allclose(volume.bounds, (-17, 0, 0, 19, 0, 15)), f"its bounds: {volume.bounds}")
     cells = Tetrahedra(*lattice(field), matrix=turned, device="host")
-    check(numpy.allclose(cells.bounds, volume.bounds), f"those of cells: {cells.bounds}")
+    check(numpy.allclose(cells.bounds, volume.bounds), f"bounds of cells: {cells.bounds}")
     check(numpy.abs(cells.render(size=(60, 60), opacity=look["opacity"]).rgba - volume.render(size=(60, 60), opacity=look["opacity"]).rgba).mean() < 0.01,
           "cells turn alike")
     for words, matrix in ("(4, 4)", numpy.eye(3)), ("(4, 4)", numpy.zeros((4, 4))), ("finite", numpy.eye(4) * numpy.nan), ("last row", 2 * numpy.eye(4)):
@@ -299,8 +299,8 @@ def cells():
     lit = volume.rgba[..., 3] > 0
     check(mesh.rgba[..., 3].max() > 0.5 and numpy.abs(mesh.rgba - volume.rgba)[lit].mean() < 0.03, "cells of two components look as a volume's do")
     one = Tetrahedra(places, none, two, device="host").render(size=(60, 60), **dict(look, opacity=[look["opacity"][0], [(0, 0), (1, 0)]]))
-    alone = Tetrahedra(places, none, field, device="host").render(size=(60, 60), opacity=look["opacity"][0], color=(1, 0, 0), unit_distance=1)
-    check(apart(one, alone) < 4e-3, f"one that shows is it alone: {apart(one, alone)}")
+    single = Tetrahedra(places, none, field, device="host").render(size=(60, 60), opacity=look["opacity"][0], color=(1, 0, 0), unit_distance=1)
+    check(apart(one, single) < 4e-3, f"one that shows is a single one: {apart(one, single)}")
     bytes_of = (255 * numpy.stack([field, 1 - field, field, field], axis=3)).astype(numpy.uint8)
     check(Tetrahedra(places, none, bytes_of, device="host").render(size=(60, 60), dependent=True).rgba.max() > 0.3, "bytes that are a colour")
     refuse(ValueError, "1 to 4 components", Tetrahedra, places, none, numpy.zeros((9, 10, 11, 5)))

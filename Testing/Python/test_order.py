@@ -44,7 +44,7 @@ def culled():
         check(numpy.allclose(found.depth, middle[:, 1] - 2, atol=1e-3), "depth is from the near plane")
         check(found.counters["objects_tested"] > 0 and len(tree) == 4000 and tree.statistics["objects"] == 4000, f"counters: {found.counters}")
     exact = tree.cull(planes=planes, exact=True).ids
-    check(set(exact) < set(wanted) and len(exact) > 80, "exact leaves out what the planes can't tell apart")
+    check(set(exact) < set(wanted) and len(exact) > 80, "exact leaves out boxes that the planes keep")
     moved = bounds.copy()
     moved[:500] += 7
     tree.move(numpy.arange(500), moved[:500])
@@ -172,7 +172,7 @@ def ordered():
                 check(wrong <= counters["cycles"] and pairs > 2000, f"{peeling} from {eye}: {wrong} of {pairs} pairs are in the wrong order")
     backwards = in_order(places, cells, VisibilityOrder(places, cells, device="host").sort(dict(position=(20, -30, 12), focal_point=(3, 3, 2)))[0][::-1],
                          numpy.array([20.0, -30, 12]))
-    check(backwards[0] > 0.9 * backwards[1], "the check tells a wrong order")
+    check(backwards[0] > 0.9 * backwards[1], "the check finds a wrong order")
     again = order.sort(dict(position=eye, focal_point=(3.4, 3.1, 2.6)), "layers")[1]
     check(again["reused"] == 1, "the same view is not sorted anew")
     refuse(ValueError, "peeling", order.sort, None, "random")

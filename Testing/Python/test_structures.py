@@ -44,7 +44,7 @@ def distances():
             found = distance_field(values * scale, lower, upper, device="host")
             check(numpy.allclose(found, brute, atol=1e-5), f"of values in {lower}..{upper}")
         masked = numpy.ma.masked_array(numpy.full(shape, 5.0), ~solid)
-        check(numpy.allclose(distance_field(masked, device="host"), brute, atol=1e-5), "of what is not masked")
+        check(numpy.allclose(distance_field(masked, device="host"), brute, atol=1e-5), "of values that are not masked")
         jumped = distance_field(solid, method="jfa", device="host")
         check((jumped >= brute - 1e-5).all() and (jumped <= brute + 2).all(), "a jump flooding never underestimates")
     check(numpy.isinf(distance_field(numpy.zeros((4, 4, 4), bool), device="host")).all(), "infinite where nothing is effective")

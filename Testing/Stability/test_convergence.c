@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Volumes converge as theory says: halving the step, the piece of a cell, the grid's cell, the pixel and the table's entry lowers the error
- * against analytic fields by the expected order. Beside each stands a method that is broken on purpose, which must fail the same judge. */
+ * against analytic fields by the expected order. With each comes a method that is broken on purpose, which must fail the same judge. */
 #include "convergence.h"
 #include "testing.h"
 #include "volume.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Isosurfaces and light converge as theory says: halving the grid's cell lowers the error of places, normals and lit pictures by the
- * expected order. Beside each stands a method that is broken on purpose, which must fail the same judge. */
+ * expected order. With each comes a method that is broken on purpose, which must fail the same judge. */
 #include "convergence.h"
 #include "testing.h"
 

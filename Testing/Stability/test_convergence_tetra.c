@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Tetrahedra converge as theory says: halving the edges of a mesh lowers the error against an analytic field by the expected order, by
- * either method. Beside them stands a mesh that is broken on purpose, which must fail the same judge. */
+ * either method. With them comes a mesh that is broken on purpose, which must fail the same judge. */
 #include "convergence.h"
 #include "testing.h"
 

@@ -195,7 +195,7 @@ static void eyes_within_boxes_and_corners(void** state)
       }
       assert_true(right > 400);
       assert_int_equal(seen(&s, &frustum, 1), right);
-      /* And looking out of the root: only what is about the eye. */
+      /* And looking out of the root: only boxes around the eye are visible. */
       for (int a = 0; a < 3; ++a) {
         focal[a] = 2.0 * eye[a] - 0.4;
       }

@@ -146,7 +146,7 @@ static void every_job_survives_a_fault_at_any_call(void** state)
     right_colors = job_colors;
     assert_true(!job->before || job->before(context, job->number, kept, &sum) == STRATUS_OK); /* its programs are built, too */
     close_kept(job, &kept);
-    if (job->before) { /* a fault meets only what comes after this */
+    if (job->before) { /* a fault meets only calls after this */
       assert_int_equal(job->open(context, job->number, &kept), STRATUS_OK);
       assert_int_equal(job->before(context, job->number, kept, &sum), STRATUS_OK);
     }

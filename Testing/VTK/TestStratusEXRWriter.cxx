@@ -194,7 +194,7 @@ void KeepsNothing()
   CHECK(last < first + 65536, "20 pictures left %zu bytes behind", last - first);
 }
 
-// One error of these words; the file that was there stays, and none beside it.
+// Expects one error with these words; the old file stays, and no other file is left.
 void CheckRefused(vtkStratusEXRWriter* writer, const char* words)
 {
   const std::string path = Folder + "/old.exr";

@@ -208,10 +208,10 @@ void RayCastingUsesTheTree()
   plain.Mapper->SetStructureToNone();
   scene.Mapper->SetStructureToHybrid();
   CHECK(scene.Picture() == plain.Picture(), "the tree changes the picture");
-  CHECK(scene.Mapper->GetCarriedTreeUsed() && scene.Mapper->GetStructureBuilds() == 0, "%llu structures built beside the tree",
+  CHECK(scene.Mapper->GetCarriedTreeUsed() && scene.Mapper->GetStructureBuilds() == 0, "%llu structures built in addition to the tree",
     static_cast<unsigned long long>(scene.Mapper->GetStructureBuilds()));
   scene.Mapper->SetStructureToAuto(); // takes the tree only where it is faster
-  CHECK(scene.Picture() == plain.Picture(), "an automatic structure beside a tree changes the picture");
+  CHECK(scene.Picture() == plain.Picture(), "an automatic structure next to a tree changes the picture");
   scene.Mapper->SetStructureToHybrid();
   for (bool wider : { false, true }) { // less shows: the tree still serves; more: it does not
     for (Scene* each : { &plain, &scene }) {

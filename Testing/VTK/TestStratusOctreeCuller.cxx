@@ -255,11 +255,11 @@ void TestMarks()
   wide->SetMapper(lineMapper);
   wide->GetProperty()->SetLineWidth(14);
   w.Renderer->AddActor(wide);
-  w.Compare("a wide line beside the window");
+  w.Compare("a wide line outside the window");
   CHECK(w.Seen() == 2, "a line that reaches into the window is left out");
   w.Culler->SetMargin(0);
   w.Draw();
-  CHECK(w.Seen() == 1, "without a margin the line beside the window is kept");
+  CHECK(w.Seen() == 1, "without a margin the line outside the window is kept");
 }
 
 void TestFails()

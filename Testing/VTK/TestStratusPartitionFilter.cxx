@@ -147,7 +147,7 @@ void Quadratic()
   CHECK(filter->GetOutput()->GetNumberOfCells() == 8 && std::abs(volume - 1.0 / 6.0) < 1e-15, "parts of volume %.17g", volume);
 }
 
-// Cells of every quadratic type beside one another, straight and bent: their parts fill the box, meet face to face, and a linear field
+// Adjacent cells of every quadratic type, straight and bent: their parts fill the box, meet face to face, and a linear field
 // stays one.
 void QuadraticGrids()
 {

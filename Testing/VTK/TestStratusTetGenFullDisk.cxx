@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // TetGen's files on a disk that is full from byte n of a file on, for every n, behind links, and in folders that take no file: an error
-// that says which file and why, the old files stay as they were, and nothing is left beside them. Argument: a folder to write to.
+// that says which file and why, the old files stay as they were, and no other file is left. Argument: a folder to write to.
 #include "tetgen_testing.h"
 
 #include "vtkStratusTetGenReader.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkStratusTetrahedraMapper and composite data sets: blocks of a grid give the picture of the whole. Structured ones stay lattices, whose
 // borders rays enter anew, unless their faces have other diagonals; rays cross the borders of joined ones. Nested and empty blocks; images
-// and rectilinear grids; blocks that are left out, and what is refused.
+// and rectilinear grids; blocks that are left out, and refused inputs.
 #include "tetrahedra_scene.h"
 
 #include "vtkDoubleArray.h"
@@ -228,7 +228,7 @@ void StructuredBlocks()
   }
 }
 
-// A block whose j runs the other way meets one beside it along i by other diagonals: both are joined, and divided alike. Along j its
+// A block whose j runs the other way meets its neighbour along i by other diagonals: both are joined, and divided alike. Along j its
 // diagonals fit.
 void BlocksThatRunTheOtherWay()
 {

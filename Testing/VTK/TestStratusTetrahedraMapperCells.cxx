@@ -199,7 +199,7 @@ void LeavesAreSortedInParallel()
       for (size_t i = 0; i < plain.size() && worst < 1.0; ++i) {
         worst = std::max(worst, std::fabs(static_cast<double>(picture[i]) - static_cast<double>(plain[i])));
       }
-      // another order, and as right: only what is shorter than rounding may come the other way round
+      // another order that is also right: only pieces shorter than rounding may be reversed
       CHECK(worst < 1e-4, "moved %d: pixels differ by %g", moved, worst);
       CHECK(scene.Tetrahedra->GetNumberOfLeaves() == (moved ? 1 : 8), "moved %d: %lld leaves", moved,
         static_cast<long long>(scene.Tetrahedra->GetNumberOfLeaves()));

@@ -168,7 +168,7 @@ void EveryKind()
   }
 }
 
-// Bezier cells, rational ones, too, beside Lagrange cells whose nodes are where VTK says that the points of the Bezier cells are.
+// Bezier cells, rational ones, too, compared with Lagrange cells whose nodes are where VTK says that the points of the Bezier cells are.
 void BezierCellsLieWhereVtkPlacesThem()
 {
   for (int shape = 0; shape < 3; ++shape) {

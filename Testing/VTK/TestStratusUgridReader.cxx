@@ -16,7 +16,7 @@ namespace {
 
 using reader = vtkStratusUgridReader;
 
-// Nodes 0 1 2 3 are a rectangle of 2 x 1, nodes 1 4 2 a triangle beside it, whose corners the file has clockwise. Two layers of sigma, two
+// Nodes 0 1 2 3 are a rectangle of 2 x 1, nodes 1 4 2 a triangle next to it, whose corners the file has clockwise. Two layers of sigma, two
 // times. Bottom -10; the free surface is at 0, then at 2 on the rectangle and 6 on the triangle.
 netcdf_content delft()
 {

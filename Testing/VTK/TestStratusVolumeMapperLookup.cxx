@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two-dimensional transfer functions, slices and the intensity of clipped voxels, as VTK's property has them: held against the double
-// reference, and beside VTK's own mapper of the GPU.
+// reference, and with VTK's own mapper of the GPU.
 #include "mapper_testing.h"
 #include "refusal_testing.h"
 
@@ -75,13 +75,13 @@ double BesideVtk(Scene& scene, const std::function<void(vtkOpenGLGPUVolumeRayCas
   return reference_psnr(shown.data(), ours.data(), scene.Pixels());
 }
 
-// beside: how far VTK's mapper is from ours; 0: it has none of it.
-void Expect(const char* what, double db, double least, double beside)
+// vtks: distance of VTK's picture from ours in dB; 0: VTK cannot draw it.
+void Expect(const char* what, double db, double least, double vtks)
 {
   CHECK(db >= least, "%s: %.1f dB", what, db);
   std::printf("%-24s %.1f dB", what, db);
-  if (beside > 0.0) {
-    std::printf("; vtkOpenGLGPUVolumeRayCastMapper's picture is %.1f dB from ours", beside);
+  if (vtks > 0.0) {
+    std::printf("; vtkOpenGLGPUVolumeRayCastMapper's picture is %.1f dB from ours", vtks);
   }
   std::printf("\n");
 }

@@ -124,7 +124,7 @@ void ImageSampleDistance()
   CHECK(shown > 0.0, "the coarse picture is not shown");
 }
 
-// Depth is finite exactly where there is opacity, and lies within the volume.
+// Depth is finite exactly where there is opacity, and is within the volume.
 void Depth()
 {
   Scene scene;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Picks by vtkStratusVolumePicker: the place where a known field reaches an opacity, its cell, points and place in the cell; on every kind
-// of grid, beside VTK's own picker where that can, and through several volumes.
+// of grid, compared with VTK's own picker if that can, and through several volumes.
 #include "mapper_testing.h"
 
 #include "vtkCamera.h"

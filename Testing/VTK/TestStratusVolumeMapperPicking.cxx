@@ -28,8 +28,9 @@ vtkSmartPointer<vtkSelection> Select(Scene& scene, bool propsOnly, const unsigne
   return vtkSmartPointer<vtkSelection>::Take(selector->Select());
 }
 
-// Whether a selection has many cells, and each of them, or at the beginning of a ray's segment a cell beside it, has a point that shows.
-bool TellsShownCells(Scene& scene, vtkSelection* selection, int beside)
+// Returns whether a selection has many cells, and each of them has a visible point, or a cell within `margin` of it has one, as at the
+// beginning of a ray's segment.
+bool HasShownCells(Scene& scene, vtkSelection* selection, int margin)
 {
   auto* numbers = vtkIdTypeArray::SafeDownCast(selection->GetNode(0)->GetSelectionList());
   const int* size = scene.Image->GetDimensions();
@@ -39,9 +40,9 @@ bool TellsShownCells(Scene& scene, vtkSelection* selection, int beside)
     const int at[3] = { static_cast<int>(cell % (size[0] - 1)), static_cast<int>(cell / (size[0] - 1) % (size[1] - 1)),
       static_cast<int>(cell / ((size[0] - 1) * (size[1] - 1))) };
     double most = 0.0;
-    for (int z = std::max(at[2] - beside, 0); z <= std::min(at[2] + 1 + beside, size[2] - 1); ++z) {
-      for (int y = std::max(at[1] - beside, 0); y <= std::min(at[1] + 1 + beside, size[1] - 1); ++y) {
-        for (int x = std::max(at[0] - beside, 0); x <= std::min(at[0] + 1 + beside, size[0] - 1); ++x) {
+    for (int z = std::max(at[2] - margin, 0); z <= std::min(at[2] + 1 + margin, size[2] - 1); ++z) {
+      for (int y = std::max(at[1] - margin, 0); y <= std::min(at[1] + 1 + margin, size[1] - 1); ++y) {
+        for (int x = std::max(at[0] - margin, 0); x <= std::min(at[0] + 1 + margin, size[0] - 1); ++x) {
           most = std::max(most, scene.Opacity->GetValue(scene.Image->GetScalarComponentAsDouble(x, y, z, 0)));
         }
       }
@@ -106,7 +107,7 @@ void Volume(int mode, bool coarse)
   const vtkSmartPointer<vtkSelection> cells = Select(scene, false);
   CHECK(cells && cells->GetNumberOfNodes() == 1 && cells->GetNode(0)->GetProperties()->Get(vtkSelectionNode::PROP()) == scene.Volume,
     "a selection of cells names another prop");
-  CHECK(!cells || TellsShownCells(scene, cells, mode == vtkStratusVolumeMapper::FIRST_HIT_MODE ? 0 : 1), "invisible cells are selected");
+  CHECK(!cells || HasShownCells(scene, cells, mode == vtkStratusVolumeMapper::FIRST_HIT_MODE ? 0 : 1), "invisible cells are selected");
   Areas(scene);
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Samples a pixel: their sum is what the report counts, they follow structure and coarseness, and counting changes no pixel.
+// Samples a pixel: their sum equals the report's count, they follow structure and coarseness, and counting changes no pixel.
 #include "mapper_testing.h"
 
 #include "vtkCullerCollection.h"

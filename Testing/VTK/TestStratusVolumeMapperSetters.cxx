@@ -106,7 +106,7 @@ void RenderModesAndNormals()
   CHECK(scene.Mapper->GetRenderMode() == Mapper::COMPOSITE_MODE && scene.Picture() == light, "mode %d", scene.Mapper->GetRenderMode());
 }
 
-// Each is on after 1 and after 7, off after 0 and -7, and what it switches is seen.
+// Each switch is on after 1 and after 7, off after 0 and -7, and its effect is seen.
 void Switches()
 {
   Scene scene(64, 48);

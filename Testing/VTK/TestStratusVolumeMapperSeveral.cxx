@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkStratusMultiVolume: volumes of different grids and places that overlap, against the double reference with several fields; its
-// interface, geometry inside, picking, translucent surfaces, and what it refuses.
+// interface, geometry inside, picking, translucent surfaces, and refused inputs.
 #include "mapper_testing.h"
 
 #include "Testing/support/reference_several.h"
@@ -169,7 +169,7 @@ void Ports()
   for (size_t at = 0; at < picture.size(); ++at) {
     over = std::max<double>(over, std::fabs(one[at] + (1.0f - one[at / 4 * 4 + 3]) * other[at] - picture[at]));
   }
-  CHECK(over > 0.1, "the volumes lie over one another: %g", over);
+  CHECK(over > 0.1, "the volumes cover one another: %g", over);
   // A single volume looks like its own mapper's picture.
   scene.Volume->VisibilityOn();
   scene.Multi->RemoveVolume(5);

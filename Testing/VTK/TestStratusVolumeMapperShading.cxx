@@ -234,7 +234,7 @@ void Components()
   TwoMedia media(property);
   const double both = scene.Light();
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
-  CHECK(both > 1.1 * single, "a second component adds no light: %g beside %g", both, single);
+  CHECK(both > 1.1 * single, "a second component adds no light: %g and %g", both, single);
 
   double db = ComponentsPsnr(scene, array, media.Transfers, 0);
   std::printf("two independent components: %.1f dB\n", db);

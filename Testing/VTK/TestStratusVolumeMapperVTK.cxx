@@ -301,8 +301,8 @@ void ComponentsByTheirShare()
   const double share = BesideVTK(scene, largest[0]);
   scene.Mapper->SetComponentMixingToAdd();
   const double added = BesideVTK(scene, largest[1]);
-  std::printf(
-    "beside VTK's fixed point mapper, of 255: by share %.2f (%.0f at most), added %.2f (%.0f)\n", share, largest[0], added, largest[1]);
+  std::printf("compared with VTK's fixed point mapper, of 255: by share %.2f (%.0f at most), added %.2f (%.0f)\n", share, largest[0], added,
+    largest[1]);
   CHECK(share < 2.5 && added > 3.0 * share, "by share %g, added %g of 255", share, added);
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
 }
@@ -344,7 +344,7 @@ void ComponentsOfOneValue()
     opacity->AddPoint(blend == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND ? 0.0 : 10.0, blend == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
     opacity->AddPoint(255.0, 0.8);
     const double off = BesideVTK(scene, largest, blend);
-    std::printf("mode %d of three components beside VTK's: %.2f of 255 in the mean, %.0f at most\n", blend, off, largest);
+    std::printf("mode %d of three components compared with VTK's: %.2f of 255 in the mean, %.0f at most\n", blend, off, largest);
     CHECK(off < 3.0, "mode %d: %g of 255", blend, off);
   }
   for (int blend : { vtkVolumeMapper::AVERAGE_INTENSITY_BLEND, vtkVolumeMapper::ADDITIVE_BLEND }) {

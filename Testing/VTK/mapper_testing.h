@@ -181,7 +181,7 @@ struct Scene {
     return std::vector<unsigned char>(pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
   }
 
-  // Returns the largest difference, in 1/255, between the float picture over `background` and what the window shows.
+  // Returns the largest difference, in 1/255, between the float picture over `background` and the window.
   double ShownError(const double background[3])
   {
     const std::vector<unsigned char> bytes = this->Bytes();

@@ -134,7 +134,7 @@ def spread(values, axis):
 
 
 def touching(cells, step):
-    """Which places of a lattice with `step` places a cell lie in or on one of the cells."""
+    """Returns which places of a lattice with `step` places a cell are in or on one of the cells."""
     out = cells
     for axis in range(3):
         out = numpy.moveaxis(out, axis, 0)

@@ -90,7 +90,7 @@ def grids_of(scene):
 
 
 def judge_field(ratios, cells, counts=(16, 12, 10), boxes=None):
-    """Each value that is drawn is that of brute force; the grids fill the space once, and hold kinks at their planes alone."""
+    """Each drawn value equals brute force's; the grids fill the space once, and hold kinks only at their planes."""
     data = Refined(boxes or uneven(ratios), ratios, counts, SPACING, cells, origin=ORIGIN)
     meant = data.field()
     check(numpy.isfinite(meant).all(), "brute force leaves no hole")
@@ -191,16 +191,16 @@ def pictures():
         shown = parts[2][:, 3] > 0.004
         check(shown.sum() > 3000, "something shows")
         error = {name: 255 * abs(parts[a] - parts[b])[shown] for name, a, b in
-                 (("itself", 0, 1), ("function", 0, 2), ("of points", 3, 2), ("level 0 alone", 4, 2))}
+                 (("itself", 0, 1), ("function", 0, 2), ("of points", 3, 2), ("only level 0", 4, 2))}
         print(view, {name: f"{(e**2).mean() ** 0.5:.3f}, {e.max():.2f}" for name, e in error.items()})
         check((error["itself"] ** 2).mean() ** 0.5 < 2 * 2e-4 * 255 and error["itself"].max() < 1.0, f"{view}: the field's own picture")
         rms = {name: (e**2).mean() ** 0.5 for name, e in error.items()}
         check(rms["function"] < 2 and rms["of points"] < 2, f"{view}: near the function's picture")
-        check(rms["function"] < 0.15 * rms["level 0 alone"], f"{view}: finer levels count")
+        check(rms["function"] < 0.15 * rms["only level 0"], f"{view}: finer levels count")
 
 
 def refusals():
-    def tell(words, scene):
+    def refuses(words, scene):
         scene.picture(0)
         scene.picture(10)
         shown = vtk_to_numpy(scene.mapper.GetLastImage().GetPointData().GetScalars()).any() if scene.mapper.GetLastImage() else False
@@ -223,25 +223,25 @@ def refusals():
         amr.GetDataSet(0, 0).GetCellData().GetScalars().Resize(7)
 
     base = [(0, (0, 0, 0), (16, 12, 10))]
-    tell("no whole cells of level 0", of(base + [(1, (3, 4, 4), (10, 10, 10))]))
-    tell("overlaps another box", of(base + [(1, (4, 4, 4), (10, 10, 10)), (1, (8, 4, 4), (12, 10, 10))]))
-    tell("where level 1 has no cells", of(base + [(1, (4, 4, 4), (10, 10, 10)), (2, (4, 4, 4), (12, 12, 12))]))
-    tell("lacks the array", of(uneven(), without))
-    tell("its spacing is 0.4", of(uneven(), other))
-    tell("values for", of(uneven(), shorter))
-    tell("nearest interpolation of AMR's values of points", Scene(blocks(), Refined(uneven(), cells=False).data(vtk), nearest=True))
+    refuses("no whole cells of level 0", of(base + [(1, (3, 4, 4), (10, 10, 10))]))
+    refuses("overlaps another box", of(base + [(1, (4, 4, 4), (10, 10, 10)), (1, (8, 4, 4), (12, 10, 10))]))
+    refuses("where level 1 has no cells", of(base + [(1, (4, 4, 4), (10, 10, 10)), (2, (4, 4, 4), (12, 12, 12))]))
+    refuses("lacks the array", of(uneven(), without))
+    refuses("its spacing is 0.4", of(uneven(), other))
+    refuses("values for", of(uneven(), shorter))
+    refuses("nearest interpolation of AMR's values of points", Scene(blocks(), Refined(uneven(), cells=False).data(vtk), nearest=True))
     shaded, faded = (Scene(blocks(), Refined(uneven()).data(vtk)) for _ in range(2))
     shaded.property.ShadeOn()
-    tell("light by gradients is not drawn of AMR", shaded)
+    refuses("light by gradients is not drawn of AMR", shaded)
     fade = vtk.vtkPiecewiseFunction()
     fade.AddPoint(0, 0)
     fade.AddPoint(1, 1)
     faded.property.SetGradientOpacity(fade)
-    tell("gradient opacity is not drawn of AMR", faded)
+    refuses("gradient opacity is not drawn of AMR", faded)
     apart = vtk.vtkNonOverlappingAMR()
     apart.Initialize(1, [1])
     apart.SetDataSet(0, 0, Refined(base).data(vtk).GetDataSet(0, 0))
-    tell("vtkNonOverlappingAMR", Scene(blocks(), apart))
+    refuses("vtkNonOverlappingAMR", Scene(blocks(), apart))
     single = stratus.vtkStratusVolumeMapper()
     single.GetExecutive().AddObserver("ErrorEvent", lambda *_: errors.append(1))
     errors = []

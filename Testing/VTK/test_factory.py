@@ -157,9 +157,9 @@ check(len(lines) == 2 and "nearest" in lines[0] and "shaders of its own" in line
 lonely = os.path.join(folder, "stratus", "factory")
 shutil.rmtree(os.path.join(folder, "stratus"), ignore_errors=True)
 shutil.copytree(FACTORY, lonely)
-alone, said = run("alone", autoload=lonely)
+lonely_pictures, said = run("alone", autoload=lonely)
 check(said.count("Stratus: its mappers can't be loaded") == 1, f"one line: {said}")
-check(all((alone[name] == of_vtk[name]).all() for name in of_vtk), "VTK's own draw")
+check(all((lonely_pictures[name] == of_vtk[name]).all() for name in of_vtk), "VTK's own draw")
 entry = os.path.join(FACTORY, [name for name in os.listdir(FACTORY) if ".so" in name][0])
 check(len(os.listdir(FACTORY)) == 1, f"VTK loads all that is there: {os.listdir(FACTORY)}")
 without = subprocess.run([sys.executable, "-c", f"import ctypes; f = ctypes.CDLL({entry!r}).vtkGetFactoryVersion; f.restype = ctypes.c_char_p; print(f())"],

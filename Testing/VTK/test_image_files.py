@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """vtkStratusImageReader's values and places. NIfTI is judged by nibabel, which also writes the files; NRRD and MetaImage by files that are written
-here byte by byte, from arrays and affine maps that are known. What can't be read must be refused by name."""
+here byte by byte, from arrays and affine maps that are known. Unsupported files must be refused by name."""
 import gzip
 import itertools
 import os
@@ -46,13 +46,13 @@ def write(name, *parts):
 
 
 def read(name, time=None):
-    """The image, and what the reader complained of."""
+    """Returns the image and the reader's errors."""
     reader, errors = stratus.vtkStratusImageReader(), []
 
-    def tell(caller, event, text):
+    def keep(caller, event, text):
         errors.append(text)
-    tell.CallDataType = "string0"
-    reader.AddObserver("ErrorEvent", tell)
+    keep.CallDataType = "string0"
+    reader.AddObserver("ErrorEvent", keep)
     reader.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
     reader.SetFileName(name)
     reader.UpdateInformation()
@@ -69,7 +69,7 @@ def refuse(name, *words):
 
 
 def expect(name, values, steps, origin, time=None, tolerance=0.0):
-    """values: by x, y, z and, if there are several, component. steps: the ways as columns."""
+    """values: by x, y, z and, if there are several, component. steps: the vectors as columns."""
     reader, image, errors = read(name, time)
     if errors:
         check(False, f"{name} is read: {errors}")
@@ -90,13 +90,13 @@ def expect(name, values, steps, origin, time=None, tolerance=0.0):
         place, back = [0.0] * 3, [0.0] * 3
         image.TransformContinuousIndexToPhysicalPoint([float(i) for i in index], place)
         wanted = origin + steps @ index
-        check(numpy.allclose(place, wanted, rtol=1e-6, atol=1e-5), f"{name}: sample {index} lies at {wanted}, not {place}")
+        check(numpy.allclose(place, wanted, rtol=1e-6, atol=1e-5), f"{name}: sample {index} is at {wanted}, not {place}")
         image.TransformPhysicalPointToContinuousIndex(wanted, back)
         check(numpy.allclose(back, index, atol=1e-4), f"{name}: {wanted} is sample {index}, not {back}")
     info = reader.GetOutputInformation(0)
-    check(numpy.allclose([info.Get(vtk.vtkDataObject.ORIGIN(), i) for i in range(3)], origin, atol=1e-5), f"{name} tells its origin before it is read")
+    check(numpy.allclose([info.Get(vtk.vtkDataObject.ORIGIN(), i) for i in range(3)], origin, atol=1e-5), f"{name} has its origin before it is read")
     check(numpy.allclose([info.Get(vtk.vtkDataObject.DIRECTION(), i) for i in range(9)], (steps / lengths).ravel(), atol=1e-5),
-          f"{name} tells its direction before it is read")
+          f"{name} has its direction before it is read")
     return reader
 
 
@@ -456,7 +456,7 @@ def test_nifti():
     saved = nibabel.load("scaled.nii.gz")
     check(saved.dataobj.slope != 1, "the file has a slope")
     reader = like_nibabel("scaled.nii.gz")
-    check("* stored" in reader.GetDescription() and reader.GetLengthUnits() == "", f"its scale is told: {reader.GetDescription()}")
+    check("* stored" in reader.GetDescription() and reader.GetLengthUnits() == "", f"its scale is described: {reader.GetDescription()}")
     # Time, vectors, colours.
     film = nibabel.Nifti1Image(values_of("<i2", (*SIZE, 3)), affine)
     film.header.set_xyzt_units("mm", "msec")

@@ -11,7 +11,7 @@ from checking import check, done
 from vtkmodules.vtkCommonCore import vtkVersion
 
 
-def told(code, path=None):
+def warnings_of(code, path=None):
     """What the import says, of a program that catches it."""
     environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, [path, os.environ.get("PYTHONPATH")])))
     code = "import sys\n" + code + "\ntry:\n    import stratus\nexcept ImportError as error:\n    print(error)\nprint('goes on')"
@@ -20,9 +20,9 @@ def told(code, path=None):
     return ended.stdout.splitlines()[:-1]
 
 
-check(told("") == [], "here nothing is missing")
+check(warnings_of("") == [], "here nothing is missing")
 built = vtkVersion.GetVTKVersion()
-missing = told("sys.modules['vtkmodules'] = None")
+missing = warnings_of("sys.modules['vtkmodules'] = None")
 check(len(missing) == 1 and missing[0].startswith("stratus needs VTK 9") and "can't be imported" in missing[0], f"without VTK: {missing}")
 with tempfile.TemporaryDirectory() as folder:
     package = os.path.join(folder, "vtkmodules")
@@ -31,9 +31,9 @@ with tempfile.TemporaryDirectory() as folder:
         for name in "__init__", "vtkRenderingOpenGL2", "vtkRenderingVolumeOpenGL2", "vtkCommonCore":
             with open(os.path.join(package, name + ".py"), "w", encoding="ascii") as file:
                 file.write(f"class vtkVersion:\n    @staticmethod\n    def GetVTKVersion():\n        return {version!r}\n")
-        other = told("sys.dont_write_bytecode = True", folder)
+        other = warnings_of("sys.dont_write_bytecode = True", folder)
         check(len(other) == 1 and words in other[0] and folder in other[0] and built in other[0], f"with another VTK, {version}: {other}")
     os.remove(os.path.join(package, "vtkRenderingVolumeOpenGL2.py"))
-    part = told("sys.dont_write_bytecode = True", folder)
+    part = warnings_of("sys.dont_write_bytecode = True", folder)
     check(len(part) == 1 and "vtkRenderingVolumeOpenGL2" in part[0], f"with a part of a VTK: {part}")
 done()

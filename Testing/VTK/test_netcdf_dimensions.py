@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which dimensions of a netCDF variable are space and time: groups, dimensions without coordinates, ensembles, times of months and texts, and
-what a selection makes of them. netCDF4 reads the same values at the same indices."""
+and selections of them. netCDF4 reads the same values at the same indices."""
 import os
 import sys
 
@@ -68,7 +68,7 @@ class Reading:
         self.reader.SetSelection(selection)
         self.reader.UpdateInformation()
         self.error = "".join(self.errors)
-        self.told = self.reader.GetDescription()
+        self.description = self.reader.GetDescription()
         self.names = [self.reader.GetNameOfVariable(i) for i in range(self.reader.GetNumberOfVariables())]
         information = self.reader.GetOutputInformation(0)
         key = self.reader.GetExecutive().TIME_STEPS()
@@ -115,7 +115,7 @@ path = file.close()
 read = Reading(path)
 check(read.names == ["run1/rho", "run2/deep/rho"], "variables of groups: %r" % read.names)
 check(read.is_same(stored(path, "run1/rho")) and read.reader.GetOutput().IsA("vtkImageData") and
-      read.reader.GetOutput().GetSpacing() == (10, 1, 1), "a coordinate of the group above: " + read.told + read.error)
+      read.reader.GetOutput().GetSpacing() == (10, 1, 1), "a coordinate of the group above: " + read.description + read.error)
 read = Reading(path, "run2/deep/rho")
 check(read.is_same(stored(path, "run2/deep/rho")), "a group in a group: " + read.error)
 check(list(vtk_to_numpy(read.reader.GetOutput().GetZCoordinates())) == [0, 1000, 2000, 3000, 5000, 9000], "its own coordinate of the same name")
@@ -137,9 +137,9 @@ for name, dimensions, steps in (("four", {"a": 3, "b": 4, "c": 5, "d": 6}, 3), (
     path = File(name).dimensions(**dimensions).write(sizes, "q", " ".join(dimensions)).close()
     read, all_values = Reading(path), stored(path, "q")
     all_values = all_values[:, 0] if name == "five" else all_values
-    check(read.times == [0, 1, 2] and "are counted from 0" in read.told, "%s: the outermost is time: %r %s" % (name, read.times, read.error))
+    check(read.times == [0, 1, 2] and "are counted from 0" in read.description, "%s: the outermost is time: %r %s" % (name, read.times, read.error))
     check(all(read.is_same(all_values[step], step) for step in range(3)), name + ": its steps")
-    check(("'n' at index 0 of 0..1, select n=INDEX for another" in read.told) == (name == "five"), name + ": " + read.told)
+    check(("'n' at index 0 of 0..1, select n=INDEX for another" in read.description) == (name == "five"), name + ": " + read.description)
 path = File("three").dimensions(t0=-1, b=4, c=5).write({"t0": 3, "b": 4, "c": 5}, "q", "t0 b c").close()
 read = Reading(path)
 check(read.is_same(stored(path, "q")) and read.times == [], "three dimensions are a volume, though the outermost is unlimited")
@@ -173,7 +173,7 @@ for order in ("number time z y x", "time number z y x", "number z y x", "z numbe
         for step, time in enumerate(read.times or [None]):
             check(read.is_same(expected[step] if read.times else expected, time), "%s: member %s: %s" % (order, index, read.error))
         check(read.times == ([0, 6] if "time" in order else []), order + ": the times")
-        check("'%s' at index %d of 0..3" % (other, index or 0) in read.told and ("=INDEX" in read.told) == (index is None), order + ": " + read.told)
+        check("'%s' at index %d of 0..3" % (other, index or 0) in read.description and ("=INDEX" in read.description) == (index is None), order + ": " + read.description)
 
 # any dimension may be selected: an axis, so that another takes its place, and the time
 sizes = {"time": 2, "a": 3, "b": 4, "c": 5, "d": 6}
@@ -216,7 +216,7 @@ for name, (kind, at, attributes, expected, units) in times.items():
     read = Reading(path)
     check(read.times == expected and read.units == units, "%s: %r %r %s" % (name, read.times, read.units, read.error))
     check(all(read.is_same(stored(path, "q")[step], expected[step]) for step in range(3)), name + ": its steps")
-    check(("counted from 0" in read.told) == (expected == [0, 1, 2]), name + ": " + read.told)
+    check(("counted from 0" in read.description) == (expected == [0, 1, 2]), name + ": " + read.description)
 for kinds in ("NETCDF4", "NETCDF3_CLASSIC"):  # WRF's Times
     sizes = {"Time": 3, "DateStrLen": 19, **space}
     file = File("characters", format=kinds).dimensions(**{**sizes, "Time": -1}).write(sizes, "q", "Time z y x")
@@ -249,7 +249,7 @@ for name, selection, index, times in (("q", None, (0,), 2), ("q", "number=2", (2
         array = read.reader.GetOutput().GetCellData().GetArray("model/" + name)
         check(array and numpy.array_equal(vtk_to_numpy(array), (expected[step] if times else expected).ravel()),
               "values of %s at %s: %s" % (name, selection, read.error))
-    check(("'number' at index" in read.told) == (name != "s"), read.told)
+    check(("'number' at index" in read.description) == (name != "s"), read.description)
 check("cannot be selected" in Reading(path, "model/q", "node=1", "vtkStratusUgridReader").error, "nodes are no choice")
 
 sys.exit(1 if failures else 0)

@@ -186,7 +186,7 @@ for name, values in (("name", numbers), ("name up", -numbers)):
         time=axes["time"], q=("time depth lat lon", field, {})))
     check(not got.error and near(got.points[:, 0, 0, 2], -numbers[::-1]), name + ": " + got.error)
 
-# Degrees in other spellings, and radians, beside heights in metres.
+# Degrees in other spellings, and radians, together with heights in metres.
 for name, north, east, scale in (("Degrees", "Degrees_north", "DegreesE", 1), ("letters", "degreeN", "degree_E", 1),
     ("short", "degrees", "arc_degree" if udunits else "Degree", 1), ("radian", "radian", "radians", numpy.pi / 180)):
     got = Read(write("heights degrees " + name, sizes, lev=("lev", numbers, {"units": "m"}), time=axes["time"], q=axes["q"],

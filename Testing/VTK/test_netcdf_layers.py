@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Layered meshes over fixed depths, heights and pressures, in every order of dimensions, and meshes across the date line: places and values
-judged by NumPy from what netCDF4 wrote."""
+judged by NumPy from the arrays that netCDF4 wrote."""
 import itertools
 
 import numpy

@@ -82,7 +82,7 @@ check(not got.error, "polar: " + got.error)
 if not got.error:
     across = degree * numpy.cos(numpy.radians(.5 * (polar_lat.min() + polar_lat.max())))
     x = got.points[0, :, :, 0] / across
-    check(near((x - polar_lon + 180) % 360, 180, 1e-9), "polar: longitudes are those of the file, up to turns")
+    check(near((x - polar_lon + 180) % 360, 180, 1e-9), "polar: longitudes equal the file's, up to turns")
     corners = numpy.stack([x[:-1, :-1], x[1:, :-1], x[:-1, 1:], x[1:, 1:]])
     torn = corners.max(0) - corners.min(0) > 180
     check(numpy.array_equal(got.hidden_cells(), numpy.broadcast_to(torn, (2, 16, 20))), "polar: torn cells, and no others, are hidden")

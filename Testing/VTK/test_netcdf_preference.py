@@ -84,7 +84,7 @@ check(found == ["dye_01", "AKt", "u"], "ROMS: %r" % found)
 found = order("fields", {"optical_depth": ("level row column", {}), "b": ("level row column", {"long_name": "level of noise"}), "a": ("level row column", {})})
 check(found == ["a", "b", "optical_depth"], "equals: %r" % found)
 found = order("only", {"pressure": ("level row column", {"standard_name": "air_pressure"})})
-check(found == ["pressure"], "an ingredient alone is drawn")
+check(found == ["pressure"], "a single ingredient is drawn")
 
 mesh = {"dye": ("layer face", {}), "pres": ("layer face", {"long_name": "pressure"}), "flat": ("face", {}), "area": ("face", {"long_name": "cell area"})}
 found = order("mesh", mesh, "vtkStratusUgridReader",

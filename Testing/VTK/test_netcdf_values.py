@@ -105,7 +105,7 @@ for kind in ("i1", "u1"):  # the guide leaves bytes all their values; netCDF4 1.
     check(same(read(write("bytes", kind, stored))[1], numpy.ma.array(numpy.resize(stored, shape))), "no byte is missing by default")
 compare("vector", "f4", real, missing_value=numpy.array([-999, -888], "f4"))
 compare("vector of shorts", "i2", short, missing_value=numpy.array([5, -100, 1], "i2"), scale_factor=.5)
-compare("beside a fill", "i2", short, fill=int16(-100), missing_value=numpy.array([5, 1], "i2"))
+compare("with a fill", "i2", short, fill=int16(-100), missing_value=numpy.array([5, 1], "i2"))
 compare("not a number", "f8", numpy.where(real == 3, numpy.nan, real), missing_value=numpy.nan)
 compare("long integers", "i8", numpy.array([2 ** 53 + 1, 2 ** 53, 2 ** 53 + 2]), missing_value=numpy.int64(2 ** 53 + 1))
 compare("fill within the range", "i2", short, fill=int16(-100))  # no limit: -32768 stays

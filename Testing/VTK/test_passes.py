@@ -76,11 +76,11 @@ class Scene:
         self.fixed.SetImageSampleDistance(1)
         self.said = []
 
-        def tell(_caller, _event, text):
+        def keep(_caller, _event, text):
             self.said.append(text)
-        tell.CallDataType = "string0"
+        keep.CallDataType = "string0"
         for event in ("ErrorEvent", "WarningEvent"):
-            self.ours.AddObserver(event, tell)
+            self.ours.AddObserver(event, keep)
         self.volume.SetProperty(look())
         for mapper in (self.ours, self.fixed):
             mapper.SetInputData(field())
@@ -141,7 +141,7 @@ NAMES = ("vtkCameraPass", "vtkSSAAPass", "vtkGaussianBlurPass", "vtkEDLShading",
 
 
 def every_pass(scene, names, where):
-    """Each of the passes, and what is measured without."""
+    """Each of the passes, compared with pictures without a pass."""
     plain, shown, _ = scene.compare(None)
     check(shown > 0.3, f"{where}: the volume shows without a pass, {shown:.1f}")
     for name in names:

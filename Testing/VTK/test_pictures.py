@@ -22,14 +22,14 @@ if not hasattr(stratus, "vtkStratusEXRReader"):
     sys.exit(77)
 
 
-def told(thing):
+def errors_of(thing):
     """Collects the object's errors."""
     errors = []
 
-    def tell(caller, event, text):
+    def keep(caller, event, text):
         errors.append(text)
-    tell.CallDataType = "string0"
-    thing.AddObserver("ErrorEvent", tell)
+    keep.CallDataType = "string0"
+    thing.AddObserver("ErrorEvent", keep)
     return errors
 
 
@@ -68,7 +68,7 @@ def read(data, name="made.exr"):
     with open(path, "wb") as file:
         file.write(data)
     reader = stratus.vtkStratusEXRReader()
-    errors = told(reader)
+    errors = errors_of(reader)
     reader.SetFileName(path)
     reader.Update()
     return reader, errors
@@ -127,7 +127,7 @@ def refuses():
     refused(exr(plain, size=(100000, 100000)), "not in it")
     refused(exr(plain)[:-9], "")
     missing = stratus.vtkStratusEXRReader()
-    errors = told(missing)
+    errors = errors_of(missing)
     missing.Update()
     check(errors and "FileName is not set" in errors[0], errors)
     errors.clear()
@@ -162,7 +162,7 @@ def image_of(values, name="RGBA"):
 
 def test_of(a, b, **limits):
     test = stratus.vtkStratusImageTest()
-    told(test)
+    errors_of(test)
     test.SetImage(image_of(a) if isinstance(a, numpy.ndarray) else a)
     test.SetBaseline(image_of(b) if isinstance(b, numpy.ndarray) else b)
     for name, value in limits.items():
@@ -203,8 +203,8 @@ def measures():
         check(test_of(a, b, **{limit: least}).Compare() and not test_of(a, b, **{limit: 0.999 * least}).Compare(), f"{limit} decides at {least}")
     check(test_of(a, b, LeastSSIM=expected - 1e-8).Compare() and not test_of(a, b, LeastSSIM=expected + 1e-8).Compare(), "LeastSSIM decides")
     check(not test_of(a, b, Tolerance=1.0, MaximumDifference=0.1).Compare(), "each limit counts")
-    check(not test_of(a, b).Compare() and test_of(a, a.copy()).Compare(), "bits where nothing is asked for")
-    check(not test_of(a, b, Tolerance=1.0, Exact=True).Compare(), "Exact beside others")
+    check(not test_of(a, b).Compare() and test_of(a, a.copy()).Compare(), "bits by default")
+    check(not test_of(a, b, Tolerance=1.0, Exact=True).Compare(), "Exact with other limits")
     # One bit, one NaN, one zero's sign.
     c = a.copy()
     c[3, 4, 0] = -0.0
@@ -224,7 +224,7 @@ def measures():
     test = test_of(one, other)
     check(not test.Compare() and "713 of 713 pixels differ in Depth, no colour" in test.GetReason(), test.GetReason())
     check(test_of(one, other, Tolerance=0.0).Compare(), "colours are the same")
-    check(not test_of(one, a).Compare(), "an array that one has alone")
+    check(not test_of(one, a).Compare(), "an array that only one has")
 
 
 def files():

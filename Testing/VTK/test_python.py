@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every class is there from Python beside Debian's vtk, draws, refuses, and gives its picture as an array."""
+"""Every class is there from Python in addition to Debian's vtk, draws, refuses, and gives its picture as an array."""
 import sys
 
 import numpy
@@ -52,11 +52,11 @@ window.Render()
 check(mapper.IsA("vtkVolumeMapper"), "a mapper of VTK's kind")
 check(mapper.GetDifferingPixels() == 0, "the audit finds no differing pixel")
 check(mapper.GetSamplesTaken() > 0, "samples taken")
-check("distance" in mapper.GetStructureUsedAsString(), "the structure asked for: " + mapper.GetStructureUsedAsString())
+check("distance" in mapper.GetStructureUsedAsString(), "the requested structure: " + mapper.GetStructureUsedAsString())
 last = mapper.GetLastImage()
 rgba = vtk_to_numpy(last.GetPointData().GetArray("RGBA")).reshape(90, 120, 4)
 check(rgba[45, 60, 3] > 0.5 and rgba[2, 2, 3] == 0, "opaque in the middle, nothing in the corner")
-check(numpy.allclose(rgba[..., 1], 0.5 * rgba[..., 0], atol=1e-5), "the colour asked for, premultiplied")
+check(numpy.allclose(rgba[..., 1], 0.5 * rgba[..., 0], atol=1e-5), "the requested colour, premultiplied")
 check(numpy.isfinite(vtk_to_numpy(last.GetPointData().GetArray("Depth")).reshape(90, 120)[45, 60]), "depth in the middle")
 
 errors = []

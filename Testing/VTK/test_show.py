@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""NumPy volumes for people: stratus.show draws from the array's own memory, says what it can't, and help() tells every method."""
+"""NumPy volumes for people: stratus.show draws from the array's own memory, refuses by name, and help() describes every method."""
 import os
 import subprocess
 import sys
@@ -27,7 +27,7 @@ def shares_memory():
         check(numpy.shares_memory(values, array), f"{array.dtype}: not copied")
         check(image.GetDimensions() == (12, 10, 8) and image.GetSpacing() == (1, 2, 3) and image.GetOrigin() == (-1, 0, 1), "the grid")
         array[2, 3, 4] = 1
-        check(image.GetScalarComponentAsDouble(4, 3, 2, 0) == 1, f"{array.dtype}: array[z, y, x] is what the image holds at x, y, z")
+        check(image.GetScalarComponentAsDouble(4, 3, 2, 0) == 1, f"{array.dtype}: array[z, y, x] is the image's value at x, y, z")
     image = stratus.as_image(ball((8, 10, 12), (4, 5, 6), 4))  # nobody else holds this array
     check(vtk_to_numpy(image.GetPointData().GetScalars()).max() == 1, "the image keeps the array alive")
     sliced = ball((8, 10, 24), (4, 5, 6), 4)[:, :, ::2]
@@ -41,7 +41,7 @@ def axes():
     check(numpy.shares_memory(vtk_to_numpy(image.GetPointData().GetScalars()), array), "xyz: not copied")
     point = [0, 0, 0]
     image.TransformIndexToPhysicalPoint(11, 9, 7, point)  # the last value of all
-    check(numpy.allclose(point, (5 + 7 * 1, 6 + 9 * 2, 7 + 11 * 3)), f"xyz: the last value lies at {point}")
+    check(numpy.allclose(point, (5 + 7 * 1, 6 + 9 * 2, 7 + 11 * 3)), f"xyz: the last value is at {point}")
     along_z = ball((24, 30, 36), (12, 15, 9), 8)
     same = numpy.ascontiguousarray(along_z.transpose(2, 1, 0))  # the same field as array[x, y, z]
     options = dict(opacity=[(0, 0), (1, 0.5)], size=(120, 90), spacing=(1, 1.5, 0.8), unit_distance=1)
@@ -94,7 +94,7 @@ def masks():
         image = stratus.as_image(hidden)
         check(numpy.shares_memory(vtk_to_numpy(image.GetPointData().GetScalars()), hidden.data), f"{hidden.dtype}: masked, not copied")
         picture, whole = (stratus.show(one, **options)[..., 3] for one in (hidden, hidden.data))
-        check(0 < (picture > 0).sum() < 0.8 * (whole > 0).sum(), f"{hidden.dtype}: what is masked is transparent")
+        check(0 < (picture > 0).sum() < 0.8 * (whole > 0).sum(), f"{hidden.dtype}: masked values are transparent")
     mapper = stratus.vtkStratusVolumeMapper()  # one step for both: a probe sees the values that are masked, and not the NaN
     mapper.SetSamplingToMidpoint(), mapper.SetSampleDistance(0.5)
     options["mapper"] = mapper
@@ -156,7 +156,7 @@ def ranges():
         box = stratus.show(numpy.full((8, 8, 8), value), opacity=0.3, **options)
         check(box[30, 30, 3] > 100 and box[0, 0, 3] == 0, f"{value} everywhere is a box: {box[30, 30]}")
     warning, none = reason(numpy.full((8, 8, 8), 7.0), opacity=0, **options)
-    check(none.max() == 0 and "opacity is 0" in warning, f"of the opacity that is asked for: {warning}")
+    check(none.max() == 0 and "opacity is 0" in warning, f"about the given opacity: {warning}")
     check(stratus.show(numpy.full((8, 8, 8), 7, numpy.uint8), **options)[30, 30, 3] > 100, "one integer everywhere is a box")
     image = stratus.as_image(field * 2.0**500)
     image.GetPointData().GetScalars().SetName("density")
@@ -165,7 +165,7 @@ def ranges():
     mapper.SelectScalarArray("density")
     selected = stratus.show(image, mapper=mapper, **options).astype(int)
     check(numpy.abs(plain - selected).max() <= 2, "an array that the mapper selects by its name")
-    check(mapper.GetInput().GetPointData().GetNumberOfArrays() == 1, "of what is scaled there is no other array")
+    check(mapper.GetInput().GetPointData().GetNumberOfArrays() == 1, "scaled values have no other array")
     check(image.GetPointData().GetScalars().GetRange()[1] > 1e100, "the image itself stays")
 
 
@@ -195,9 +195,9 @@ def reasons():
             (numpy.ma.masked_all((8, 8, 8)), "512 masked"):
         warning, picture = reason(array)
         check(words in warning and (picture == picture[0, 0]).all(), f"'{words}' and the background: {warning}")
-    check("all values are 7" in reason(numpy.full((8, 8, 8), 7.0), opacity=[(8, 0), (9, 1)])[0], "constant, beside the function")
+    check("all values are 7" in reason(numpy.full((8, 8, 8), 7.0), opacity=[(8, 0), (9, 1)])[0], "constant, outside the function")
     warning = reason(field, opacity=[(0, 0), (2, 0), (3, 1), (4, 0)])[0]
-    check("0..1" in warning and "2..4" in warning, f"a function beside the values: {warning}")
+    check("0..1" in warning and "2..4" in warning, f"a function outside the values: {warning}")
     noise = numpy.random.default_rng(1).random((12, 12, 12))
     spiked = noise.copy()
     spiked[3, 4, 5] = 1e300
@@ -301,15 +301,15 @@ def refusals():
         refuse(ValueError, next(iter(options)), show, field, **options)
     for dtype in numpy.longdouble, object, "M8[s]", "V4":
         refuse(TypeError, "bool, int8", show, numpy.zeros((4, 4, 4), dtype))
-    alone = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+    headless = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
     code = "import numpy, stratus\nstratus.show(numpy.zeros((4, 4, 4)))"
-    ended = subprocess.run([sys.executable, "-c", code], env=alone, capture_output=True, text=True)
+    ended = subprocess.run([sys.executable, "-c", code], env=headless, capture_output=True, text=True)
     needs_one = vtk.vtkRenderWindow().IsA("vtkXOpenGLRenderWindow")
     check(ended.returncode == needs_one and ("xvfb-run" in ended.stderr) == needs_one,
           "without a display a window of X is an error, not a crash, and any other draws: " + ended.stderr)
     code = "import stratus._show as s\nclass other:\n  def IsA(self, name): return 0\ns._check_display(other())"
-    ended = subprocess.run([sys.executable, "-c", code], env=alone, capture_output=True, text=True)
-    check(ended.returncode == 0, "a window that is not X's is not asked for a display: " + ended.stderr)
+    ended = subprocess.run([sys.executable, "-c", code], env=headless, capture_output=True, text=True)
+    check(ended.returncode == 0, "a window that is not X's needs no display: " + ended.stderr)
 
 
 def described(function, name):

@@ -93,7 +93,7 @@ for at in 0.5, 1.7, 3.3:
     check(abs(seen[3] - alpha) < 1e-4, "thickness at %g: %g is not %g" % (at, seen[3], alpha))
     check(abs(seen[0] - value * alpha) < 1e-4 and abs(seen[2] - (1 - value) * alpha) < 1e-4, "colour at %g" % at)
 check(whole[2, 2, 3] == 0 and numpy.isinf(depth()[2, 2]), "nothing in the corner")
-check(abs(depth()[height // 2, column(3)] - 8) < 1e-2, "depth is that of the near side: %g" % depth()[height // 2, column(3)])
+check(abs(depth()[height // 2, column(3)] - 8) < 1e-2, "depth is the near side's: %g" % depth()[height // 2, column(3)])
 check(mapper.GetNumberOfTetrahedra() == 6 * n ** 3 or mapper.GetNumberOfTetrahedra() == 5 * n ** 3, "hexahedra are divided")
 check(mapper.GetNumberOfSegments() > mapper.GetNumberOfEntries() >= 0, "segments and entries are counted")
 check(mapper.GetBuildMilliseconds() > 0 and mapper.GetMarchMilliseconds() >= 0, "times")
@@ -114,7 +114,7 @@ for method in mapper.PROJECT_METHOD, mapper.MARCH_METHOD:
     by_method[method] = picture()
     mapper.SetNumberOfThreads(1)
     check((picture() == by_method[method]).all(), "one thread draws the same bits, method %d" % method)
-check(any((whole == one).all() for one in by_method.values()), "the method that is chosen draws what it draws when asked for")
+check(any((whole == one).all() for one in by_method.values()), "auto draws its method's picture")
 mapper.SetNumberOfThreads(-3)
 check(mapper.GetNumberOfThreads() == 0, "threads are clamped")
 mapper.SetDevice("no such device")
@@ -179,14 +179,14 @@ wall.SetMapper(cut)
 renderer.AddActor(wall)
 middle = picture()[height // 2, column(3)]
 value = ((column(3) + 0.5 - width / 2) * 6 / height + 2) / n
-check(abs(middle[3] - (1 - (1 - 0.5 * value) ** 2)) < 1e-3, "the volume before the wall alone: %g" % middle[3])
+check(abs(middle[3] - (1 - (1 - 0.5 * value) ** 2)) < 1e-3, "only the volume before the wall: %g" % middle[3])
 cube.SetBounds(-1, 5, -1, 5, 5, 6)
 check(picture()[..., 3].max() == 0, "nothing before a wall that hides all")
 renderer.RemoveActor(wall)
 
 # ---- the near plane cuts cells, the far one too
 camera.SetClippingRange(8.7, 9.9)
-check(abs(picture()[height // 2, column(3), 3] - (1 - (1 - 0.5 * value) ** 1.2)) < 1e-3, "what lies between near and far plane")
+check(abs(picture()[height // 2, column(3), 3] - (1 - (1 - 0.5 * value) ** 1.2)) < 1e-3, "only the part between near and far plane")
 renderer.ResetCameraClippingRange()
 
 # ---- the volume's matrix, and opacity per world length
@@ -221,7 +221,7 @@ mapper.SetInputData(grid)
 check((picture() == whole).all(), "and a grid again")
 text = str(mapper)
 for word in "Termination", "NumberOfThreads", "Method", "Method Used", "Device", "Tetrahedra", "Ignored Cells", "Segments", "Entries":
-    check(word in text, "PrintSelf tells " + word)
+    check(word in text, "PrintSelf prints " + word)
 
 # ---- the partition filter, the order, and VTK's projector
 partition = stratus.vtkStratusPartitionFilter()

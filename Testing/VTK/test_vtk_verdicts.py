@@ -46,7 +46,7 @@ def save(path, pairs):
     writer.Write()
 
 
-def told(result):
+def described(result):
     """What a case measured, as a line."""
     if isinstance(result, Refused):
         return f"refused: {result.sentence} (VTK {'draws' if result.drawn else 'does not draw'} it)"
@@ -63,7 +63,7 @@ def look(folder, words):
     for name, one in cases.items():
         if any(word.lower() in name.lower() for word in words):
             result = one.function()
-            print(f"{name}: {told(result)}", flush=True)
+            print(f"{name}: {described(result)}", flush=True)
             pairs = [*getattr(result, "pairs", ()), *getattr(result, "without", ())]
             if pairs:
                 save(os.path.join(folder, name + ".png"), pairs)

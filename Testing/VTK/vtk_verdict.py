@@ -29,7 +29,7 @@ class Same:
 
 
 class Different(Same):
-    """Pairs that differ, and beside them pairs in which the cause is switched off. reference: the mean distances of VTK's picture and of
+    """Pairs that differ, and pairs in which the cause is switched off. reference: the mean distances of VTK's picture and of
     ours from one that is right."""
 
     def __init__(self, pairs, without=(), reference=None):
@@ -127,10 +127,10 @@ def errors_of(one):
     texts = []
 
     @vtk.calldata_type(vtk.VTK_STRING)
-    def told(caller, event, text):
+    def keep(caller, event, text):
         texts.append(text)
 
-    one.AddObserver("ErrorEvent", told)
+    one.AddObserver("ErrorEvent", keep)
     return texts
 
 

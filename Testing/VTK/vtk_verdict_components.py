@@ -70,16 +70,16 @@ def four_maximum():
 
 @case("TestGPURayCastIndependentComponentMinIP")
 def four_minimum():
-    """One of four components alone, the others clear, beside VTK's own picture of an array that has only this one."""
+    """A single one of four components, the others clear, compared with VTK's own picture of an array that has only this one."""
     field = 255 - 255 * made.several(4)
     distances = []
     for i in range(4):
-        shown, alone = (independent(count, scale=255) for count in (4, 1))
+        shown, single = (independent(count, scale=255) for count in (4, 1))
         for k in range(4):
             shown.SetScalarOpacity(k, opacity((0, 0.9 * (k == i)), (255, 0)))
-        alone.SetScalarOpacity(opacity((0, 0.9), (255, 0)))
-        alone.SetColor(shown.GetRGBTransferFunction(i))
-        right = picture(GPU, image(field[..., i]), alone, mode("MinimumIntensity"))
+        single.SetScalarOpacity(opacity((0, 0.9), (255, 0)))
+        single.SetColor(shown.GetRGBTransferFunction(i))
+        right = picture(GPU, image(field[..., i]), single, mode("MinimumIntensity"))
         distances.append([differences([(one, right)])[0] for one in pair(image(field), shown, mode("MinimumIntensity"))])
     vtks, ours = numpy.max(distances, 0)
     return Better({}, ours, vtks)

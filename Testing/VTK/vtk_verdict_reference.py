@@ -15,7 +15,7 @@ def subset(picture):
 
 
 def rays(bounds, camera):
-    """Eyes and directions (unit length) of the subset's pixels for what pair() draws of data within these bounds."""
+    """Eyes and directions (unit length) of the subset's pixels for pair()'s pictures of data within these bounds."""
     renderer, actor, source = vtk.vtkRenderer(), vtk.vtkActor(), vtk.vtkCubeSource()
     source.SetBounds(*bounds)
     mapper = vtk.vtkPolyDataMapper()

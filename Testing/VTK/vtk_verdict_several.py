@@ -172,7 +172,7 @@ def picked(kind, picker, data, shown, settings=nothing):
 
 
 def picks(settings=nothing):
-    """Places that VTK's picker finds in FixedPoint's volume, beside those that it and ours find in ours."""
+    """Places that VTK's picker finds in FixedPoint's volume, compared with the places that it and ours find in ours."""
     pickers = []
     for kind in vtk.vtkVolumePicker, vtk.vtkVolumePicker, stratus.vtkStratusVolumePicker:
         pickers.append(kind())

@@ -62,12 +62,12 @@ def compare(stated, measured, what):
 
 
 def judge(row, result):
-    """Complaints about a row and what its case measured."""
+    """Returns complaints about a row and its case's measurements."""
     if type(result) is not row.kind:
         return [f"the case is {type(result).__name__}, the row is {row.kind.__name__}"]
     if row.kind is Refused:
-        told = row.texts["sentence"]
-        return [] if result.sentence == told else [f"the mapper says '{result.sentence}', not '{told}'"]
+        stated = row.texts["sentence"]
+        return [] if result.sentence == stated else [f"the mapper says '{result.sentence}', not '{stated}'"]
     if row.kind is Better:
         complaints = [f"it does not hold that {fact}" for fact, truth in result.facts.items() if not truth]
         for stated, measured, what in zip(row.numbers, (result.ours, result.vtks), ("ours", "VTK's")):

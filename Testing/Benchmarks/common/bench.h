@@ -35,7 +35,7 @@ struct transfer {
 struct scene {
   std::string name;
   vtkSmartPointer<vtkImageData> image;
-  // A rectilinear grid, which Stratus draws; then `image` is what vtkResampleToImage makes of it, for peers. nullptr: none.
+  // A rectilinear grid, which Stratus draws; then `image` is vtkResampleToImage's image of it, for peers. nullptr: none.
   vtkSmartPointer<vtkRectilinearGrid> grid;
   double resample_ms = 0.0; // what that took
   stratus_volume volume;    // borrows the values of the image, or of the grid
@@ -165,7 +165,7 @@ std::vector<std::string> split(const std::string& text); // at commas
 // Rows of single measurements, METRIC/0, METRIC/1 and so on, by which runs are compared.
 void add_repeats(const std::string& scene, const std::string& method, const std::string& metric, const char* unit,
   const std::vector<double>& values, std::vector<row>& rows);
-// Tells of a method that cannot be measured, and adds the row `failed`. The run goes on, and its exit status is 1.
+// Reports a method that cannot be measured, and adds the row `failed`. The run goes on, and its exit status is 1.
 void add_failure(const std::string& scene, const std::string& method, const char* why, std::vector<row>& rows);
 bool any_failed(const std::vector<row>& rows);
 void add_rows(const result& r, std::vector<row>& rows);
@@ -187,7 +187,7 @@ struct curve_point {
   std::string scene, method;
   double x, y; // > 0; less is better
 };
-// All points of a part of the bench, and what its axes mean.
+// All points of a part of the bench, and its axes' titles.
 struct curves {
   std::string title, x_title, y_title;
   std::string beats;    // a sentence: how a point is better by both axes
@@ -208,7 +208,7 @@ struct dominance {
   const curve_point* by;
 };
 std::vector<dominance> dominance_of(const curves& c, const std::string& scene);
-// One sentence on what the chart of a scene says.
+// One sentence about the chart of a scene.
 std::string sentence_of(const curves& c, const std::string& scene);
 
 // ---- chart.cxx

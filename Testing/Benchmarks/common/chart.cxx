@@ -141,7 +141,7 @@ int fill(vtkChartXY* chart, const curves& c, const std::string& scene, int font)
   range(chart->GetAxis(vtkAxis::LEFT), low, high, c.y_title, font);
   chart->SetTitle(scene);
   chart->SetShowLegend(true);
-  chart->GetLegend()->SetInline(false); // beside the plot, where it hides no mark
+  chart->GetLegend()->SetInline(false); // next to the plot, where it hides no mark
   chart->GetLegend()->SetLabelSize(font - 2);
   return static_cast<int>(families.size());
 }

@@ -58,7 +58,7 @@ std::string number(double value)
   return text;
 }
 
-// One part of the bench: its table, and what its charts show.
+// One part of the bench: its table, and its charts' curves.
 struct chapter {
   std::string part;
   table data;

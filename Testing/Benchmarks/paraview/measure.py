@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures one scene for `stratus-bench paraview`, which tells what the rows mean:
+"""Measures one scene for `stratus-bench paraview`, which explains the rows:
 mpiexec -n RANKS pvbatch --sym measure.py PLUGIN|- SCENE.json ROWS PICTURES SIZE REPEATS CUTS. CUTS: 0, or one rank draws the pieces of an
 image that is cut into so many along each axis, one after the other, in place of everything else."""
 import json
@@ -171,7 +171,7 @@ def run(method, representation):
 
 
 def rectangle():
-    """Pixels of the smallest rectangle that holds what shows, which is what a rank sends."""
+    """Returns the number of pixels of the smallest rectangle with all visible pixels, which a rank sends."""
     file = os.path.join(pictures, f"{name}-piece.png")
     simple.SaveScreenshot(file, view, ImageResolution=[size, size], TransparentBackground=0)
     lit = pixels(file).max(axis=1).reshape(size, size) > 0
@@ -180,7 +180,7 @@ def rectangle():
 
 
 def run_pieces():
-    """Each piece alone, by a step of one voxel, so that samples can be added up."""
+    """Draws each piece by itself, by a step of one voxel, so that samples can be added up."""
     reader = simple.XMLImageDataReader(FileName=[scene["path"]])
     reader.UpdatePipeline()
     last = [reader.GetDataInformation().GetExtent()[2 * a + 1] for a in range(3)]

@@ -26,7 +26,7 @@ typedef struct member {
   stratus_volume volume;
   stratus_transfer transfer;
   stratus_ray_cast_options options;
-  stratus_ray_caster *caster, *alone, *alike; /* of the picture, and of single pictures */
+  stratus_ray_caster *caster, *by_default, *alike; /* of the picture, and of single pictures */
 } member;
 
 static void check(stratus_context* context, stratus_status status)
@@ -68,14 +68,14 @@ static void create(stratus_context* context, const char* name, int number, membe
   }
   m->transfer.unit_distance /= largest;
   check(context, stratus_ray_caster_create(context, &m->caster));
-  check(context, stratus_ray_caster_create(context, &m->alone));
+  check(context, stratus_ray_caster_create(context, &m->by_default));
   check(context, stratus_ray_caster_create(context, &m->alike));
 }
 
 static void destroy(stratus_context* context, member* m)
 {
   stratus_ray_caster_destroy(m->caster);
-  stratus_ray_caster_destroy(m->alone);
+  stratus_ray_caster_destroy(m->by_default);
   stratus_ray_caster_destroy(m->alike);
   stratus_scene_destroy(context, m->scene);
 }
@@ -137,7 +137,7 @@ static void judge(stratus_context* context, member* m, int count, const stratus_
     scenes[n].volume = &m[n].volume;
     scenes[n].transfer = &m[n].transfer;
     scenes[n].camera = camera;
-    single(context, m[n].alone, &m[n], &m[n].options, camera, size, one, &samples);
+    single(context, m[n].by_default, &m[n], &m[n].options, camera, size, one, &samples);
     for (size_t at = 0; at < 4 * pixels; ++at) {
       over[at] = one[at] + (1.0f - one[at / 4 * 4 + 3]) * over[at];
     }
@@ -174,7 +174,7 @@ static void measure(stratus_context* context, const char* const group[MEMBERS], 
         alike.sampling = reports[n].sampling;
         alike.sample_distance = reports[n].sample_distance;
       }
-      sums[0] += single(context, m[n].alone, &m[n], &m[n].options, &camera, size, rgba, &samples[0]);
+      sums[0] += single(context, m[n].by_default, &m[n], &m[n].options, &camera, size, rgba, &samples[0]);
       sums[1] += single(context, m[n].alike, &m[n], &alike, &camera, size, rgba, &samples[1]);
     }
     for (int i = 0; i < 3 && frame >= 0; ++i) {

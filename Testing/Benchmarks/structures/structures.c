@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * stratus-bench-structures [--size PIXELS] [--frames N] [--scenes 0|1] [--only NAMES] [--random N] [--first SEED] [--trees 0|1] [--seconds
- * N]: measures what the automatic structure costs beside each fixed one, over the scenes of record and random ones, for still pictures and
- * for orbits, builds included. Lines of CSV, then the ratios of automatic to the best fixed choice, by the clock and by the processor's
- * time. */
+ * N]: measures the cost of the automatic structure compared with each fixed one, over the scenes of record and random ones, for still
+ * pictures and for orbits, builds included. Lines of CSV, then the ratios of automatic to the best fixed choice, by the clock and by the
+ * processor's time. */
 #define _POSIX_C_SOURCE 200809L
 #include "random_scene.h"
 

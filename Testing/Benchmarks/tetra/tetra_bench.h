@@ -85,7 +85,7 @@ std::map<std::string, sorter_metrics> run_sorters(
 // Resamples a mesh to an image of along^3 points over its bounds and draws the image by Stratus, or by VTK's FixedPoint in steps of half a
 // voxel. *ms: the resampling's time.
 vtkSmartPointer<vtkAbstractVolumeMapper> make_resampled(const tetra_mesh& mesh, bool ours, int along, double* ms);
-// The function for it: points beside the mesh have a value below all others, which is transparent.
+// The function for it: points outside the mesh have a value below all others, which is transparent.
 transfer transfer_of_image(const tetra_mesh& mesh, const transfer& t);
 
 // ---- tetra_frames.cxx

@@ -16,7 +16,7 @@ const char* const help = R"(stratus-bench volume [options]
 
   --scene NAME|FILE,...     cloud, plume, fog, haze, peak, voxel, plume2 (two pollutants, a component each), bone, skin, stripes, shell,
                             plate, labels, cloud-N (resampled to N x N/2 x N), cumulus-rectilinear:K (stretched levels, which peers
-                            draw resampled to an image of K times as many cells upwards; resample_ms is what that takes, and
+                            draw resampled to an image of K times as many cells upwards; resample_ms is the time for it, and
                             no frame counts it; default 1), or an image file; each with +shade behind it: lit by a headlight;
                             default: all of these but haze, cloud-N and cumulus-rectilinear, cloud+shade, and
                             ../shared/data/isabel_02.vti, plain and lit, where it is

@@ -19,7 +19,7 @@ static stratus_context* make_host(void)
   return context;
 }
 
-/* Launches are what device_program.c counts. Stages are made to have begun long ago, so that their times are known. */
+/* Launches are the counts of device_program.c. Stages are made to have begun long ago, so that their times are known. */
 static void a_stage_leaves_out_the_stages_within_it(void** state)
 {
   (void)state;

@@ -118,11 +118,11 @@ static void numbers_come_back_bit_by_bit_in_any_locale(void** state)
 
 static void three_processes_measure_and_the_least_of_each_number_is_kept(void** state)
 {
-  static const double told[5][2] = { { 5.0, 3.0 }, { 4.0, 4.0 }, { 6.0, 2.0 }, { 1.0, 1.0 }, { 1.0, 1.0 } };
+  static const double measured_by[5][2] = { { 5.0, 3.0 }, { 4.0, 4.0 }, { 6.0, 2.0 }, { 1.0, 1.0 }, { 1.0, 1.0 } };
   static const double least[5][2] = { { 5.0, 3.0 }, { 4.0, 3.0 }, { 4.0, 2.0 }, { 4.0, 2.0 }, { 4.0, 2.0 } };
   (void)state;
   for (int process = 0; process < 5; ++process) {
-    measured m = { .count = 2, .numbers = { told[process][0], told[process][1] } };
+    measured m = { .count = 2, .numbers = { measured_by[process][0], measured_by[process][1] } };
     stratus_calibration_forget();
     for (int again = 0; again < 2; ++again) { /* a process measures once, whatever the file says */
       stratus_calibration calibration = stratus_calibration_of("test", "part", 2);

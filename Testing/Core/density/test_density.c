@@ -113,7 +113,7 @@ static void density_and_derivatives_at_points_are_plain_sums(void** state)
     stratus_voxels* voxels = random_set(&random, 24, 60);
     const double h = random_bandwidth(&random);
     const double unit = 105.0 / (32.0 * PI) / (h * h * h);
-    double p[3], density, first[3], second[3], alone;
+    double p[3], density, first[3], second[3], again;
     for (int a = 0; a < 3; ++a) {
       p[a] = repeat % 2 ? (double)(random_below(&random, 60) - 15) / 2.0 : (double)random_below(&random, 40000) / 1000.0 - 8.0;
     }
@@ -127,8 +127,8 @@ static void density_and_derivatives_at_points_are_plain_sums(void** state)
         assert_near(second[a], expected.second[a], 1e-12 * unit / (h * h));
       }
     }
-    assert_int_equal(stratus_density_at(context, voxels, h, p, &alone, NULL, NULL), STRATUS_OK);
-    assert_true(alone == density);
+    assert_int_equal(stratus_density_at(context, voxels, h, p, &again, NULL, NULL), STRATUS_OK);
+    assert_true(again == density);
     stratus_voxels_destroy(voxels);
   }
 }

@@ -186,11 +186,11 @@ static void threads_do_not_show_in_any_method(void** state)
   test_set s = make_random_set(one, 50, 41, 33, 400, &random);
   for (int method = 0; method <= STRATUS_FIELD_AJFA_FIG5; ++method) {
     for (int is_signed = 0; is_signed < 2; ++is_signed) {
-      stratus_field_report told[2] = { { .passes = 0 }, { .passes = 0 } };
-      stratus_field* a = make_field(one, &s, (stratus_field_method)method, is_signed, &told[0]);
-      stratus_field* b = make_field(many, &s, (stratus_field_method)method, is_signed, &told[1]);
-      told[0].build_ms = told[1].build_ms = 0.0;
-      assert_memory_equal(&told[0], &told[1], sizeof told[0]);
+      stratus_field_report reports[2] = { { .passes = 0 }, { .passes = 0 } };
+      stratus_field* a = make_field(one, &s, (stratus_field_method)method, is_signed, &reports[0]);
+      stratus_field* b = make_field(many, &s, (stratus_field_method)method, is_signed, &reports[1]);
+      reports[0].build_ms = reports[1].build_ms = 0.0;
+      assert_memory_equal(&reports[0], &reports[1], sizeof reports[0]);
       for (int64_t v = 0; v < set_voxels(&s); ++v) {
         assert_true(distance_at(a, v) == distance_at(b, v));
       }

@@ -113,7 +113,7 @@ static void beams_hit_what_the_walk_hits(void** state)
   static const stratus_tree_method methods[4] = { STRATUS_TREE_DISTANCE, STRATUS_TREE_OCTANT, STRATUS_TREE_HYBRID, STRATUS_TREE_WIDE };
   for (int isa = 0; isa <= 2; ++isa) {
     uint32_t random = 11;
-    uint64_t steps = 0, alone = 0;
+    uint64_t steps = 0, single = 0;
     stratus_context* context = host_with_isa(isa, 1);
     for (int round = 0; round < (few_run() ? 24 : 80); ++round) {
       int64_t dimensions[3];
@@ -135,13 +135,13 @@ static void beams_hit_what_the_walk_hits(void** state)
         for (int i = 0; i < TILES * 64; ++i) {
           steps += hits[i].visited;
         }
-        alone += steps_alone(context, tree, rays);
+        single += steps_alone(context, tree, rays);
       }
       stratus_tree_destroy(tree);
       stratus_voxels_destroy(voxels);
     }
-    print_message("%llu steps, %llu by single rays\n", (unsigned long long)steps, (unsigned long long)alone);
-    assert_true(steps < alone / 2);
+    print_message("%llu steps, %llu by single rays\n", (unsigned long long)steps, (unsigned long long)single);
+    assert_true(steps < single / 2);
     stratus_context_destroy(context);
   }
 }

@@ -117,7 +117,7 @@ static void what_is_within_rounding_of_a_plane_lies_on_it(void** state)
     stratus_partition_options options = stratus_partition_options_default();
     stratus_partition_result cut;
     options.rule = repeat % 2 ? STRATUS_PARTITION_PAPER : STRATUS_PARTITION_MEDIAN;
-    options.planes = repeat % 4 == 1 ? 7 : 18; /* on the cubes' and their middles' planes, or beside */
+    options.planes = repeat % 4 == 1 ? 7 : 18; /* on the cubes' and their middles' planes, or not */
     options.depth = 1 + repeat / 2 % 4;
     options.leaf_cells = 30;
     stratus_partition* partition = make_partition(context, &mesh, &options);

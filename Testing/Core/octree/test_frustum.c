@@ -107,11 +107,11 @@ static void a_frustum_of_no_volume_sees_what_touches_it(void** state)
   (void)state;
   const stratus_frustum flat = { .planes = {
                                    { 1, 0, 0, 0 }, { -1, 0, 0, 0 }, { 0, 1, 0, 1 }, { 0, -1, 0, 1 }, { 0, 0, 1, 1 }, { 0, 0, -1, 1 } } };
-  const double through[6] = { -1, 1, 0, 1, 0, 1 }, touching[6] = { 0, 1, 0, 1, 0, 1 }, beside[6] = { 1e-9, 1, 0, 1, 0, 1 };
+  const double through[6] = { -1, 1, 0, 1, 0, 1 }, touching[6] = { 0, 1, 0, 1, 0, 1 }, outside[6] = { 1e-9, 1, 0, 1, 0, 1 };
   for (int exact = 0; exact < 2; ++exact) {
     assert_int_equal(stratus_frustum_side(&flat, through, exact), STRATUS_SIDE_CROSSING);
     assert_int_equal(stratus_frustum_side(&flat, touching, exact), STRATUS_SIDE_CROSSING);
-    assert_int_equal(stratus_frustum_side(&flat, beside, exact), STRATUS_SIDE_OUTSIDE);
+    assert_int_equal(stratus_frustum_side(&flat, outside, exact), STRATUS_SIDE_OUTSIDE);
   }
 }
 

@@ -325,7 +325,7 @@ static void nodes_come_with_the_border_and_go_without_it(void** state)
   stratus_octree_options options = stratus_octree_options_default(), fixed;
   options.leaf_objects = 8;
   options.collapse_after = 16;
-  options.looseness = 1.0; /* cells are what a border crosses */
+  options.looseness = 1.0; /* cells are the nodes that a border crosses */
   fixed = options;
   fixed.stop = STRATUS_OCTREE_STOP_STATIC;
   double(*boxes)[6] = make_boxes(OBJECTS, 1.0, 9);

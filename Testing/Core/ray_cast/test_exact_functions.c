@@ -165,8 +165,8 @@ static void a_plateau_of_a_millionth_is_shown(void** state)
     const double alpha = draw(*state, STRATUS_FLOAT32, way < 3 ? steps : ramps, 4, sampling, interpolation, true);
     check_slab(alpha, 0.3, interpolation, 1e-6, way < 3 ? "steps" : "ramps", way);
     fill_slab(STRATUS_FLOAT32, at + w, 0.0, 1.0);
-    const double beside = draw(*state, STRATUS_FLOAT32, way < 3 ? steps : ramps, 4, sampling, interpolation, true);
-    assert_true(way % 3 == 0 ? beside == 0.0 : beside < 0.1);
+    const double neighbour = draw(*state, STRATUS_FLOAT32, way < 3 ? steps : ramps, 4, sampling, interpolation, true);
+    assert_true(way % 3 == 0 ? neighbour == 0.0 : neighbour < 0.1);
   }
 }
 

@@ -181,9 +181,9 @@ static void what_is_nearly_opaque_is_as_translucent_as_it_should_be(void** state
 {
   static const double nearly[] = { 0.9, 0.999, 0.999999, 1.0 - 0x1p-40 };
   for (size_t n = 0; n < sizeof nearly / sizeof *nearly; ++n) {
-    const double alone[] = { 0, nearly[n] }, beside[] = { 0, nearly[n], 0.6, nearly[n], 0.7, 1, 1, 1 };
+    const double without_one[] = { 0, nearly[n] }, with_one[] = { 0, nearly[n], 0.6, nearly[n], 0.7, 1, 1, 1 };
     for (int with = 0; with < 2; ++with) { /* one value of opacity 1 elsewhere costs no precision */
-      const stratus_transfer transfer = function_of(with ? beside : alone, with ? 4 : 1);
+      const stratus_transfer transfer = function_of(with ? with_one : without_one, with ? 4 : 1);
       for (size_t s = 0; s < sizeof spacings / sizeof *spacings; ++s) {
         for (int sampling = STRATUS_SAMPLING_MIDPOINT; sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
           stratus_ray_cast_options options = stratus_ray_cast_options_default();
@@ -196,7 +196,7 @@ static void what_is_nearly_opaque_is_as_translucent_as_it_should_be(void** state
           const double expected = absorbed(nearly[n], (SIDE - 1) * spacings[s]), alpha = (double)drawn[4 * CENTRE + 3];
           /* sums round depth by a few parts in a million */
           if (!(fabs(alpha - expected) <= 2e-4 * expected + ROUNDING)) {
-            fail_msg("opacity %.12g%s, spacing %g, sampling %d: alpha %.9g, not %.9g", nearly[n], with ? " beside 1" : "", spacings[s],
+            fail_msg("opacity %.12g%s, spacing %g, sampling %d: alpha %.9g, not %.9g", nearly[n], with ? " with 1" : "", spacings[s],
               sampling, alpha, expected);
           }
         }

@@ -29,7 +29,7 @@ static int expect_rounded(uint32_t seed)
   for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
     const int x = i / 4 % CASE_WIDTH, y = i / 4 / CASE_WIDTH;
     const double exact = fmin(255.0, 255.0 * (double)shown.rgba[i]);
-    /* Half a byte, and what a float's product may round by before it is cut. */
+    /* Half a byte, and the rounding of a float's product before it is cut. */
     if (!(fabs(exact - bytes[i]) <= 0.5 + 255.0 * 0x1p-23)) {
       print_error("seed %u, pixel (%d, %d): byte %d for %.9g\n", seed, x, y, bytes[i], (double)shown.rgba[i]);
       fail();

@@ -128,7 +128,7 @@ static void an_empty_volume_changes_nothing(void** state)
     m.of[1].transfer.opacity_count = 1;
     several_draw(*state, &m, &drawn);
     case_render(*state, &m.of[0], &other);
-    print_message("             beside an empty one: %g\n", (double)largest_difference(&drawn, &other));
+    print_message("             with an empty one: %g\n", (double)largest_difference(&drawn, &other));
     assert_true(largest_difference(&drawn, &other) < 2e-6f);
     m.of[0].options.structure = STRATUS_STRUCTURE_NONE;
     m.of[1].options.structure = STRATUS_STRUCTURE_NONE;

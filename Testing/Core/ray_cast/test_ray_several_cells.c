@@ -96,7 +96,7 @@ static void halves_of_a_sharp_volume_draw_the_whole(void** state)
   }
 }
 
-/* Beside a volume that shows nothing the picture is the ordinary one but for rounding, of all rules. */
+/* With a volume that shows nothing the picture is the ordinary one but for rounding, by all rules. */
 static void an_empty_volume_changes_nothing(void** state)
 {
   for (uint32_t seed = 0; seed < 6; seed += few_run() ? 3 : 1) {
@@ -116,7 +116,7 @@ static void an_empty_volume_changes_nothing(void** state)
     several_draw(*state, &m, &drawn);
     m.of[0].options.tolerance = 0.001;
     case_render(*state, &m.of[0], &other);
-    print_message("             beside an empty one: %g; %s\n", (double)largest_difference(&drawn, &other), drawn.report.why);
+    print_message("             with an empty one: %g; %s\n", (double)largest_difference(&drawn, &other), drawn.report.why);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
     assert_int_equal(drawn.report.sampling, other.report.sampling);
     assert_int_equal(other.report.sampling, seed < 3 ? STRATUS_SAMPLING_CELLS : STRATUS_SAMPLING_LOCAL);

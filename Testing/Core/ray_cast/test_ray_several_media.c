@@ -136,7 +136,7 @@ static void functions_of_two_variables_mix_as_the_reference_does(void** state)
   }
 }
 
-/* Beside a volume that shows nothing the picture is the ordinary one but for rounding. */
+/* With a volume that shows nothing the picture is the ordinary one but for rounding. */
 static void an_empty_volume_changes_nothing(void** state)
 {
   for (int i = 0; i < 3; ++i) {
@@ -164,7 +164,7 @@ static void an_empty_volume_changes_nothing(void** state)
     for (int p = 0; p < 4 * CASE_PIXELS; ++p) {
       largest = fmaxf(largest, fabsf(drawn.rgba[p] - other.rgba[p]));
     }
-    print_message("             beside an empty one: %g\n", (double)largest);
+    print_message("             with an empty one: %g\n", (double)largest);
     assert_true(case_lit(&drawn) > 50);
     assert_true(largest < 4e-6f);
     destroy(&m, &of);

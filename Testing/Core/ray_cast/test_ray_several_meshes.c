@@ -174,7 +174,7 @@ static void volumes_and_meshes_mix_as_the_reference_does(void** state)
   }
 }
 
-/* Cells' own values; a lattice, which lists no cells; values of both kinds beside a stretched volume. */
+/* Cells' own values; a lattice, which lists no cells; values of both kinds together with a stretched volume. */
 static void every_kind_of_mesh_mixes(void** state)
 {
   mixed_create(*state, 1, 2, 520);
@@ -198,7 +198,7 @@ static void every_kind_of_mesh_mixes(void** state)
   mixed_destroy();
 }
 
-/* Alone, beside an empty volume and with another mesh behind it, a mesh has the picture that its own caster draws. */
+/* A single mesh, also with an empty volume and with another mesh behind it, has the picture that its own caster draws. */
 static void a_mesh_alone_is_the_ordinary_picture(void** state)
 {
   static uint32_t samples[CASE_PIXELS];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Functions of two variables, compared with the double reference: the value with the gradient's magnitude or with a second component. No
- * structure, thread or instruction set changes a bit, the tolerance is kept, and what cannot be combined is refused. */
+ * structure, thread or instruction set changes a bit, the tolerance is kept, and combinations without a meaning are refused. */
 #include "grid_case.h"
 #include "transfer_2d_case.h"
 #include "volume.h"

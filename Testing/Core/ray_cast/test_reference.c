@@ -150,7 +150,7 @@ static void ramp_integrates_the_transfer_function(void** state)
   assert_true(fabs((double)rgba[4 * 12 + 3] - (1.0 - exp(-depth / 2.0))) < 2e-6);
 }
 
-/* Opacity and colour in vertical steps, at values that lie within cells and on grid planes. */
+/* Opacity and colour in vertical steps, at values within cells and on grid planes. */
 static const double step_opacity[] = { 0, 0, 2.5, 0, 2.5, .4, 4, .4, 4, .1, 7.25, .1, 7.25, .9, 7.25, .2, 10, .2 };
 static const double step_color[] = { 0, 1, 0, 0, 3, 1, 0, 0, 3, 0, 1, 0, 7.25, 0, 1, 0, 7.25, 0, 0, 1, 10, 0, 0, 1 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Several lattices as one mesh: a bent lattice cut into blocks is the whole one, and the double-precision reference of its tetrahedra, by
- * march and projection, lit, with hollows, values of cells and components; and what is refused. */
+ * march and projection, lit, with hollows, values of cells and components; and refused inputs. */
 #include "tetra_case.h"
 
 #include "mesh.h"

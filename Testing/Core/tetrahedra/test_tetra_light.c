@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Light and gradient opacity of tetrahedra against the double-precision reference: on random meshes with hollows, values of points and of
- * cells, under matrices and cuts; a linear field against the formula; lattices against their lists; and what is refused. */
+ * cells, under matrices and cuts; a linear field against the formula; lattices against their lists; and refused inputs. */
 #include "tetra_light_case.h"
 
 #include "tetra_caster.h"

@@ -190,7 +190,7 @@ static void assert_all_in_range(void)
   }
 }
 
-/* Cells without volume beside others that are drawn: they name a point twice, three or four times, have points in one place or one plane
+/* Cells without volume among others that are drawn: they name a point twice, three or four times, have points in one place or one plane
  * under different numbers, or values that are not finite. */
 static void cells_without_volume_show_nothing_and_are_counted(void** state)
 {
@@ -275,7 +275,7 @@ static void lengths_of_any_size_are_drawn_or_refused(void** state)
   }
 }
 
-/* A parallel camera with a window so narrow that products beside it overflow floats. */
+/* A parallel camera with a window so narrow that products outside it overflow floats. */
 static void windows_narrower_than_floats_are_refused(void** state)
 {
   tetra_case c;

@@ -224,7 +224,7 @@ static void leaves_change_nothing_but_roundings(void** state)
   assert_int_equal(projected.report.leaves, 1);
   tetra_draw(*state, &c, &projected);
   assert_int_equal(projected.report.leaves, 8);
-  assert_true(difference() <= 1e-4); /* another order, and as right: only what is shorter than rounding may come the other way round */
+  assert_true(difference() <= 1e-4); /* another order that is also right: only pieces shorter than rounding may be reversed */
   stratus_leaves wrong = cut.leaves;
   wrong.leaf_count = 7;
   c.options.leaves = &wrong;

@@ -100,7 +100,7 @@ static mesh_case block(int x, int y, int z, const double low[3], const double hi
   return mesh;
 }
 
-/* Two boxes beside each other with the same points, each named twice, but other diagonals: no faces coincide. */
+/* Two adjacent boxes with the same points, each named twice, but other diagonals: no faces coincide. */
 static void a_seam_whose_diagonals_do_not_match_is_no_hole_in_the_order(void** state)
 {
   (void)state;
@@ -316,7 +316,7 @@ static void scattered_cells_and_points_come_in_order(void** state)
   stratus_context_destroy(context);
 }
 
-/* A convex mesh has no gap, whatever the planes of its border. A block beside it makes gaps of the faces that look at it. */
+/* A convex mesh has no gap, whatever the planes of its border. A block next to it makes gaps of the faces that look at it. */
 static void only_faces_that_look_at_others_are_gaps(void** state)
 {
   (void)state;

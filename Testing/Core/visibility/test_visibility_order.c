@@ -120,11 +120,11 @@ static void flat_cells_pass_on_who_hides_whom(void** state)
 static void faces_that_coincide_are_shared_whatever_points_they_name(void** state)
 {
   static const int n[3] = { 3, 4, 4 };
-  static const double one[3] = { 1, 1, 1 }, beside[3] = { 3, 0, 0 };
+  static const double one[3] = { 1, 1, 1 }, offset[3] = { 3, 0, 0 };
   (void)state;
   stratus_context* context = mesh_context(2);
   mesh_case other = mesh_grid(n, 0.0, 1);
-  mesh_move(&other, one, beside);
+  mesh_move(&other, one, offset);
   mesh_case mesh = mesh_join(mesh_grid(n, 0.0, 1), other);
   mesh_shuffle(&mesh, 4);
   assert_order_is_right(context, &mesh, STRATUS_PEELING_LAYERS);

@@ -97,7 +97,7 @@ static void an_order_stands_as_long_as_its_signs(void** state)
   stratus_context_destroy(context);
 }
 
-/* A partition's planes lie along faces, which are then borders of leaves: an eye that passes one of them changes no sign. */
+/* A partition's planes are along faces, which are then borders of leaves: an eye that passes one of them changes no sign. */
 static void leaves_in_another_order_are_another_order(void** state)
 {
   static const int n[3] = { 4, 4, 4 };

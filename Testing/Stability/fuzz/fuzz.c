@@ -43,7 +43,7 @@ static void work(const run* r, const char* kind, fuzz_tally* tally, uint64_t fir
 static void report_death(const run* r, const char* kind, fuzz_tally* tally, int status)
 {
   ++tally->findings;
-  if (!tally->told) {
+  if (!tally->reported) {
     const bool slow = WIFSIGNALED(status) && (WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGALRM);
     fprintf(stderr,
       "FINDING in %s, case %" PRIu64 ": %s %d\n  in %s\n  %s; odd:%s\n  again: %s %s 0 %" PRIu64 " device=%s case=%" PRIu64 "\n", kind,
@@ -54,7 +54,7 @@ static void report_death(const run* r, const char* kind, fuzz_tally* tally, int 
       WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), tally->call ? tally->call : "nothing", tally->about, tally->odd,
       r->program, kind, r->seed, r->device, tally->number);
   }
-  tally->told = false;
+  tally->reported = false;
 }
 
 static void supervise(const run* r, const char* kind, fuzz_tally* tally, double seconds)

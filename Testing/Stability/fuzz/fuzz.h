@@ -16,7 +16,7 @@
 typedef struct fuzz_tally {
   uint64_t number;  /* of the current case */
   const char* call; /* the current call, or the last one */
-  bool told;        /* the finding has been printed */
+  bool reported;    /* the finding has been printed */
   char about[512];  /* the case's description, which a finding prints */
   char odd[256];    /* the case's odd numbers so far, which a finding prints */
   /* Counters; all members from here on are uint64_t. */
@@ -36,7 +36,7 @@ typedef struct fuzz_memory {
   int64_t fail_at; /* number of the request that is refused, from 1; 0: none */
   int fill;        /* value of new memory's bytes, on which no result may depend */
   bool guarded;    /* each allocation ends within 64 bytes of a guard page */
-  bool damaged;    /* a byte beside an allocation was overwritten */
+  bool damaged;    /* a byte next to an allocation was overwritten */
   uint64_t refused;
 } fuzz_memory;
 
@@ -101,7 +101,7 @@ const void* fuzz_input(fuzz* f, const void* data, size_t bytes);
 #define FUZZ_INPUT(f, object) fuzz_input((f), &(object), sizeof(object))
 /* Writes new bytes to an input, as a caller does before it raises the revision. */
 void fuzz_change(fuzz* f, const void* input, const void* data);
-void fuzz_free_blocks(fuzz* f); /* a changed byte beside a buffer is a finding */
+void fuzz_free_blocks(fuzz* f); /* a changed byte next to a buffer is a finding */
 stratus_context_options fuzz_context_options(fuzz* f, fuzz_memory* memory);
 /* Creates a context of its own. A failure ends the process with a finding. */
 stratus_context* fuzz_context(fuzz* f, fuzz_memory* memory);

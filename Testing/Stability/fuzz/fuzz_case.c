@@ -109,7 +109,7 @@ void fuzz_finding(fuzz* f, const char* format, ...)
   fprintf(stderr, "\n  after %s\n  %s; odd:%s\n", f->tally->call ? f->tally->call : "nothing", f->tally->about, f->tally->odd);
   again(f);
   fflush(stderr);
-  f->tally->told = true;
+  f->tally->reported = true;
   if (f->here) {
     abort();
   }

@@ -194,7 +194,7 @@ static void check_camera(fuzz* f)
   EXPECT(seen == STRATUS_OK || !fuzz_is_tame(f), "%s", stratus_context_message(f->context));
 }
 
-/* Asks for scenes by unknown names or NULL. */
+/* Requests scenes by unknown names or NULL. */
 static void ask_records(fuzz* f)
 {
   static const char* const names[] = { "", "clouds", "cloud ", "%n", "u", "0" };

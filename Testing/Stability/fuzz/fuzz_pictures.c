@@ -193,7 +193,7 @@ static void compare(fuzz* f, const picture_case* c, const stratus_image* image, 
   const stratus_status status = draw(f, context, caster, c, &options, &picture, &other);
   EXPECT(status == STRATUS_OK, "a new caster draws it otherwise: %s: %s", stratus_status_name(status), stratus_context_message(context));
   /* A packet may query a structure for all of its rays at once, so that its width decides how many samples are skipped. An automatic
-   * structure follows from times, and what is skipped follows from it. */
+   * structure follows from times, and the skipped segments follow from it. */
   const bool chosen = options.structure == STRATUS_STRUCTURE_AUTO && options.mode != STRATUS_MODE_FIRST_HIT;
   const bool counted = !structures && !chosen && !report->offered_tree && context->isa == f->context->isa;
   fuzz_check_same(f, image, &picture, counted, structures ? "with another structure" : "on a new caster");
