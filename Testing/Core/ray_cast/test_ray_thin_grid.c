@@ -90,7 +90,7 @@ static void every_rule_draws_thin_voxels(void** state)
     assert_int_equal(thin.report.sampling, rule);
     case_destroy(&even);
   }
-  for (uint32_t seed = 1; seed < 6; ++seed) { /* rule local cannot be asked for */
+  for (uint32_t seed = 1; seed < 6; ++seed) { /* options cannot request rule local */
     picture_case even;
     case_create_local(*state, seed, &even);
     even.options.crop = 0;
@@ -104,7 +104,7 @@ static void every_rule_draws_thin_voxels(void** state)
   assert_true(local > 0);
 }
 
-/* Nothing that shows may be missed where rays nearly lie in the layers, and where one looks along the long side. */
+/* No visible part may be missed if rays are nearly in the layers' planes, or if one looks along the long side. */
 static void rays_along_the_layers(void** state)
 {
   picture_case even;
