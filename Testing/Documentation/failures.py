@@ -15,7 +15,7 @@ Testing/*/failures.toml has a [[row]] for each failure:
     fails   = "how it fails"
     number  = "by how much; {rms('vtk:raycast', 'post/ramp'); .1f} is an expression of measurements, and its format"
     figures = "the CSV below Testing/Benchmarks/results that the expressions are about"
-    stands  = ["what stands in the first test's source, so that a number in plain text is one that the test asserts"]
+    stands  = ["text in the first test's source, so that a number in plain text is one that the test asserts"]
     ours    = "what Stratus does"
     tests   = ["test_name", "test_name:a_case_of_it"]   none: no test shows it, and the page says so
 

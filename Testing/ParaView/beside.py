@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the plugin's tests share: ParaView's picture of a scene beside that of `stratus render`. Rounding to bytes alone gives 58.9 dB where
-all levels come alike. Scripts are given PLUGIN STRATUS COMPARE-PICTURES FOLDER, and run in the repository's root; pictures go to the folder."""
+"""Helpers of the plugin's tests: compares ParaView's picture of a scene with the picture of `stratus render`. Only rounding to bytes gives
+58.9 dB if all levels are equally frequent. Scripts are given PLUGIN STRATUS COMPARE-PICTURES FOLDER, and run in the repository's root; pictures go to the folder."""
 import os
 import re
 import subprocess
@@ -26,7 +26,7 @@ def check(condition, what):
 
 
 def camera_of(output):
-    """What `stratus render` tells of its camera."""
+    """Returns the camera that `stratus render` prints."""
     number = r"([-+.e\d]+)"
     triple = " ".join(3 * [number])
     found = re.search(rf"camera +eye {triple}, forward {triple}, up {triple}, angle {number}", output)
@@ -46,17 +46,17 @@ def look_like(view, output):
 def draw(path, array, opacity, color, unit, least, width=500, height=400, component=None, judged=None, settings=None, options=(),
          judge=None, representation=None, headlight=False, of="POINTS"):
     """The same scene twice: `stratus render` in floats, ParaView in bytes. component: of a vector, by its name; `stratus render` then draws
-    the array `judged`, which holds that component alone, or the magnitude. settings: properties of the representation, which `options` are
+    the array `judged`, which holds only that component, or the magnitude. settings: properties of the representation, which `options` are
     on the command line. judge: a file of the same data that `stratus render` draws. representation: where the reader's is another.
-    headlight: in place of ParaView's kit of lights. of: what the array is of."""
+    headlight: in place of ParaView's kit of lights. of: POINTS or CELLS, which the array belongs to."""
     name = os.path.splitext(os.path.basename(path))[0] + (f"-{judged}" if judged else "")
     name += options[0][1:] + options[1][:5] if len(options) > 1 else "".join(options)[1:]
     floats, bytes_ = (os.path.join(folder, name + end) for end in (".exr", ".png"))
     command = [stratus, "render", judge or path, "--array", judged or array, "-o", floats, "--size", f"{width}x{height}", "--unit-distance", str(unit),
                "--opacity", ",".join(f"{v}:{a}" for v, a in opacity), "--color", ",".join(f"{v}:{r}:{g}:{b}" for v, r, g, b in color)]
     command += list(options)
-    told = subprocess.run(command, capture_output=True, text=True)
-    check(told.returncode == 0, told.stderr)
+    ran = subprocess.run(command, capture_output=True, text=True)
+    check(ran.returncode == 0, ran.stderr)
     view = make_view(width, height)
     source, shown = show_volume(path, array, opacity, color, unit, view, representation, component, of)
     if headlight:
@@ -70,10 +70,10 @@ def draw(path, array, opacity, color, unit, least, width=500, height=400, compon
                 setattr(getattr(shown, key), inner, given)
         else:
             setattr(shown, key, value)
-    look_like(view, told.stdout)
+    look_like(view, ran.stdout)
     simple.SaveScreenshot(bytes_, view, ImageResolution=[width, height], TransparentBackground=0)
     verdict = subprocess.run([compare, bytes_, floats, str(least)], capture_output=True, text=True)
-    print(f"{name}: ParaView beside stratus render: {verdict.stdout.strip()}")
+    print(f"{name}: ParaView compared with stratus render: {verdict.stdout.strip()}")
     check(verdict.returncode == 0, f"{name} looks in ParaView as it does from the command line")
     return source, shown, view, bytes_, floats
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws scenes on so many ranks: pvbatch --sym draw_on_ranks.py PLUGIN FOLDER, by mpiexec. Pictures are FOLDER/NAME-RANKS.png. One rank
-writes the data; more find it there. FOLDER/differences-RANKS gets a line a scene: the largest difference to one rank's picture, what it may
-be, how many pixels differ by more than 1, how many may, and how many thousandths of the lit pixels differ. What differs, 16 times as large,
-is FOLDER/NAME-RANKS-difference.png. Without a scene's name, up to 3 ranks also write what filters number (write_numbers)."""
+writes the data; more find it there. FOLDER/differences-RANKS gets a line a scene: the largest difference to one rank's picture and its
+limit, the number of pixels that differ by more than 1 and its limit, and how many thousandths of the lit pixels differ. The differences, 16
+times as large, are FOLDER/NAME-RANKS-difference.png. Without a scene's name, up to 3 ranks also write the filters' numbers (write_numbers)."""
 import os
 import sys
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""pvbatch in_situ_again.py PICTURE: what plume-in-situ wrote at its end (STRATUS_RAW, float32 on 97 x 49 x 49 points), drawn on one rank as
-its own script does, beside the PICTURE that it drew of the same step on several ranks: each pixel may differ by 1 of 255."""
+"""pvbatch in_situ_again.py PICTURE: draws the last output of plume-in-situ (STRATUS_RAW, float32 on 97 x 49 x 49 points) on one rank as its own
+script does, and compares it with the PICTURE of the same step on several ranks: each pixel may differ by 1 of 255."""
 import os
 import sys
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""pvbatch with the plugin: File > Open and Save Data. What the project's writers write, its readers open by its extension; meshes in layers,
+"""pvbatch with the plugin: File > Open and Save Data. The project's readers open its writers' files by their extension; meshes in layers,
 CF's grids, sparse grids and scans give their variables, times, values and places.
 pvbatch test_files.py PLUGIN STRATUS COMPARE-PICTURES FOLDER; sparse grids are read where the test of their reader has left them in FOLDER/.."""
 import gzip

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pvbatch with the plugin: ParaView's light kit on a volume whose gradient is the same everywhere, against the formula and a surface.
 
-Of the kit's lights two come from behind. What faces the eye has its back to them, so they add nothing: so it is on ParaView's surfaces, and
-so it is here, where the normal is turned towards the eye before any light is looked at. VTK's own volume mapper (vtkVolumeShaderComposer) takes
+Two of the kit's lights come from behind. A surface that faces the eye has its back to them, so they add nothing, on ParaView's surfaces and
+here: the normal is turned towards the eye before any light is looked at. VTK's own volume mapper (vtkVolumeShaderComposer) takes
 the magnitude of N L for each light by itself, so that lights from behind shine through; ParaView's "Volume" is that much brighter.
 pvbatch test_lights.py PLUGIN STRATUS COMPARE-PICTURES FOLDER."""
 import os

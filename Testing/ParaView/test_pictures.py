@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""pvbatch with the plugin: what the representation draws is what `stratus render` draws, and filters give what they should.
+"""pvbatch with the plugin: the representation draws the picture of `stratus render`, and filters give the expected outputs.
 pvbatch test_pictures.py PLUGIN STRATUS COMPARE-PICTURES FOLDER, in the repository's root; pictures go to the folder."""
 import os
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""pvbatch with the plugin: what a session does with "Stratus Volume" beside a picture. Cells and points are picked and hovered over, and
+"""pvbatch with the plugin: a session with "Stratus Volume", apart from its pictures. Cells and points are picked and hovered over, and
 selections shown; traces and states draw again what was drawn; comparative views and linked cameras. Where ParaView's "Volume" can do it, too,
 both are compared. pvbatch test_session.py PLUGIN STRATUS COMPARE-PICTURES FOLDER, in the repository's root."""
 import os

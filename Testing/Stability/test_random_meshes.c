@@ -22,11 +22,11 @@ static void build_seams(tetra_case* c, uint32_t* random)
 {
   const int across[2] = { 1 + (int)below(random, 3), 1 + (int)below(random, 3) };
   const double middle = tetra_uniform(random, 0.8, 2.2);
-  const double low[3] = { 0, 0, 0 }, beside[3] = { middle, tetra_uniform(random, -0.5, 0.5), 0 };
+  const double low[3] = { 0, 0, 0 }, offset[3] = { middle, tetra_uniform(random, -0.5, 0.5), 0 };
   const double size[3] = { middle, 3, 3 }, other[3] = { 3.0 - middle, 3, tetra_uniform(random, 2, 3) };
   tetra_clear(c, 2 * 64, 2 * 6 * 27);
   tetra_add_box(c, across[0], low, size);
-  tetra_add_box(c, across[1], beside, other);
+  tetra_add_box(c, across[1], offset, other);
 }
 
 /* Gives some cells points of their own where others have the same. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Random edits for long: pictures of changed volumes, functions, settings and meshes by casters that live on, structures built and dropped,
- * contexts made and destroyed, on the host and on a device. Memory, open files, threads and files in folders do not grow, and what a caster
- * draws that has seen many edits is what a new one draws.
+ * contexts made and destroyed, on the host and on a device. Memory, open files, threads and files in folders do not grow, and a caster
+ * that has seen many edits draws a new caster's picture.
  *
  * Testing/run takes some hundred edits. STRATUS_LONG=1 goes on for an hour, or for as many seconds as STRATUS_SOAK_SECONDS says. */
 #define _XOPEN_SOURCE 700

@@ -161,7 +161,7 @@ static void seams_whose_diagonals_do_not_match(void** state)
   const int64_t points = c.mesh.point_count, cells = c.mesh.cell_count;
   widen(&c, 2);
   add_copy(&c, points, cells, 0.0, 0.0);
-  for (int64_t i = points; i < 2 * points; ++i) { /* a mirror image beside it */
+  for (int64_t i = points; i < 2 * points; ++i) { /* a mirror image next to it */
     c.points[3 * i] = 4.0 - c.points[3 * i];
   }
   for (int view = 0; view < 8; ++view) {

@@ -177,13 +177,13 @@ static void a_flat_cell_between_cells_that_overlap(void** state)
 
 static void a_seam_of_other_faces(void** state)
 {
-  const double low[3] = { 0, 0, 0 }, beside[3] = { 1.5, 0, 0 }, size[3] = { 1.5, 3, 3 };
+  const double low[3] = { 0, 0, 0 }, offset[3] = { 1.5, 0, 0 }, size[3] = { 1.5, 3, 3 };
   for (int view = 0; view < 8; ++view) {
     tetra_case c;
     tetra_create(&c, 1, 0.0, 0.0, 1);
     tetra_clear(&c, 200, 300);
     tetra_add_box(&c, 2, low, size);
-    tetra_add_box(&c, 3, beside, size);
+    tetra_add_box(&c, 3, offset, size);
     tetra_camera(*state, &c, 3, view, view & 1);
     agrees(*state, &c, "seam");
     tetra_destroy(&c);

@@ -41,12 +41,12 @@ static stratus_status cut_and_sort(stratus_context* context, const mesh_case* me
 static mesh_case seamed_mesh(void)
 {
   static const int n[3] = { 3, 3, 3 };
-  static const double one[3] = { 1, 1, 1 }, beside[3] = { 3, 0, 0 };
+  static const double one[3] = { 1, 1, 1 }, offset[3] = { 3, 0, 0 };
   mesh_case left = mesh_grid(n, 0.1, 1), right = mesh_grid(n, 0.0, 1);
   for (int64_t i = 0; i < right.point_count; ++i) {
     right.points[3 * i] -= right.points[3 * i] >= 2.0;
   }
-  mesh_move(&right, one, beside);
+  mesh_move(&right, one, offset);
   return mesh_join(left, right);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever brings a prop that is culled into sight, or takes one out of it, is right in the very next frame; and what has not changed is
-// not asked.
+// Any change that brings a culled prop into sight, or takes one out of it, is right in the very next frame; and unchanged props are not
+// queried.
 #include "culler_testing.h"
 
 #include "vtkAssembly.h"

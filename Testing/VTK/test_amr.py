@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""AMR: the mapper's grids hold the field that brute force finds, side by side; the picture is that of one fine grid of this field, and near that
-of the function itself; what can't be right is refused."""
+"""AMR: the mapper's grids hold the field that brute force finds, side by side; the picture equals the picture of one fine grid of this field, and is near the
+function's own; unsupported data is refused."""
 import os
 import sys
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK_AUTOLOAD_PATH makes an unchanged program's mappers ours: its pictures are those of our mappers to the bit, and VTK's own, with one line that
-says why, where ours refuse. A library that cannot be used is said in one line, and the program goes on.
+"""VTK_AUTOLOAD_PATH makes an unchanged program's mappers ours: its pictures equal our mappers' to the bit, or VTK's own, with one line that
+says why, if ours refuse. One line reports a library that cannot be used, and the program goes on.
 test_factory.py FOLDER runs itself as that program: test_factory.py --draw FILE."""
 import os
 import shutil

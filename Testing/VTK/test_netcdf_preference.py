@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which variable the netCDF readers read by default: a field of the cells before staggered ones, flags, and what coordinates are made of. The
-order of each file is written down here by hand; in the file it is turned round."""
+"""Which variable the netCDF readers read by default: a field of the cells before staggered ones, flags, and ingredients of coordinates. The
+order of each file is written down here by hand; in the file it is reversed."""
 import os
 import sys
 

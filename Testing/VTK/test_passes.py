@@ -113,8 +113,8 @@ class Scene:
         return vtk_to_numpy(pixels).reshape(height, width, 4)[..., :3].astype(int)
 
     def compare(self, render_pass):
-        """The mean distance of our picture from FixedPoint's, and from the one without a volume, of 255: of all pixels, and of those of a ball in
-        front, its border aside."""
+        """Returns mean distances, of 255: of our picture from FixedPoint's, and from the picture without a volume, in all pixels and in the pixels
+        of a ball in front, without its border."""
         ours, fixed, none = (self.draw(mapper, render_pass) for mapper in (self.ours, self.fixed, None))
         if render_pass is None:  # the first call marks the pixels that a ball in front covers
             self.front = (numpy.abs(ours - none).max(2) == 0) & (numpy.abs(none - none[2, -2]).max(2) > 8)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures from files of OpenEXR, made here byte by byte, and how they differ, against NumPy: bits, errors, structural similarity. What is damaged
-or no picture is refused with a sentence."""
+"""Pictures from files of OpenEXR, made here byte by byte, and how they differ, against NumPy: bits, errors, structural similarity. Damaged
+files and other files are refused with a message."""
 import os
 import random
 import struct

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The table of docs/vtk-parity.md: it names every setter that VTK 9.1's volume mappers and property have; what it calls not there is not
-there, all else of the mappers is; and the tests that it names are there, with the cases that it names."""
+"""The table of docs/vtk-parity.md: it names every setter that VTK 9.1's volume mappers and property have; the mappers lack the
+setters that it calls not there, and have all others; and the tests that it names exist, with the cases that it names."""
 import os
 import re
 import sys

@@ -38,8 +38,8 @@ class Different(Same):
 
 
 class Better:
-    """Facts by their names, each with its truth: what holds of ours and fails of VTK's. ours and vtks: distances of both from what is
-    right."""
+    """Facts by their names, each with its truth: they hold of ours and fail of VTK's. ours and vtks: distances of both from the right
+    picture."""
 
     def __init__(self, facts, ours=None, vtks=None):
         self.facts, self.ours, self.vtks = facts, ours, vtks

@@ -176,8 +176,8 @@ def four_dependent_minimum():
 
 
 def raycaster(chosen, linear, settings=nothing, unit=1):
-    """Cells of FixedPoint's test, which draws one to four components, independent and dependent ones, and light; beside them by the GPU's
-    mapper those of one component and of four dependent ones."""
+    """Cells of FixedPoint's test, which draws one to four components, independent and dependent ones, and light; and cells
+    of one component and of four dependent ones, drawn by the GPU's mapper."""
     two, four_ = ((255 * made.several(count, 31)).astype(numpy.uint8) for count in (2, 4))
     cells = (made.blobs(31), look(linear=linear, unit=unit)), (rgba(31), dependent(linear=linear)), \
         (made.blobs(31), look(linear=linear, shade=True, **SHINY)), (two, independent(2, 0.2, 255, linear=linear)), \

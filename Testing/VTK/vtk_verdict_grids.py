@@ -8,7 +8,7 @@ import vtk_verdict_data as made
 from vtk_verdict import SIZE, TETRA, Better, Different, Same, case, nothing, pair
 from vtk_verdict_data import image, look
 from vtk_verdict_modes import waving
-from vtk_verdict_reference import beside, composite, subset, trilinear
+from vtk_verdict_reference import from_reference, composite, subset, trilinear
 
 
 def stretched(power=1.5, n=32):
@@ -41,7 +41,7 @@ def rectilinear():
     data, shown = stretched(), waving()
     both = pair(data, shown)
     same_places = subset(both[0]), composite(data, shown, step=0.1, field=as_vtk_reads)
-    return Different([both], [same_places], beside(both, composite(data, shown, step=0.1)))
+    return Different([both], [same_places], from_reference(both, composite(data, shown, step=0.1)))
 
 
 def blocks(field, cuts):
@@ -75,7 +75,7 @@ def rectilinear_blocks():
         part.SetVOI(low, high, 0, 31, 0, 31)
         part.Update()
         set_.SetBlock(number, part.GetOutput())
-    vtks, ours = beside(pair(set_, waving(), kind=vtk.vtkMultiBlockVolumeMapper), composite(stretched(), waving(), step=0.1))
+    vtks, ours = from_reference(pair(set_, waving(), kind=vtk.vtkMultiBlockVolumeMapper), composite(stretched(), waving(), step=0.1))
     return Better({}, ours, vtks)
 
 
@@ -103,7 +103,7 @@ THIN = (0, 0), (80, 0), (255, 0.1)
 def against_reference(kind=TETRA, settings=nothing, grid=None, **options):
     data, shown = slope(), look(alpha=THIN)
     both = pair(grid or tetrahedra(data), shown, settings, kind=kind, size=SIZE, **options)
-    return Different([both], reference=beside(both, composite(data, shown, step=0.1, **options)))
+    return Different([both], reference=from_reference(both, composite(data, shown, step=0.1, **options)))
 
 
 @case("TestProjectedTetrahedra")
@@ -139,7 +139,7 @@ def projected_component():
     shown.GetRGBTransferFunction().SetVectorModeToComponent()
     shown.GetRGBTransferFunction().SetVectorComponent(1)
     both = pair(grid, shown, kind=TETRA)
-    return Different([both], reference=beside(both, composite(data, shown, step=0.1)))
+    return Different([both], reference=from_reference(both, composite(data, shown, step=0.1)))
 
 
 @case("TestMultiBlockUnstructuredGridVolumeMapper")

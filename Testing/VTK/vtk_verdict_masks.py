@@ -56,7 +56,7 @@ def binary_maximum():
 
 
 def labelled(count=2, unit=1, **options):
-    """A look with functions of labels, whose opacity is that of a unit."""
+    """A look with functions of labels, whose opacities are per `unit`."""
     shown = look(alpha=((0, 0), (20, 0), (255, 0.25 * unit)), unit=unit, **options)
     functions = ((0, 0), (40, 0), (255, 0.2 * unit)), ((0, 0), (20, 0), (255, 0.15 * unit))
     tints = ((0, 1, 1, 0), (255, 1, 0, 0)), ((0, 0, 1, 1), (255, 0, 0, 1))

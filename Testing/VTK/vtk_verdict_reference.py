@@ -101,7 +101,7 @@ def composite(data, look, camera=(30, 20, 1.3), step=0.04, place=nothing, field=
     return 255 * (light + passed[..., None] * numpy.array(BACKGROUND))
 
 
-def beside(pairs, exact):
+def from_reference(pairs, exact):
     """The mean distance of VTK's picture and of ours from the reference, of 255."""
     vtks, ours = pairs
     return numpy.abs(subset(vtks) - exact).mean(), numpy.abs(subset(ours) - exact).mean()

@@ -15,7 +15,7 @@ from vtk_verdict_surfaces import sphere
 
 
 def several(volumes, then=nothing, settings=nothing, step=STEP):
-    """The pair of pictures of volumes (data, property, place), by vtkMultiVolume and by ours. then(prop, mapper): what changes after a
+    """The pair of pictures of volumes (data, property, place), by vtkMultiVolume and by ours. then(prop, mapper): changes made after a
     first picture."""
     pictures = []
     for ours in False, True:

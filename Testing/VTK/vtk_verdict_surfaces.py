@@ -9,7 +9,7 @@ from vtk_verdict import Different, Same, case, pair
 from vtk_verdict_cuts import TWO
 from vtk_verdict_data import image, look
 from vtk_verdict_modes import four, waving
-from vtk_verdict_reference import beside, composite, trilinear
+from vtk_verdict_reference import from_reference, composite, trilinear
 
 
 def sphere(center=(19.5, 19.5, 19.5), radius=10, opacity=1, color=(0.5, 0.9, 0.7)):
@@ -149,7 +149,7 @@ def ghosts_of_cells():
 
     both = pair(hide(image(made.waves(), cells=True)), shown)
     exact = composite(image(numpy.zeros((41, 41, 41), numpy.float32)), shown, step=0.1, field=field, inside=inside)
-    return Different([both], reference=beside(both, exact))
+    return Different([both], reference=from_reference(both, exact))
 
 
 @case("TestGPURayCastVolumeUniformGridBlanking")

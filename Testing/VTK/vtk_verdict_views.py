@@ -5,7 +5,7 @@ import vtk
 import vtk_verdict_data as made
 from vtk_verdict import GPU, OURS, Better, Different, Same, case, pair, picture
 from vtk_verdict_data import image, look
-from vtk_verdict_reference import beside, composite
+from vtk_verdict_reference import from_reference, composite
 
 
 def inside(x, y, z, fx, fy, fz, angle=60):
@@ -33,7 +33,7 @@ def small_spacing():
         data, shown = image(spacing=(spacing, spacing, spacing)), thin(unit=spacing)
         camera = inside(*(spacing * c for c in (20, 20, 22, 22, 18, 10)))
         exact = composite(data, shown, camera, 0.05 * spacing)
-        errors.append(beside(pair(data, shown, camera=camera, step=spacing / 10), exact))
+        errors.append(from_reference(pair(data, shown, camera=camera, step=spacing / 10), exact))
     (vtks, ours), (vtks_larger, ours_larger) = errors
     return Better({"at a thousandth both are right": max(vtks_larger, ours_larger) < 0.6}, ours, vtks)
 
@@ -79,7 +79,7 @@ def camera_inside_scale():
     camera = inside(28, 16, 24, 30, 18, 0, 120)
     both = pair(image(), thin(), place=place, camera=camera)
     even = picture(GPU, image(), thin(), place=evenly), picture(OURS, image(), thin(unit=1.4), place=evenly)
-    return Different([both], [even], beside(both, composite(image(), thin(), camera, place=place)))
+    return Different([both], [even], from_reference(both, composite(image(), thin(), camera, place=place)))
 
 
 @case("TestGPURayCastVolumeScale")

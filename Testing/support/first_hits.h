@@ -72,7 +72,7 @@ static inline stratus_voxels* random_voxels(
   return voxels;
 }
 
-/* Makes a ray along an axis that is slow along the two others, and runs beside a plane between voxels, at times between bricks. */
+/* Makes a ray along an axis that is slow along the two others, and runs along a plane between voxels, at times between bricks. */
 static inline void slow_ray(const int64_t dimensions[3], uint32_t* random, stratus_ray* ray)
 {
   const int along = (int)(next_random(random) % 3);
@@ -90,7 +90,7 @@ static inline void slow_ray(const int64_t dimensions[3], uint32_t* random, strat
 }
 
 /* Makes a random ray of nine kinds: arbitrary rays, and hard ones along axes, through corners and edges, from faces, from inside, from
- * behind, short, or beside planes. */
+ * behind, short, or along planes. */
 static inline stratus_ray random_ray(const int64_t dimensions[3], uint32_t* random)
 {
   stratus_ray ray = { .t_max = INFINITY };

@@ -56,7 +56,7 @@ static cl_int after_release(cl_int error)
   return faults->at >= 0 && faults->calls > faults->at && faults->fault != OPENCL_FAULT_ONCE ? faults->error : error;
 }
 
-/* Every function begins with it; `failed` is what to return instead. */
+/* Every function begins with it; `failed` is the result of a refused call. */
 #define COUNT(kind, failed)                                                                                                                \
   bool lost;                                                                                                                               \
   const cl_int error = count_call(__func__ + 6, kind, &lost); /* behind "layer_" */                                                        \

@@ -54,7 +54,7 @@ static inline double tetra_uniform(uint32_t* state, double lo, double hi)
 }
 
 /* Makes a cube of n^3 boxes with six cells each about the box's diagonal. Points move by up to `jitter` of a box, the corners of cells are
- * shuffled, and a share `missing` of the cells is left out. Values lie within 0..1 and vary smoothly. */
+ * shuffled, and a share `missing` of the cells is left out. Values are within 0..1 and vary smoothly. */
 static inline void tetra_create(tetra_case* c, int n, double jitter, double missing, uint32_t seed)
 {
   static const int path[6][2] = { { 0, 1 }, { 0, 2 }, { 1, 0 }, { 1, 2 }, { 2, 0 }, { 2, 1 } };
@@ -241,7 +241,7 @@ static inline int tetra_meet(
   for (int i = 0; i < 9; ++i) {
     size = fmax(size, fabs(p[i / 3 + 1][i % 3] - p[0][i % 3]));
   }
-  /* less than that is what rounding leaves of a cell without volume, and its coordinates have no digit */
+  /* smaller volumes are rounding errors of a cell without volume */
   if ((c->mesh.hidden && c->mesh.hidden[cell]) || fabs(whole) <= 1e-14 * size * size * size) {
     return 0;
   }

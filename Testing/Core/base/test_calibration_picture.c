@@ -33,8 +33,8 @@ static stratus_context* make_host(void)
   return context;
 }
 
-/* One pixel in double precision. Where a value falls between two entries of the table, rounding may take the other, and what two entries
- * add differs by .1/256 at most: two of 48 samples may fall so. */
+/* One pixel in double precision. If a value falls between two entries of the table, rounding may take the other, and the light of two
+ * entries differs by .1/256 at most: two of 48 samples may fall so. */
 static void expect_pixel(int x, int y, const float pixel[4])
 {
   double light[4] = { 0.0 };

@@ -178,7 +178,7 @@ static void rays_side_by_side_share_what_they_visit(void** state)
 {
   (void)state;
   for (int isa = 0; isa <= 2; ++isa) {
-    uint32_t random = 31, alone[BEAM];
+    uint32_t random = 31, single[BEAM];
     int64_t dimensions[3];
     uint64_t apart = 0, together = 0;
     stratus_context* context = host_with_isa(isa, 1);
@@ -189,10 +189,10 @@ static void rays_side_by_side_share_what_they_visit(void** state)
       stratus_hit hits[BEAM];
       make_beam(dimensions, round % 2 ? PINHOLE : PARALLEL, 0.2, &random, rays);
       assert_int_equal(stratus_tree_first_hit(context, tree, rays, BEAM, hits), STRATUS_OK);
-      apart += visit_alone(context, tree, rays, alone);
+      apart += visit_alone(context, tree, rays, single);
       for (int i = 0; i < BEAM; ++i) {
         together += hits[i].visited;
-        assert_true(hits[i].visited <= alone[i] + 64 || i == 0); /* the first ray has the remainder, too */
+        assert_true(hits[i].visited <= single[i] + 64 || i == 0); /* the first ray has the remainder, too */
       }
     }
     print_message("%llu visits, %llu by single rays\n", (unsigned long long)together, (unsigned long long)apart);
@@ -208,7 +208,7 @@ static void rays_far_from_each_other_make_no_beam(void** state)
 {
   (void)state;
   for (int isa = 0; isa <= 2; ++isa) {
-    uint32_t random = 37, alone[BEAM];
+    uint32_t random = 37, single[BEAM];
     int64_t dimensions[3];
     stratus_context* context = host_with_isa(isa, 1);
     stratus_voxels* voxels = make_set(context, 7, dimensions, &random);
@@ -218,9 +218,9 @@ static void rays_far_from_each_other_make_no_beam(void** state)
       stratus_hit hits[BEAM];
       make_beam(dimensions, round % 2 ? SCATTERED : CORNERS, 1.0, &random, rays);
       assert_int_equal(stratus_tree_first_hit(context, tree, rays, BEAM, hits), STRATUS_OK);
-      visit_alone(context, tree, rays, alone);
+      visit_alone(context, tree, rays, single);
       for (int i = 0; i < BEAM; ++i) {
-        assert_int_equal(hits[i].visited, alone[i]);
+        assert_int_equal(hits[i].visited, single[i]);
       }
     }
     stratus_tree_destroy(tree);

@@ -142,8 +142,8 @@ static void the_papers_map_has_distances_to_255(void** state)
       stratus_distance_map* map = NULL;
       assert_int_equal(stratus_distance_map_create(context, o, (stratus_distance_kind)kind, &map), STRATUS_OK);
       for (int i = 0; i <= 300; ++i) {
-        const int told = stratus_distance_map_get(map, 0, axis == 0 ? i : 0, axis == 1 ? i : 0, axis == 2 ? i : 0);
-        assert_int_equal(told, i < most ? i : most);
+        const int distance = stratus_distance_map_get(map, 0, axis == 0 ? i : 0, axis == 1 ? i : 0, axis == 2 ? i : 0);
+        assert_int_equal(distance, i < most ? i : most);
       }
       check_map(o, map);
       stratus_distance_map_destroy(map);

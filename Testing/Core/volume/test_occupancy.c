@@ -52,7 +52,7 @@ static void approach_threshold(const stratus_shown* shown, stratus_value_range* 
   }
 }
 
-/* True if the opacity is above 0 somewhere in lo..hi: at its ends, at a point between them, or beside a point towards smaller values. */
+/* Returns whether the opacity is above 0 in lo..hi: at its ends, at a point between them, or just below a point. */
 static bool function_shows(const stratus_transfer* t, double lo, double hi)
 {
   const double(*point)[2] = (const double(*)[2])t->opacity;
@@ -134,7 +134,7 @@ static void blocks_are_occupied_exactly_where_the_function_shows(void** state)
   }
 }
 
-/* All values are 0 or 1: no voxel lies within the peak, but every cell between a 0 and a 1 does. */
+/* All values are 0 or 1: no voxel is within the peak, but every cell between a 0 and a 1 contains it. */
 static void a_peak_between_two_voxel_values_is_occupied(void** state)
 {
   static const double peak[] = { 0.0, 0.0, 0.40, 0.0, 0.41, 0.9, 0.42, 0.0, 1.0, 0.0 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A picture that is written as an OpenEXR file and read by the tests' reader, the judge of what Stratus writes. The first byte is the
-// number of edits of the file, 3 bytes each; then come the width, the height and the channels, and what is left are the channels' floats,
-// again and again. 255: all that follows is a file. Without an edit the same bits come back; with edits the reader refuses, or gives a
+// A picture that is written as an OpenEXR file and read by the tests' reader, which judges Stratus' files. The first byte is the
+// number of edits of the file, 3 bytes each; then come the width, the height and the channels. The other bytes are the channels' floats,
+// repeated as needed. 255: all that follows is a file. Without an edit the same bits come back; with edits the reader refuses, or gives a
 // whole picture.
 #include "Filters/Common/vtkStratusEXRFile.h"
 #include "Testing/support/exr_reading.h"
