@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusCFGrid.h"
+#include "vtkStratusText.h"
 
 #include "vtkStratusLongitudes.h"
 
@@ -24,7 +25,7 @@ bool EndsWith(const std::string& text, const std::string& end)
 
 int AxisOfName(const std::string& name)
 {
-  const std::string word = vtkStratusLower(name);
+  const std::string word = vtkStratusLowerCase(vtkStratusTrimmed(name));
   if (IsOneOf(word, { "x", "xc", "xt", "xm", "xh", "lon", "longitude", "rlon", "west_east", "xi_rho", "ni", "i", "nx" })) {
     return 0;
   }
@@ -66,8 +67,8 @@ int vtkStratusCFGrid::AxisOfDimension(int dimension) const
 
 int vtkStratusCFGrid::AxisOf(const Variable& coordinate) const
 {
-  const std::string axis = vtkStratusLower(this->File.Text(coordinate, "axis")), name = this->File.Text(coordinate, "standard_name"),
-                    units = this->File.Text(coordinate, "units");
+  const std::string axis = vtkStratusLowerCase(vtkStratusTrimmed(this->File.Text(coordinate, "axis"))),
+                    name = this->File.Text(coordinate, "standard_name"), units = this->File.Text(coordinate, "units");
   if (axis == "x" || axis == "y" || axis == "z") {
     return axis[0] - 'x';
   }

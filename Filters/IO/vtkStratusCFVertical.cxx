@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusCFVertical.h"
+#include "vtkStratusText.h"
 
 #include "vtkStratusCFGrid.h"
 
@@ -105,7 +106,7 @@ double vtkStratusCFVertical::TermFactor(const Variable& variable, const vtkStrat
 void vtkStratusCFVertical::FindAir()
 {
   for (const Variable& one : this->File.GetVariables()) {
-    const std::string standard = this->File.Text(one, "standard_name"), name = vtkStratusLower(one.BaseName());
+    const std::string standard = this->File.Text(one, "standard_name"), name = vtkStratusLowerCase(vtkStratusTrimmed(one.BaseName()));
     const vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(one, "units"));
     const bool fits = this->Grid.Fits(one), horizontal = fits && this->Grid.Has(one, 0) && this->Grid.Has(one, 1);
     const bool temperature = standard == "air_temperature" || (standard.empty() && IsOneOf(name, { "t", "ta", "temp", "temperature" }));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusHeights.h"
+#include "vtkStratusText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,18 +131,18 @@ std::map<std::string, std::string> vtkStratusFormula::ReadTerms(const std::strin
 
 bool vtkStratusIsDown(const vtkStratusNetCDFFile& file, const vtkStratusNetCDFFile::Variable& variable)
 {
-  const std::string positive = file.Text(variable, "positive"), way = vtkStratusLower(positive);
+  const std::string positive = file.Text(variable, "positive"), way = vtkStratusLowerCase(vtkStratusTrimmed(positive));
   if (way == "down" || way == "up") {
     return way == "down";
   }
   if (!way.empty()) {
     file.Fail("coordinate '" + variable.Name + "' has positive '" + positive + "', it must be up or down");
   }
-  const std::string name = vtkStratusLower(file.Text(variable, "standard_name"));
+  const std::string name = vtkStratusLowerCase(vtkStratusTrimmed(file.Text(variable, "standard_name")));
   if (!name.empty()) {
     return name == "depth" || name.compare(0, 6, "depth_") == 0;
   }
-  if (vtkStratusLower(variable.Name).compare(0, 5, "depth") != 0 || variable.Dimensions.empty()) {
+  if (vtkStratusLowerCase(vtkStratusTrimmed(variable.Name)).compare(0, 5, "depth") != 0 || variable.Dimensions.empty()) {
     return false;
   }
   std::vector<size_t> start(variable.Dimensions.size(), 0), count;

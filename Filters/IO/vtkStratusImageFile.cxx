@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusImageFile.h"
+#include "vtkStratusText.h"
 
 #include "vtkStratusImageValues.h"
 
@@ -26,12 +27,6 @@ template <class T> bool ParseWhole(std::string_view text, T& value)
 bool IsSpace(char c)
 {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
-}
-
-bool EndsWith(const std::string& text, const char* end)
-{
-  const size_t length = std::strlen(end);
-  return text.size() >= length && vtkStratusLowerCase(text).compare(text.size() - length, length, end) == 0;
 }
 
 // NIfTI's header begins with its own length and ends with its name; the header of ANALYZE, NIfTI's predecessor, has only the length.
@@ -140,24 +135,6 @@ bool vtkStratusHeaderLines::Next(std::string& line)
   return some;
 }
 
-std::string vtkStratusTrimmed(std::string_view text)
-{
-  while (!text.empty() && IsSpace(text.front())) {
-    text.remove_prefix(1);
-  }
-  while (!text.empty() && IsSpace(text.back())) {
-    text.remove_suffix(1);
-  }
-  return std::string(text);
-}
-
-std::string vtkStratusLowerCase(std::string_view text)
-{
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
 std::string vtkStratusShown(std::string_view text)
 {
   constexpr size_t most = 60;
@@ -251,7 +228,7 @@ std::string vtkStratusBeside(const std::string& header, const std::string& name)
 vtkStratusImageFormat vtkStratusFindImageFormat(std::string& path)
 {
   for (const char* end : { ".img", ".img.gz" }) {
-    if (EndsWith(path, end)) { // the values of a NIfTI file, whose header is in the same folder
+    if (vtkStratusEndsWith(path, end)) { // the values of a NIfTI file, whose header is in the same folder
       const std::string stem = path.substr(0, path.size() - std::strlen(end));
       for (const char* other : { ".hdr", ".hdr.gz" }) {
         std::error_code error;

@@ -87,8 +87,6 @@ private:
 };
 
 // Text of headers. Numbers are read in the same way in every locale.
-VTK_STRATUS_PRIVATE std::string vtkStratusTrimmed(std::string_view text);
-VTK_STRATUS_PRIVATE std::string vtkStratusLowerCase(std::string_view text);
 VTK_STRATUS_PRIVATE std::string vtkStratusShown(std::string_view text); // in printable form, shortened, in quotes
 VTK_STRATUS_PRIVATE std::vector<std::string> vtkStratusSplit(std::string_view text);
 VTK_STRATUS_PRIVATE bool vtkStratusParse(std::string_view text, int64_t& value);

@@ -2,6 +2,7 @@
 #include "vtkStratusImageTest.h"
 
 #include "vtkStratusPictureFile.h"
+#include "vtkStratusText.h"
 #include "vtkStratusSimilarity.h"
 
 #include "vtkDataArray.h"

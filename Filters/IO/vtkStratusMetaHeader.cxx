@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Headers of MetaImage (.mha, and .mhd with its values in another file), with the keys of MetaIO's documentation and library.
 #include "vtkStratusImageFile.h"
+#include "vtkStratusText.h"
 
 #include <algorithm>
 #include <cmath>

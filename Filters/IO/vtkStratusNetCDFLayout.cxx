@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusNetCDFLayout.h"
+#include "vtkStratusText.h"
 
 #include <algorithm>
-#include <cctype>
 
 vtkStratusNetCDFLayout::vtkStratusNetCDFLayout(
   const vtkStratusNetCDFFile& file, const vtkStratusNetCDFFile::Variable& variable, const std::function<int(int dimension)>& axis_of)
@@ -40,8 +40,7 @@ bool vtkStratusNetCDFLayout::IsEnsemble(int dimension) const
   static const std::vector<std::string> names = { "number", "member", "members", "ensemble", "ens", "realization", "realisation",
     "sample" };
   const vtkStratusNetCDFFile::Variable* own = this->File.CoordinateOf(dimension);
-  std::string name = this->File.NameOf(dimension);
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = vtkStratusLowerCase(this->File.NameOf(dimension));
   return std::find(names.begin(), names.end(), name) != names.end() || name.compare(0, 8, "ensemble") == 0 ||
     (own && (this->File.Text(*own, "standard_name") == "realization" || this->File.Text(*own, "axis") == "E"));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusNetCDFReader.h"
+#include "vtkStratusText.h"
 
 #include "vtkStratusNetCDFFile.h"
 
@@ -7,18 +8,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 namespace {
 using Variable = vtkStratusNetCDFVariable;
 
 enum RankType { Field, Staggered, Flag, Ingredient, RankCount };
-
-std::string Lower(std::string text)
-{
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 template <size_t N> bool IsOneOf(const std::string& word, const std::array<const char*, N>& words)
 {
@@ -51,9 +45,9 @@ bool IsIngredient(const vtkStratusNetCDFFile& file, const Variable& variable)
     "dz", "e3t", "e3u", "e3v", "e3w", "thkcello", "volcello", "areacello", "hgt", "zhalf" };
   static constexpr std::array<const char*, 7> words = { "geopotential", "base state", "base-state", "cell thickness", "layer thickness",
     "cell area", "cell volume" };
-  const std::string said = Lower(file.Text(variable, "long_name") + " " + file.Text(variable, "description"));
+  const std::string said = vtkStratusLowerCase(file.Text(variable, "long_name") + " " + file.Text(variable, "description"));
   const bool axis = !file.Text(variable, "axis").empty() || !file.Text(variable, "positive").empty();
-  return axis || IsOneOf(file.Text(variable, "standard_name"), standard) || IsOneOf(Lower(variable.BaseName()), names) ||
+  return axis || IsOneOf(file.Text(variable, "standard_name"), standard) || IsOneOf(vtkStratusLowerCase(variable.BaseName()), names) ||
     std::any_of(words.begin(), words.end(), [&said](const char* word) { return said.find(word) != std::string::npos; }) ||
     IsNamedBy(file, variable, "cell_measures");
 }
@@ -78,7 +72,8 @@ int RankOf(const vtkStratusNetCDFFile& file, const Variable& variable)
       return Flag;
     }
   }
-  const bool mask = Lower(variable.BaseName()).find("mask") != std::string::npos || IsNamedBy(file, variable, "ancillary_variables");
+  const bool mask =
+    vtkStratusLowerCase(variable.BaseName()).find("mask") != std::string::npos || IsNamedBy(file, variable, "ancillary_variables");
   return mask ? Flag : IsStaggered(file, variable) ? Staggered : Field;
 }
 } // namespace

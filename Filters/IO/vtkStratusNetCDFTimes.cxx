@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The times of vtkStratusNetCDFFile: which dimensions are times, and their steps.
 #include "vtkStratusNetCDFFile.h"
+#include "vtkStratusText.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <netcdf.h>
 
 namespace {
-bool IsTimesName(std::string name)
+bool IsTimesName(const std::string& text)
 {
   static constexpr std::array<const char*, 16> names = { "t", "nt", "month", "months", "mon", "year", "years", "season", "day", "days",
     "hour", "hours", "date", "dates", "record", "step" };
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = vtkStratusLowerCase(text);
   return name.find("time") != std::string::npos || std::find(names.begin(), names.end(), name) != names.end();
 }
 

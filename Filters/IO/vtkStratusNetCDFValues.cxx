@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusNetCDFValues.h"
+#include "vtkStratusText.h"
 
 #include "vtkStratusNetCDFFile.h"
 
@@ -63,9 +64,7 @@ std::string ReadText(int file, int variable, const char* name)
       nc_free_string(length, strings.data());
     }
   }
-  text = text.substr(0, text.find('\0'));
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
+  return vtkStratusLowerCase(text.substr(0, text.find('\0')));
 }
 
 // The default fill value of a type in the file. Its bits are kept if `Stored` has the other sign.

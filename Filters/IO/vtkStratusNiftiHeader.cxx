@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Headers of NIfTI-1 and NIfTI-2: one file (.nii), or header and values (.hdr, .img), compressed by gzip or not.
 #include "vtkStratusImageFile.h"
+#include "vtkStratusText.h"
 
 #include "vtkByteSwap.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Headers of NRRD (Teem's "nearly raw raster data", versions 1 to 5), attached to their values or detached.
 #include "vtkStratusImageFile.h"
+#include "vtkStratusText.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusPictureFile.h"
+#include "vtkStratusText.h"
 
 #ifdef STRATUS_EXR
 #include "vtkStratusEXRReader.h"
@@ -83,13 +84,6 @@ template <typename Writer> void Write(vtkImageData* image, const std::string& pa
   }
 }
 } // namespace
-
-bool vtkStratusEndsWith(const std::string& path, const std::string& end)
-{
-  std::string last = path.size() < end.size() ? "" : path.substr(path.size() - end.size());
-  std::transform(last.begin(), last.end(), last.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return last == end;
-}
 
 vtkSmartPointer<vtkImageData> vtkStratusReadPicture(const std::string& path)
 {

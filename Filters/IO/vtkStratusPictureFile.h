@@ -11,9 +11,6 @@
 
 class vtkImageData;
 
-// Returns whether the name ends so, in letters of either case.
-VTK_STRATUS_PRIVATE bool vtkStratusEndsWith(const std::string& path, const std::string& end);
-
 // Reads .exr, and what VTK reads as an image. Throws std::runtime_error with a sentence.
 VTK_STRATUS_PRIVATE vtkSmartPointer<vtkImageData> vtkStratusReadPicture(const std::string& path);
 

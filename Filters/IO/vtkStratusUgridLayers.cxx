@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusUgridLayers.h"
+#include "vtkStratusText.h"
 
 #include "vtkStratusHeights.h"
 
@@ -150,7 +151,7 @@ bool vtkStratusUgridLayers::IsLevels(const Variable& one) const
   return shaped &&
     (unit.IsLength() || unit.IsPressure() || IsOneOf(name, { "altitude", "height", "depth" }) || EndsWith(one.BaseName(), "_layer_z") ||
       EndsWith(one.BaseName(), "_interface_z") || !this->File.Text(one, "positive").empty() ||
-      vtkStratusLower(this->File.Text(one, "axis")) == "z");
+      vtkStratusLowerCase(vtkStratusTrimmed(this->File.Text(one, "axis"))) == "z");
 }
 
 // Fixed levels along the dimension of the first variable that has layers: at the layers' borders if the file has these, else in the middle

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusUnits.h"
+#include "vtkStratusText.h"
 
 #include <algorithm>
-#include <cctype>
 
 #ifdef STRATUS_UDUNITS
 #include <mutex>
@@ -50,7 +50,7 @@ constexpr struct {
 // Returns whether the unit is "degree" or "degrees", then perhaps "_", then the word or its first letter.
 bool IsDegreesOf(const std::string& units, const std::string& word)
 {
-  const std::string text = vtkStratusLower(units);
+  const std::string text = vtkStratusLowerCase(vtkStratusTrimmed(units));
   if (text.compare(0, 6, "degree") != 0) {
     return false;
   }
@@ -122,15 +122,6 @@ private:
 #endif
 } // namespace
 
-std::string vtkStratusLower(const std::string& text)
-{
-  const char* const blanks = " \t\r\n";
-  const size_t first = text.find_first_not_of(blanks);
-  std::string lower = first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
 bool vtkStratusIsEast(const std::string& units)
 {
   return IsDegreesOf(units, "east");
@@ -144,7 +135,7 @@ bool vtkStratusIsNorth(const std::string& units)
 vtkStratusUnit vtkStratusUnitOf(const std::string& text)
 {
   vtkStratusUnit result;
-  const std::string lower = vtkStratusLower(text);
+  const std::string lower = vtkStratusLowerCase(vtkStratusTrimmed(text));
   if (lower.empty()) {
     return result;
   }

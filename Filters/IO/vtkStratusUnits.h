@@ -27,7 +27,4 @@ vtkStratusUnit vtkStratusUnitOf(const std::string& text);
 bool vtkStratusIsEast(const std::string& units);
 bool vtkStratusIsNorth(const std::string& units);
 
-// Small letters, without blanks at the ends.
-std::string vtkStratusLower(const std::string& text);
-
 #endif
