@@ -57,6 +57,38 @@ apart = abs(plotter.screenshot(return_img=True) - vtks)
 check(mapper.GetLastError() == "" and mapper.GetSamplesTaken() > 0, mapper.GetLastError())
 check(0 < apart.max() and apart.mean() < 1, f"from VTK's mapper {apart.mean():.2f} in the mean, {apart.max()} at most")
 
+# Whatever pyvista enables, the volume shows, behind and in front of opaque geometry, and looks as FixedPoint's does.
+ENABLED = {"nothing": lambda p: None, "ssaa": lambda p: p.enable_anti_aliasing("ssaa"), "fxaa": lambda p: p.enable_anti_aliasing("fxaa"),
+           "msaa": lambda p: p.enable_anti_aliasing("msaa", multi_samples=8), "eye dome lighting": lambda p: p.enable_eye_dome_lighting(),
+           "ssao": lambda p: p.enable_ssao(radius=5), "depth of field": lambda p: p.enable_depth_of_field(), "blur": lambda p: p.add_blurring(),
+           "shadows": lambda p: p.enable_shadows(), "depth peeling": lambda p: p.enable_depth_peeling(8),
+           "hidden lines": lambda p: p.enable_hidden_line_removal(), "parallel": lambda p: p.enable_parallel_projection()}
+
+
+def enabled(what, way):
+    """A picture of a ball inside a volume, drawn by FixedPoint, by ours, or left out."""
+    seen = pyvista.Plotter(off_screen=True, window_size=(256, 256))
+    seen.set_background("black")
+    seen.add_mesh(pyvista.Sphere(radius=12, center=(24, 24, 24)), color="white")
+    if way != "none":
+        added = seen.add_volume(grid, opacity=[0, 0, 0, 0.2, 0.6], mapper="fixed_point", show_scalar_bar=False)
+    if way == "ours":
+        added.mapper = stratus.vtkStratusVolumeMapper()
+        added.mapper.SetInputData(grid)
+    seen.camera_position = "iso"
+    ENABLED[what](seen)
+    picture = seen.screenshot(return_img=True).astype(int)
+    seen.close()
+    return picture
+
+
+for what in ENABLED:
+    ours, theirs, without = (enabled(what, way) for way in ("ours", "fixed", "none"))
+    shows, apart = abs(ours - without).mean(), abs(ours - theirs).mean()
+    print(f"{what}: the volume changes {shows:.1f} of 255 in the mean, FixedPoint's {abs(theirs - without).mean():.1f}; they are {apart:.2f} apart")
+    check(shows > 2, f"under {what} the volume shows: {shows}")
+    check(apart < 2, f"under {what} the volume looks as FixedPoint's: {apart}")
+
 # Cells, and filters.
 cells = grid.to_tetrahedra()
 tetrahedra = stratus.vtkStratusTetrahedraMapper()

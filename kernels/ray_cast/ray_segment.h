@@ -41,7 +41,7 @@ typedef GLOBAL const void* value_source;
 
 typedef struct stratus_packet {
   vfloat p[3], d[3], inverse[3], begin, end, first;
-  vfloat unit; /* the length of a sample in sample distances; set if lattice.follows is */
+  vfloat unit; /* the length of a sample in sample distances */
   vfloat transparency, red, green, blue, depth;
   vfloat
     front; /* pre-integrated: the value at the segment's front; extremes: the best value so far; sums: the sum, whose weight is in `red` */
@@ -170,7 +170,7 @@ INLINE void packet_nothing(stratus_packet* k)
   k->samples = vi_set(0);
   k->skipped = vi_set(0);
   k->lookups = vi_set(0);
-  k->transparency = v_set(1.0f);
+  k->transparency = k->unit = v_set(1.0f);
   k->red = k->green = k->blue = k->front = v_set(0.0f);
   k->depth = v_set(LARGEST_FLOAT);
   k->live = k->hits = k->fresh = m_none();
@@ -213,7 +213,9 @@ INLINE void packet_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_r
   k->begin = v_select(k->live, k->begin, zero);
   k->end = v_select(k->live, k->end, zero); /* lanes that are not live stay at a harmless place */
   k->first = v_load(rays->first);
-  k->unit = RAY_RARE(RAY_FOLLOWS, a->lattice.follows) ? v_load(rays->unit) : v_set(1.0f);
+  if (RAY_RARE(RAY_FOLLOWS, a->lattice.follows)) {
+    k->unit = v_load(rays->unit);
+  }
   k->octant = vi_set(0);
   for (int axis = 0; axis < 3; ++axis) {
     k->p[axis] = v_load(rays->p[axis]);
