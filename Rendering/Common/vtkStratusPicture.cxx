@@ -280,7 +280,7 @@ vtkStratusPicture::Others vtkStratusPicture::FindOthers(
   props->InitTraversal(iterator);
   while (vtkProp* other = props->GetNextProp(iterator)) {
     if (other != prop && other->GetVisibility()) {
-      if (!other->IsA("vtkActor2D") && !endsNoRay(other)) {
+      if (!other->IsA("vtkActor2D") && (renderer->GetSelector() || !endsNoRay(other))) { // all write depth while the renderer picks
         others.Geometry = true;
         this->FindPart(other, others.Part);
       }

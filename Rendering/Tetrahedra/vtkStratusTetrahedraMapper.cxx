@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusTetrahedraMapper.h"
 
+#include "vtkStratusDepthOrder.h"
 #include "vtkStratusTetrahedraMapperInternals.h"
 
 #include "vtkCommand.h"
@@ -61,6 +62,9 @@ double* vtkStratusTetrahedraMapper::GetBounds()
 
 void vtkStratusTetrahedraMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 {
+  if (vtkStratusDepthOrder::Draw(ren, vol, this)) {
+    return;
+  }
   const auto start = std::chrono::steady_clock::now();
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent, nullptr);
   std::string error;

@@ -50,6 +50,9 @@
  *
  * All else (isosurfaces of several, dependent ones in other modes than composite, slices) is refused by an error, and nothing is drawn.
  *
+ * Volumes of one renderer are drawn by depth, as vtkStratusVolumeMapper describes. A mesh is mixed with the volumes that overlap it if one
+ * of them has a vtkStratusVolumeMapper, by method auto or march and without light.
+ *
  * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.
  *
  * @sa vtkStratusVolumeMapper vtkProjectedTetrahedraMapper
@@ -261,7 +264,8 @@ public:
 
   /**
    * Get the last picture as floats, of the renderer's viewport's size: point arrays RGBA (premultiplied by alpha) and Depth (world distance
-   * along the ray from the eye, infinity where nothing is). nullptr before the first picture. Each call makes a new image.
+   * along the ray from the eye, infinity where nothing is). nullptr before the first picture and after one that was mixed with other
+   * volumes. Each call makes a new image.
    */
   vtkImageData* GetLastImage();
 

@@ -277,6 +277,7 @@ bool vtkStratusTetrahedraMapper::Internals::Describe(vtkVolume* prop, vtkStratus
 {
   bool empty = false;
   description = vtkStratusMeshDescription();
+  this->HasPicture = false; // the other module has it
   if (prop->GetProperty()->GetShade()) {
     description.Error = "light on a mesh is not supported among several volumes, only ShadeOff";
     return false;

@@ -2,6 +2,7 @@
 #include "vtkStratusMultiBlockVolumeMapper.h"
 
 #include "vtkStratusAMR.h"
+#include "vtkStratusDepthOrder.h"
 #include "vtkStratusJointPicture.h"
 #include "vtkStratusVolumeMapperInternals.h"
 
@@ -425,6 +426,9 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Render(vtkRenderer* renderer, 
 
 void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
+  if (vtkStratusDepthOrder::Draw(renderer, volume, this)) {
+    return;
+  }
   this->GetInputAlgorithm()->Update();
   std::string error, warning;
   const std::vector<Block> blocks = this->Internal->Find(this, volume, warning, error);

@@ -24,6 +24,8 @@
  * blend modes composite, isosurface and slice, and first hits; more than one block in another mode is refused by an error, and nothing is
  * drawn. The cost of a frame grows with the visible part of each block. Each block keeps its own structure and tables.
  *
+ * Among other volumes of the renderer it is drawn by depth. Volumes that overlap it are drawn over it or under it, with a warning.
+ *
  * @sa vtkStratusVolumeMapper vtkStratusMultiVolume
  */
 #ifndef vtkStratusMultiBlockVolumeMapper_h

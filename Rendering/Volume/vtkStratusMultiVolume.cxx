@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusMultiVolume.h"
 
+#include "vtkStratusDepthOrder.h"
 #include "vtkStratusJointPicture.h"
 #include "vtkStratusMeshDescription.h"
 #include "vtkStratusTetrahedraMapper.h"
 #include "vtkStratusVolumeMapperInternals.h"
 
 #include "vtkBoundingBox.h"
+#include "vtkCommand.h"
 #include "vtkImageData.h"
 #include "vtkMath.h"
 #include "vtkObjectFactory.h"
@@ -17,6 +19,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 
 class VTK_STRATUS_PRIVATE vtkStratusMultiVolume::Internals
 {
@@ -342,6 +345,9 @@ int vtkStratusMultiVolume::RenderVolumetricGeometry(vtkViewport* viewport)
   const auto start = std::chrono::steady_clock::now();
   std::string error;
   vtkRenderer* renderer = vtkRenderer::SafeDownCast(viewport);
+  if (renderer && vtkStratusDepthOrder::Draw(renderer, this, nullptr)) {
+    return 1;
+  }
   if (renderer) {
     this->Internal->Render(renderer, error);
   }
@@ -351,6 +357,45 @@ int vtkStratusMultiVolume::RenderVolumetricGeometry(vtkViewport* viewport)
   }
   this->EstimatedRenderTime += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return this->Internal->LastError.empty() && this->Internal->GetLowest() >= 0 ? 1 : 0;
+}
+
+// The volumes are held only while they are drawn: the first one's mapper holds the prop that mixes them.
+std::string vtkStratusMultiVolume::Mix(vtkRenderer* renderer, vtkVolume* prop, const std::vector<vtkVolume*>& volumes)
+{
+  const auto start = std::chrono::steady_clock::now();
+  const auto isImage = [](vtkVolume* volume) { return vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper()) != nullptr; };
+  auto* first = vtkStratusVolumeMapper::SafeDownCast((*std::find_if(volumes.begin(), volumes.end(), isImage))->GetMapper());
+  if (!first->Internal->Joint) {
+    first->Internal->Joint = vtkSmartPointer<vtkStratusMultiVolume>::New();
+  }
+  vtkStratusMultiVolume* joint = first->Internal->Joint;
+  double allotted = 0.0;
+  for (vtkVolume* volume : volumes) {
+    allotted += volume->GetAllocatedRenderTime();
+    volume->GetMapper()->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent, nullptr);
+  }
+  joint->SetPropertyKeys(prop->GetPropertyKeys()); // by which a pass that peels marks what it draws
+  joint->SetAllocatedRenderTime(allotted, renderer);
+  std::copy(volumes.begin(), volumes.end(), joint->Internal->Volumes);
+  std::string error;
+  try {
+    joint->Internal->Render(renderer, error);
+  } catch (const std::bad_alloc&) {
+    error = "there is not enough memory for the picture";
+  }
+  joint->Internal->LastError = error;
+  for (size_t n = 0; n < volumes.size(); ++n) {
+    joint->Internal->Volumes[n] = nullptr;
+    if (auto* mapper = vtkStratusVolumeMapper::SafeDownCast(volumes[n]->GetMapper())) {
+      mapper->Internal->SetMixed(joint->Internal->Reports[n]);
+      mapper->TimeToDraw = mapper == first ? std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() : 0.0;
+      if (mapper != first) {
+        mapper->Internal->ReleaseJoint(renderer);
+      }
+    }
+    volumes[n]->GetMapper()->InvokeEvent(vtkCommand::VolumeMapperRenderEndEvent, nullptr);
+  }
+  return error;
 }
 
 void vtkStratusMultiVolume::ReleaseGraphicsResources(vtkWindow* window)

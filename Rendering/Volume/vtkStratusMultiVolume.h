@@ -3,8 +3,9 @@
  * @class   vtkStratusMultiVolume
  * @brief   draws up to eight volumes that may overlap as one medium, right in depth
  *
- * Where volumes that overlap are props of their own, one is drawn over the other. This prop draws them in one pass: along each ray the
- * optical depths of all volumes add up, and their colours are mixed by them. Grids, spacings, directions, types and matrices may differ.
+ * Along each ray the optical depths of all volumes add up, and their colours are mixed by them. Grids, spacings, directions, types and
+ * matrices may differ. Volumes that overlap and are props of their own are drawn in this way, too. This prop is for programs that use
+ * vtkMultiVolume's interface, need the picture or the reports of all volumes, or choose whose settings hold for the picture.
  *
  * Its interface is vtkMultiVolume's: SetVolume() accepts a vtkVolume and a port. VTK's own vtkMultiVolume works with
  * vtkGPUVolumeRayCastMapper only, which holds all inputs. Here each vtkVolume has a vtkStratusVolumeMapper of its own, which keeps its
@@ -34,8 +35,11 @@
 #include "vtkVolume.h"
 
 #include <memory> // For std::unique_ptr
+#include <string> // For Mix()
+#include <vector>
 
 class vtkImageData;
+class vtkRenderer;
 
 class STRATUSRENDERINGVOLUME_EXPORT vtkStratusMultiVolume : public vtkVolume
 {
@@ -117,6 +121,12 @@ public:
    */
   int RenderVolumetricGeometry(vtkViewport* viewport) override;
   void ReleaseGraphicsResources(vtkWindow* window) override;
+#ifndef __VTK_WRAP__
+  // Draws at most eight volumes, each of a mapper of its own, as one medium. The first vtkStratusVolumeMapper among them, of which there
+  // must be one, sets what the mapper at the lowest port sets. prop: a prop of the renderer that draws one of them. Returns why nothing is
+  // drawn, or "".
+  static std::string Mix(vtkRenderer* renderer, vtkVolume* prop, const std::vector<vtkVolume*>& volumes);
+#endif
 
 protected:
   vtkStratusMultiVolume();

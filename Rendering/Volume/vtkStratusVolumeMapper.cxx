@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusVolumeMapper.h"
 
+#include "vtkStratusDepthOrder.h"
 #include "vtkStratusVolumeMapperInternals.h"
+#include "vtkStratusVolumeMixer.h"
 
 #include "vtkCommand.h"
 #include "vtkImageData.h"
@@ -18,7 +20,10 @@
 
 vtkStandardNewMacro(vtkStratusVolumeMapper);
 
-vtkStratusVolumeMapper::vtkStratusVolumeMapper() : Internal(new Internals(this)) {}
+vtkStratusVolumeMapper::vtkStratusVolumeMapper() : Internal(new Internals(this))
+{
+  vtkStratusRegisterMixer();
+}
 
 vtkStratusVolumeMapper::~vtkStratusVolumeMapper()
 {
@@ -34,6 +39,9 @@ int vtkStratusVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
 
 void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
 {
+  if (vtkStratusDepthOrder::Draw(ren, vol, this)) {
+    return;
+  }
   const auto start = std::chrono::steady_clock::now();
   this->InvokeEvent(vtkCommand::VolumeMapperRenderStartEvent, nullptr);
   std::string error;
@@ -62,6 +70,9 @@ bool vtkStratusVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* v
 void vtkStratusVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Internal->Display.ReleaseGraphicsResources(window);
+  if (this->Internal->Joint) {
+    this->Internal->Joint->ReleaseGraphicsResources(window);
+  }
   this->Superclass::ReleaseGraphicsResources(window);
 }
 

@@ -64,7 +64,12 @@
  * The mapper keeps what it builds: a new picture of the same data rebuilds nothing, a new transfer function rebuilds only tables and the
  * structure.
  *
- * Several volumes that overlap are mixed along the rays by vtkStratusMultiVolume.
+ * Volumes of one renderer are drawn by depth, in whatever order they were added. Volumes whose boxes do not overlap, as cropping and
+ * clipping planes leave them, are drawn from back to front. Volumes that overlap are mixed along the rays, as by vtkStratusMultiVolume; in
+ * such a group, the vtkStratusVolumeMapper whose volume has the lowest corner sets what the mapper at the lowest port sets there. If the
+ * group can't be mixed, its volumes are drawn one over the other, the one with the nearest middle last, and a warning gives the reason,
+ * once a renderer. A volume of another class's mapper is drawn in its place among the renderer's props, and a warning says so if that is
+ * the wrong place. Hardware selectors draw each volume by itself, up to the first one that shows.
  *
  * @sa vtkStratusMultiVolume vtkStratusHybridTreeFilter vtkStratusDistanceMapFilter vtkSmartVolumeMapper
  */
@@ -560,8 +565,8 @@ public:
    *   there is none;
    * - "Samples", if the picture was drawn with CountSamples.
    *
-   * A pixel of a coarse picture is repeated. The result is nullptr before the first picture and after one that was refused or aborted. The
-   * mapper owns the image, and the next call overwrites it.
+   * A pixel of a coarse picture is repeated. The result is nullptr before the first picture, and after one that was refused, aborted or
+   * mixed with other volumes. The mapper owns the image, and the next call overwrites it.
    */
   vtkImageData* GetLastImage();
 

@@ -8,6 +8,7 @@
 #include "vtkStratusDisplay.h"
 #include "vtkStratusInput.h"
 #include "vtkStratusLeftOut.h"
+#include "vtkStratusMultiVolume.h"
 #include "vtkStratusPicture.h"
 #include "vtkStratusSheet.h"
 #include "vtkStratusVectors.h"
@@ -48,6 +49,10 @@ public:
   // Fills an image of the viewport's size, or empties it where there is no picture.
   void FillColorImage(vtkImageData* image) const;
   void FillDepthImage(vtkImageData* image, int type) const;
+  // Takes the report of a picture that was drawn with other volumes. The mapper has no picture of its own then.
+  void SetMixed(const stratus_ray_cast_report& report);
+  // Drops the prop that mixed this volume with others.
+  void ReleaseJoint(vtkRenderer* renderer);
   // Extends the bounds by half a voxel on all sides, in first hits of point data, and along the axes of which there is one layer of points.
   void WidenBounds(double bounds[6]) const;
 
@@ -61,8 +66,9 @@ public:
   std::vector<vtkStratusTransferView> Transfers; // at least one per independent component, or per label
   std::vector<stratus_transfer> Functions;       // this frame's functions as the core's structs
   vtkStratusDisplay Display;
-  std::string LastError;     // of the last picture, reported already; empty: none
-  vtkStratusLeftOut LeftOut; // settings that the last picture did not use
+  vtkSmartPointer<vtkStratusMultiVolume> Joint; // mixes overlapping volumes of which this mapper's is the first; nullptr: there are none
+  std::string LastError;                        // of the last picture, reported already; empty: none
+  vtkStratusLeftOut LeftOut;                    // settings that the last picture did not use
   double DrawMilliseconds = 0.0;
   double UsedCoarseness = 1.0;
   vtkSmartPointer<vtkDataObject> PickedOf;           // composite data whose block the input is; nullptr: the input is all

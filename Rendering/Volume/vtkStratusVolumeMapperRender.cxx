@@ -156,6 +156,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     return error.empty();
   }
   this->HasPicture = false; // a refused picture leaves no image
+  this->ReleaseJoint(renderer);
   this->HasSamples = this->Mapper->CountSamples != 0;
   stratus_ray_cast_options options;
   if (!this->Describe(renderer, prop, options, error) || !this->PrepareContext(error)) {
@@ -219,6 +220,22 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     this->DrawMilliseconds = Now() - cast + read - start;
   }
   return drawn;
+}
+
+void vtkStratusVolumeMapper::Internals::SetMixed(const stratus_ray_cast_report& report)
+{
+  this->Report = report;
+  this->HasPicture = false;
+  this->LastError.clear();
+}
+
+// A selector draws each volume by itself for a moment.
+void vtkStratusVolumeMapper::Internals::ReleaseJoint(vtkRenderer* renderer)
+{
+  if (this->Joint && !renderer->GetSelector()) {
+    this->Joint->ReleaseGraphicsResources(renderer->GetRenderWindow());
+    this->Joint = nullptr;
+  }
 }
 
 vtkImageData* vtkStratusVolumeMapper::Internals::GetLastImage()

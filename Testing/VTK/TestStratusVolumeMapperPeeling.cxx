@@ -317,8 +317,8 @@ void ManySheets(bool parallel)
   }
 }
 
-// Two volumes, one before the other, in either order: neither ends the other's rays, for any number of samples. A sheet is between them and
-// other sheets are around; or both are between two sheets, which are the first, the middle or the last two of four.
+// Two volumes, one before the other, added in either order: neither ends the other's rays, for any number of samples. A sheet is between
+// them and other sheets are around; or both are between two sheets, which are the first, the middle or the last two of four.
 void TwoVolumes(bool shared, const std::vector<double>& around = {})
 {
   for (int samples : { 0, 4 }) {
@@ -338,15 +338,19 @@ void TwoVolumes(bool shared, const std::vector<double>& around = {})
         sheets.emplace_back(new Sheet(scene, at, n == 1 ? 100 : 10 + 5 * n, n == 0, n == 1, n == 2, 0.3));
         ++n;
       }
-      // A mapper that is shared has the last one's picture: the other is drawn apart, by a mapper of its own.
+      // From back to front, in whatever order they were added. A mapper that is shared has the last picture, which is the nearer volume's:
+      // the other is drawn apart, by a mapper of its own.
+      vtkVolume* const back = z > 0.0 ? scene.Volume.Get() : other.Get();
       const auto pictures = [&] {
         std::vector<Drawn> drawn{ Copy(scene.Mapper->GetLastImage()), Copy(mapper->GetLastImage()) };
         if (shared) {
           drawn[1] = drawn[0];
-          scene.Volume->SetMapper(mapper);
+          back->SetMapper(mapper);
           scene.Render();
           drawn[0] = Copy(mapper->GetLastImage());
-          scene.Volume->SetMapper(scene.Mapper);
+          back->SetMapper(scene.Mapper);
+        } else if (z < 0.0) {
+          std::swap(drawn[0], drawn[1]);
         }
         return drawn;
       };
