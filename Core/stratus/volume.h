@@ -35,8 +35,9 @@ STRATUS_API size_t stratus_type_size(stratus_type type); /* size in bytes of a v
  * voxel with such a value).
  *
  * Types of more than 24 bits are read as differences from one of their values, computed in double, so that a large offset costs no digits.
- * This value is the one of least magnitude among some thousand that are examined. A double that differs from it by more than floats hold
- * counts as infinite. If floats cannot distinguish any two values, STRATUS_INVALID_ARGUMENT is returned. */
+ * This value is the one of least magnitude among some thousand that are examined. Integers beyond 2^53 are rounded to doubles first. A
+ * double that differs from it by more than floats hold counts as infinite. A FLOAT64 volume whose values differ, but are all equal as
+ * floats, gives STRATUS_INVALID_ARGUMENT. Fill values that count as infinite do not make values differ. */
 typedef struct stratus_volume {
   const void* values; /* dimensions[0]*[1]*[2] values, x fastest, value_stride apart */
   stratus_type type;

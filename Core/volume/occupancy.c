@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define RUN 256 /* blocks tested at once: their ranges stay in the first cache */
-/* Up to so many intervals, comparing with all of them is faster than a search, for it vectorises. */
+/* Up to this many intervals, comparing with all is faster than a search, because it vectorises. */
 #define INTERVALS_COMPARED 16
 
 /* Tests a run of blocks. A block without finite values, whose range is INFINITY..-INFINITY, meets no interval. */

@@ -11,11 +11,12 @@
 #define MOST_CELLS 65536
 /* How far sums reach beyond the function's points, in their span, where the function shows. */
 #define OUTSIDE_SPANS 4.0
-/* Number of cells over the function's narrowest feature, which more cells than the least are taken for. */
+/* Cells that the grid gives to the function's narrowest feature, if it needs more than the minimum for that. */
 #define CELLS_A_FEATURE 32
 /* A feature over so many cells is taken at their middles. */
 #define CELLS_ENOUGH 16
-/* Of a cell that mixes several pieces: the change of optical depth, relative to the greatest, and of a colour, that is not divided. */
+/* A cell that mixes several pieces is not divided if its optical depth changes by less than this share of its largest depth, and each
+ * colour by less than this. */
 #define CHANGE_SMALL (1.0 / 16.0)
 /* A ramp in a divided cell has so many entries at most. */
 #define PARTS_A_RAMP 32

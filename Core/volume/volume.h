@@ -85,7 +85,10 @@ static inline stratus_fetching stratus_value_range_fetching(const stratus_value_
  *
  * The trilinear interpolation of volumes needs none: it never leaves the hull of its corners. v_lerp() is fma(t, d, a), where d is b - a
  * rounded and t a float in 0 <= t < 1, because it is a position less its whole part, which is exact. Then t <= 1 - 2^-24, and rounding has
- * made |d| greater than |b - a| by at most |d| 2^-24. So a + t d is between a and b, and so is the float that it is rounded to. */
+ * made |d| greater than |b - a| by at most |d| 2^-24. So a + t d is between a and b, and so is the float that it is rounded to.
+ *
+ * The bounds of volumes' blocks in modes maximum and minimum have the slack, too (stratus_ray_modes_bounds): a larger bound is always safe.
+ */
 #define STRATUS_HULL_SLACK 1e-6f
 
 /* ---- transfer_table.c */
@@ -228,8 +231,8 @@ stratus_status stratus_occupancy_below(
   stratus_context* context, const int64_t blocks[3], int block_size, const uint8_t* bytes, uint8_t beyond, stratus_occupancy** occupancy);
 
 /* ---- distance_map.c
- * A byte for each block, which traversal reads of all kinds but PAPER. Of an empty block it is the distance, 1..127. Of an occupied block
- * it is 128 plus the distance to the nearest empty block, 1..127 (Chebyshev in all kinds except BLOCK, where it is 1). PAPER has the
+ * One byte for each block. Traversal reads maps of all kinds except PAPER. Of an empty block it is the distance, 1..127. Of an occupied
+ * block it is 128 plus the distance to the nearest empty block, 1..127 (Chebyshev in all kinds except BLOCK, where it is 1). PAPER has the
  * paper's own bytes: 0 in an occupied block, elsewhere the distance, 1..255. In a map of kind k the byte of block (i,j,k) for octant o is
  * bytes[o*map_bytes + (k*blocks[1] + j)*pitch + i]; o is 0 in all kinds except OCTANT. */
 struct stratus_distance_map {

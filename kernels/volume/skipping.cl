@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The structures by which rays skip blocks: value ranges, occupancy, distance maps. They are one program, for a processor's OpenCL takes
- * longer to begin a program than to compile one of these kernels.
+ * The structures by which rays skip blocks: value ranges, occupancy, distance maps. All kernels are one program,
+ * because OpenCL on a processor needs longer to start a program than to compile one of them.
  *
- * VALUE: the type of a volume's values. WIDE 1: the value less the bias, computed in double, becomes the float. Only the value ranges hang
- * on them. */
+ * VALUE: the type of a volume's values. WIDE 1: the value less the bias, computed in double, becomes the float. Only the value ranges
+ * depend on VALUE and WIDE. */
 #ifndef VALUE
 #define VALUE float
 #endif
@@ -357,8 +357,8 @@ static void sweep_planes(const sweep* s, long item)
   }
 }
 
-/* The map: of an empty block the distance to the nearest occupied one, of an occupied block its mark and the distance to the nearest empty
- * one. One item a row. */
+/* Write the map. An empty block gets its distance to the nearest occupied block; an occupied block gets its mark plus the distance to the
+ * nearest empty block. One item per row. */
 static void join_rows(const sweep* s, long row, __global uchar* bytes)
 {
   const long j = row % s->ny, k = row / s->ny, at = row_at(s->pitch, s->ny, j, k);
