@@ -63,9 +63,17 @@ static stratus_status run_builder(stratus_tree_method method, stratus_bvh_build*
       return stratus_bvh_build_agglomerative(build);
     case STRATUS_TREE_DPC:
       return stratus_bvh_build_density_peaks(build);
-    default:
+    case STRATUS_TREE_KMEANS:
       return stratus_bvh_build_k_means(build);
+    case STRATUS_TREE_HYBRID: /* all methods have a case, so that the compiler warns of a new one */
+    case STRATUS_TREE_HYBRID_PAPER:
+    case STRATUS_TREE_DISTANCE:
+    case STRATUS_TREE_OCTANT:
+    case STRATUS_TREE_WIDE:
+    case STRATUS_TREE_AUTO:
+      break;
   }
+  return stratus_fail(build->context, STRATUS_INVALID_ARGUMENT, "method %d has no builder", (int)method);
 }
 
 stratus_status stratus_bvh_create(

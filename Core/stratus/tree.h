@@ -9,6 +9,8 @@
 extern "C" {
 #endif
 
+/* Saved trees contain these numbers. SAH to KMEANS must stay consecutive, because they are the hierarchies of room bvh. A new hierarchy is
+ * added directly after KMEANS. It raises VERSION in tree_bytes.c, because the numbers of WIDE and AUTO change. */
 typedef enum stratus_tree_method {
   STRATUS_TREE_HYBRID,       /* Guo et al. 2025, but splits only where a single distance field would be too large or too empty */
   STRATUS_TREE_HYBRID_PAPER, /* Guo et al. 2025 as published: node test and split at every node, threshold in voxels */

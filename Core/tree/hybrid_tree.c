@@ -115,8 +115,8 @@ static stratus_status find_density_planes(hybrid_build* build, hybrid_work* work
   return stratus_hybrid_planes_density(build, list, uneven);
 }
 
-/* Counts the plane of the node, or, if the larger side could no longer be divided into leaves of `leaf_bricks`, though the node itself
- * could, halves the bricks. */
+/* Count the chosen plane. If its larger side could not end in leaves of `leaf_bricks` within max_depth, but the node could, then replace it
+ * by the median. */
 static stratus_status keep_depth(hybrid_build* build, hybrid_work* work, int* how)
 {
   const hybrid_node* node = &work->node;

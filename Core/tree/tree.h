@@ -9,8 +9,9 @@
 #include "voxels.h"
 #include "wide_tree.h"
 
-/* The shape of a tree, made by hybrid_tree.c with the statistics' splits and `why`. A node of kind FIELD lists bricks [first, first+count)
- * of `order`; tree.c makes its field and the rest of the tree. */
+/* The shape of a tree: hybrid_tree.c (which also sets the statistics' splits and `why`) or whole_shape() in tree.c makes it, and tree.c
+ * makes its fields and the rest. Hierarchies of bvh and wide trees have no shape. A node of kind FIELD lists bricks [first, first+count) of
+ * `order`. */
 typedef struct stratus_tree_shape {
   stratus_tree_node* nodes;
   uint32_t node_count;

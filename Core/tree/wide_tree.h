@@ -11,8 +11,7 @@
 #define STRATUS_WIDE 16
 /* Bytes of the hierarchy and its bricks, for each brick: nodes have 9 to 10 children where sets are large. */
 #define STRATUS_WIDE_BYTES 30
-/* A ray that descends leaves at most 15 siblings behind in each node. The codes have 48 bits, and a node, which opens its children from the
- * highest bit down, spends 4 of them or ends in bricks. */
+/* Stack size: each level leaves at most 15 siblings. A node uses 4 of the 48 code bits, unless its children are bricks. */
 #define STRATUS_WIDE_STACK (15 * 14 + STRATUS_WIDE)
 
 /* The root is node 0, and parents come before children. Child c is node `node + c` if c < inner, else brick `brick + c - inner`. Its box is
