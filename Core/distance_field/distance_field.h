@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Distance fields: types and functions that the exact transform, the floodings and their kernels share. */
+ * Distance fields: types and functions that the exact transform, the floodings and their kernels share.
+ *
+ * The Euclidean metric is part of every method: fields store squared integers, the exact transform adds squares axis by axis, and floodings
+ * compare squares. Another metric needs its own files. Users are tree_fields.c (method hybrid-paper) and the Python package. */
 #ifndef STRATUS_DISTANCE_FIELD_H
 #define STRATUS_DISTANCE_FIELD_H
 
@@ -31,8 +34,8 @@ static inline int stratus_bits_get(const stratus_bits* set, int64_t i, int64_t j
   return (int)(set->bits[(k * set->n[1] + j) * set->words + (i >> 6)] >> (i & 63) & 1);
 }
 
-/* True if the context's device makes a field: it is a GPU (see device.h), and holds buffers of `bytes` for each voxel. Otherwise the host
- * makes it. distance_field_device.c */
+/* distance_field_device.c: true if the context's device builds structures (stratus_device_builds()) and can allocate `bytes` for each
+ * voxel. Otherwise the host makes the field. */
 bool stratus_field_on_device(const stratus_context* context, const int64_t n[3], size_t bytes);
 
 /* distance_field_exact.c: true if squared distances of a grid need 64 bits. */

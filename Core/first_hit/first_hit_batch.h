@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Shared by the methods that find first hits. */
+ * Shared by the methods that find first hits. This room finds hits and computes no colours. Core/ray_cast/first_hit_shading.c computes the
+ * colour of a hit. */
 #ifndef STRATUS_FIRST_HIT_BATCH_H
 #define STRATUS_FIRST_HIT_BATCH_H
 
@@ -18,8 +19,8 @@ typedef struct stratus_hit_batch {
 } stratus_hit_batch;
 
 void stratus_hit_batch_begin(const stratus_tree* tree, stratus_hit_batch* batch);
-/* Whether packets and beams, or a device, may walk the tree: it is a wide hierarchy, or its siblings are on two sides of a plane and not
- * every position is in doubt. */
+/* Return true if packets, beams or a device may walk the tree: a wide hierarchy; or one distance field, or siblings separated by planes, if
+ * the tree's distances are not uncorrected floodings and float positions are off by at most 0.05 voxels. */
 bool stratus_hit_takes_packets(const stratus_hit_batch* batch);
 /* Return the kernels' arguments for a tree that packets may walk; `count` is 0. */
 stratus_hit_arguments stratus_hit_arguments_of(const stratus_hit_batch* batch);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * First hits in double precision, one ray at a time, in any tree. This method serves trees of many nodes and rays that packets have left in
- * doubt. Boxes are grown by a hair, and near an edge all voxels around the position are tested, so that rounding can hide none. Of all
- * voxels that the ray meets, the first counts. */
+ * First hits in double precision, one ray at a time, in any tree. This method is used for hierarchies whose boxes may overlap (not WIDE),
+ * for trees with uncorrected floodings, for sets longer than about 52,000 voxels (not WIDE), and for rays that packets leave in doubt.
+ * Boxes are grown by a hair, and near an edge all voxels around the position are tested, so that rounding can hide none. Of all voxels that
+ * the ray meets, the first counts. */
 #include "first_hit_batch.h"
 
 #include <string.h>

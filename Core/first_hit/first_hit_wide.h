@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * First hits in wide hierarchies. The boxes of a node's 16 children are tested at once against one ray, grown by the slack of positions in
  * float, so that none is missed. Several rays alternate: while one waits for a node of its own, the others compute. In a brick floats find
- * the voxels that the ray may meet, and doubles decide between them as voxel_walk.c does, so that a hit is never in doubt.
+ * the voxels that the ray may meet, and doubles decide between them as voxel_walk.c does, so that no ray is left in doubt on the host.
+ * Devices return such rays to the host.
  *
  * Included by first_hit_isa.c. */
 #ifndef STRATUS_FIRST_HIT_WIDE_H

@@ -12,7 +12,7 @@ extern "C" {
 /* A view of a mesh of linear tetrahedra. They are listed in `vertices`, or a lattice of hexahedra (structured, curvilinear, in layers)
  * consists of them. */
 typedef struct stratus_mesh {
-  const double* points;    /* point_count triples, local coordinates, finite */
+  const double* points;    /* point_count triples, local coordinates; finite unless the mesh is a lattice */
   int64_t point_count;     /* 0..2^31-1; may include points that no cell uses */
   const int32_t* vertices; /* cell_count quadruples of point numbers; any orientation */
   int64_t cell_count;      /* 0..2^30-1 */
