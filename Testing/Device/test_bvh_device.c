@@ -20,6 +20,12 @@ static void the_device_builds_what_fits(void** state)
   device->device->largest_allocation = largest;
 }
 
+/* Where some cases are enough, only one set has the greatest count: the host takes longest for it. */
+static bool is_left_out(int set, uint32_t count)
+{
+  return few_run() && count >= 30000 && set != BOXES_UNEVEN;
+}
+
 static void compare_builders(stratus_status (*builder)(stratus_bvh_build*), const stratus_box* boxes, uint32_t count)
 {
   stratus_bvh_build here = { .context = host_context, .count = count }, there = { .context = device, .count = count };
@@ -53,6 +59,9 @@ static void codes_and_hierarchies_equal_the_hosts(void** state)
   for (int set = 0; set < BOX_SETS; ++set) {
     for (size_t c = 0; c < (tiny ? COUNT_OF(few) : COUNT_OF(counts)); ++c) {
       const uint32_t count = !tiny ? counts[c] : set == BOXES_UNEVEN && c == 1 ? rounds : few[c];
+      if (is_left_out(set, count)) {
+        continue;
+      }
       stratus_box* boxes = make_boxes((box_set)set, count, &random);
       compare_builders(stratus_bvh_build_lbvh, boxes, count);
       compare_builders(stratus_bvh_build_ploc, boxes, count);
@@ -93,6 +102,9 @@ static void layouts_equal_the_hosts(void** state)
   (void)state;
   for (int set = 0; set < BOX_SETS; ++set) {
     for (size_t c = 0; c < (tiny ? 3 : COUNT_OF(counts)); ++c) {
+      if (is_left_out(set, counts[c])) {
+        continue;
+      }
       stratus_box* boxes = make_boxes((box_set)set, counts[c], &random);
       for (size_t l = 0; l < (tiny ? 1 : COUNT_OF(leaf_boxes)); ++l) {
         compare_trees(STRATUS_TREE_LBVH, boxes, counts[c], leaf_boxes[l], 64);
@@ -225,7 +237,7 @@ static void the_host_goes_on_without_memory(void** state)
   stratus_box* boxes = make_boxes(BOXES_UNEVEN, 3000, &random);
   stratus_bvh right = make_bvh(host_context, STRATUS_TREE_PLOC, boxes, 3000, 4, 64);
   (void)state;
-  for (int64_t calls = 0; calls < 400; ++calls) {
+  for (int64_t calls = 0; calls < 400; calls += few_run() ? 5 : 1) {
     stratus_device_fail_after(device->device, calls, CL_MEM_OBJECT_ALLOCATION_FAILURE);
     stratus_bvh bvh = make_bvh(device, STRATUS_TREE_PLOC, boxes, 3000, 4, 64);
     stratus_device_fail_after(device->device, -1, CL_SUCCESS);

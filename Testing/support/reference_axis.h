@@ -82,11 +82,8 @@ static inline reference_spot reference_axis_find(const stratus_volume* v, int ax
     const int64_t middle = (spot.cell + beyond) / 2;
     *(sign * reference_axis_place(v, axis, middle) <= sign * place ? &spot.cell : &beyond) = middle;
   }
-  for (int64_t beyond = n; beyond - spot.nearest > 1;) {
-    const int64_t middle = (spot.nearest + beyond) / 2;
-    *(sign * reference_axis_border(v, axis, middle) <= sign * place ? &spot.nearest : &beyond) = middle;
-  }
   if (n > 1) {
+    spot.nearest = spot.cell + (sign * reference_axis_border(v, axis, spot.cell + 1) <= sign * place);
     const double from = reference_axis_place(v, axis, spot.cell), to = reference_axis_place(v, axis, spot.cell + 1);
     spot.fraction = fmin(fmax((place - from) / (to - from), 0.0), 1.0);
   }

@@ -44,6 +44,9 @@ static bool is_kept(const scene* s, const double p[3])
   const stratus_ray_cast_options* o = s->options;
   int region = 0;
   int64_t nearest[3];
+  if (!o->crop && !o->mask) {
+    return true;
+  }
   for (int a = 2; a >= 0; --a) {
     const double low = reference_axis_crop(v, a, o->crop_bounds[2 * a]), high = reference_axis_crop(v, a, o->crop_bounds[2 * a + 1]);
     region = 3 * region + (p[a] < low ? 0 : p[a] > high ? 2 : 1);
@@ -53,35 +56,63 @@ static bool is_kept(const scene* s, const double p[3])
     (!o->mask || o->mask[(nearest[2] * v->dimensions[1] + nearest[1]) * v->dimensions[0] + nearest[0]]);
 }
 
-/* Returns the field at p, or NAN where it is hidden. */
-static double field_at(const scene* s, const double p[3])
+/* The values around the last position, which are read anew where a ray enters another cell. */
+typedef struct kept_cell {
+  int64_t at[3];
+  double corner[8];
+  bool hidden;
+} kept_cell;
+
+#define NO_CELL                                                                                                                            \
+  {                                                                                                                                        \
+    .at = { -1, -1, -1 }                                                                                                                   \
+  }
+
+static void read_cell(const scene* s, const int64_t at[3], kept_cell* cell)
 {
   const stratus_volume* v = s->volume;
-  int64_t at[3];
-  double t[3], sum = 0.0;
-  for (int a = 0; a < 3; ++a) {
-    const reference_spot spot = reference_axis_find(v, a, p[a]);
-    const bool is_nearest = s->options->interpolation == STRATUS_INTERPOLATION_NEAREST;
-    at[a] = is_nearest ? spot.nearest : spot.cell;
-    t[a] = is_nearest ? 0.0 : spot.fraction;
-  }
-  if (!is_kept(s, p) || cell_is_hidden(v, at)) {
-    return (double)NAN;
-  }
-  for (int corner = 0; corner < 8; ++corner) {
-    double weight = 1.0;
+  const int corners = s->options->interpolation == STRATUS_INTERPOLATION_NEAREST ? 1 : 8;
+  memcpy(cell->at, at, sizeof cell->at);
+  cell->hidden = cell_is_hidden(v, at);
+  for (int corner = 0; corner < corners; ++corner) {
     int64_t c[3];
     for (int a = 0; a < 3; ++a) {
       const int up = corner >> a & 1;
-      weight *= up ? t[a] : 1.0 - t[a];
       c[a] = at[a] + up < v->dimensions[a] ? at[a] + up : at[a];
     }
-    const double value = reference_value(v, c[0], c[1], c[2]);
-    if (s->options->interpolation == STRATUS_INTERPOLATION_LINEAR || corner == 0) {
-      sum += isfinite(value) ? weight * value : (double)NAN;
-    }
+    cell->corner[corner] = reference_value(v, c[0], c[1], c[2]);
+    cell->hidden = cell->hidden || !isfinite(cell->corner[corner]);
   }
-  return sum;
+}
+
+static double mix(double a, double b, double t)
+{
+  return a + t * (b - a);
+}
+
+/* Returns the field at p, or NAN where it is hidden. */
+static double field_at(const scene* s, const double p[3], kept_cell* cell)
+{
+  const bool is_nearest = s->options->interpolation == STRATUS_INTERPOLATION_NEAREST;
+  int64_t at[3];
+  double t[3];
+  for (int a = 0; a < 3; ++a) {
+    const reference_spot spot = reference_axis_find(s->volume, a, p[a]);
+    at[a] = is_nearest ? spot.nearest : spot.cell;
+    t[a] = spot.fraction;
+  }
+  if (at[0] != cell->at[0] || at[1] != cell->at[1] || at[2] != cell->at[2]) {
+    read_cell(s, at, cell);
+  }
+  if (cell->hidden || !is_kept(s, p)) {
+    return (double)NAN;
+  }
+  const double* v = cell->corner;
+  if (is_nearest) {
+    return v[0];
+  }
+  const double low = mix(mix(v[0], v[1], t[0]), mix(v[2], v[3], t[0]), t[1]);
+  return mix(low, mix(mix(v[4], v[5], t[0]), mix(v[6], v[7], t[0]), t[1]), t[2]);
 }
 
 static double between(const double* points, size_t count, size_t width, size_t component, double x)
@@ -216,11 +247,12 @@ typedef struct samples {
   double cut[CUTS], step, t, length;
   int pieces, piece;
   int64_t i, count;
+  kept_cell cell;
 } samples;
 
 static samples begin_samples(const scene* s, const line* l, double step)
 {
-  samples all = { .step = step, .piece = -1 };
+  samples all = { .step = step, .piece = -1, .cell = NO_CELL };
   all.pieces = cut_line(s, l, all.cut);
   return all;
 }
@@ -247,7 +279,7 @@ static void draw_light(const scene* s, const line* l, double step, float rgba[4]
   while (next_sample(&all)) {
     double p[3], color[4];
     point_on(l, all.t, p);
-    const double value = field_at(s, p);
+    const double value = field_at(s, p, &all.cell);
     if (isnan(value)) {
       continue;
     }
@@ -273,7 +305,7 @@ static void draw_extreme(const scene* s, const line* l, double step, float rgba[
   while (next_sample(&all)) {
     double p[3];
     point_on(l, all.t, p);
-    const double value = sign * field_at(s, p);
+    const double value = sign * field_at(s, p, &all.cell);
     if (value > best) {
       best = value;
       at = all.t;
@@ -296,7 +328,7 @@ static void draw_sum(const scene* s, const line* l, double step, float rgba[4], 
   while (next_sample(&all)) {
     double p[3], color[4];
     point_on(l, all.t, p);
-    const double value = field_at(s, p);
+    const double value = field_at(s, p, &all.cell);
     if (isnan(value) || (mean && !(value >= s->options->average_range[0] && value <= s->options->average_range[1]))) {
       continue;
     }
@@ -325,32 +357,35 @@ static int by_distance(const void* a, const void* b)
   return s < t ? -1 : s > t;
 }
 
-static double field_on(const scene* s, const line* l, double t)
+static double field_on(const scene* s, const line* l, double t, kept_cell* cell)
 {
   double p[3];
   point_on(l, t, p);
-  return field_at(s, p);
+  return field_at(s, p, cell);
 }
 
-/* Finds where the ray crosses a contour between `from` and `to`, inside one cell. *before: the field where the ray left the previous cell
- * (NAN: there is none); receives the field at `to`. */
-static int cross_cell(const scene* s, const line* l, double from, double to, double contour, double* before, crossing* found)
+/* The field at the ends of a cell's parts on a ray, and where these are. */
+typedef struct part_ends {
+  double t[PARTS + 1], value[PARTS + 1];
+} part_ends;
+
+/* Finds where the ray crosses a contour inside one cell. before: the field where the ray left the previous cell (NAN: there is none). */
+static int cross_cell(const scene* s, const line* l, const part_ends* ends, double contour, double before, kept_cell* cell, crossing* found)
 {
   int count = 0;
-  const double begin = field_on(s, l, from);
-  if (!isnan(*before) && !isnan(begin) && (*before < contour) != (begin < contour)) {
-    found[count++] = (crossing){ from, contour }; /* the contour is at the border of the cells */
+  const double begin = ends->value[0];
+  if (!isnan(before) && !isnan(begin) && (before < contour) != (begin < contour)) {
+    found[count++] = (crossing){ ends->t[0], contour }; /* the contour is at the border of the cells */
   }
-  *before = field_on(s, l, to);
   for (int part = 0; part < PARTS; ++part) {
-    double lo = from + (to - from) * part / PARTS, hi = from + (to - from) * (part + 1) / PARTS;
-    const double first = field_on(s, l, lo), last = field_on(s, l, hi);
+    double lo = ends->t[part], hi = ends->t[part + 1];
+    const double first = ends->value[part], last = ends->value[part + 1];
     if (isnan(first) || isnan(last) || (first < contour) == (last < contour)) {
       continue;
     }
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (lo + hi);
-      if ((field_on(s, l, middle) < contour) == (first < contour)) {
+      if ((field_on(s, l, middle, cell) < contour) == (first < contour)) {
         lo = middle;
       } else {
         hi = middle;
@@ -378,12 +413,19 @@ static void draw_surfaces(const scene* s, const line* l, float rgba[4], float* d
     }
   }
   qsort(planes, (size_t)plane_count, sizeof *planes, by_distance);
-  for (int n = 0; n < s->options->contour_count; ++n) {
-    double before = (double)NAN;
-    for (int i = 0; i + 1 < plane_count && count < CROSSINGS - PARTS - 1; ++i) {
-      const double hair = 1e-9 * (planes[i + 1].t - planes[i].t); /* keeps both ends inside this cell */
-      count += cross_cell(s, l, planes[i].t + hair, planes[i + 1].t - hair, s->options->contours[n], &before, found + count);
+  double before = (double)NAN;
+  kept_cell cell = NO_CELL;
+  for (int i = 0; i + 1 < plane_count; ++i) {
+    const double hair = 1e-9 * (planes[i + 1].t - planes[i].t), from = planes[i].t + hair, to = planes[i + 1].t - hair; /* in this cell */
+    part_ends ends;
+    for (int part = 0; part <= PARTS; ++part) {
+      ends.t[part] = from + (to - from) * part / PARTS;
+      ends.value[part] = field_on(s, l, ends.t[part], &cell);
     }
+    for (int n = 0; n < s->options->contour_count && count < CROSSINGS - PARTS - 1; ++n) {
+      count += cross_cell(s, l, &ends, s->options->contours[n], before, &cell, found + count);
+    }
+    before = ends.value[PARTS];
   }
   qsort(found, (size_t)count, sizeof *found, by_distance);
   double left = 1.0;
@@ -424,6 +466,7 @@ static void draw_slice(const scene* s, const line* l, float rgba[4], float* dept
 {
   enum { SLICE_PARTS = 4000 };
   double left = 1.0, before = slice_at(s, l, l->begin);
+  kept_cell cell = NO_CELL;
   for (int part = 0; part < SLICE_PARTS; ++part) {
     double lo = l->begin + (l->end - l->begin) * part / SLICE_PARTS, hi = l->begin + (l->end - l->begin) * (part + 1) / SLICE_PARTS;
     const double first = before;
@@ -435,7 +478,7 @@ static void draw_slice(const scene* s, const line* l, float rgba[4], float* dept
       const double middle = 0.5 * (lo + hi);
       *((slice_at(s, l, middle) < 0.0) == (first < 0.0) ? &lo : &hi) = middle;
     }
-    const double value = field_on(s, l, lo);
+    const double value = field_on(s, l, lo, &cell);
     double color[4];
     if (isnan(value)) {
       continue;

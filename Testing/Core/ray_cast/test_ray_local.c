@@ -2,6 +2,7 @@
  * Rule local: cells in rough blocks, samples in all others. It is chosen if few blocks are rough, keeps the tolerance, and needs fewer
  * samples than either of its two rules. No structure, block size or instruction set changes a bit of its picture. */
 #include "picture_case.h"
+#include "testing.h"
 
 #include "volume.h"
 #include "ray_cast_host.h"
@@ -11,11 +12,16 @@
 static picture drawn;
 static picture other;
 
+static uint32_t seeds(void)
+{
+  return few_run() ? SEEDS / 3 : SEEDS;
+}
+
 static void it_keeps_the_tolerance(void** state)
 {
   static float reference[4 * CASE_PIXELS];
   int judged = 0;
-  for (uint32_t seed = 0; seed < SEEDS; ++seed) {
+  for (uint32_t seed = 0; seed < seeds(); ++seed) {
     picture_case c;
     case_create_local(*state, seed, &c);
     if (c.options.crop && c.options.crop_regions != STRATUS_CROP_INSIDE) { /* the reference knows one region */
@@ -35,7 +41,7 @@ static void it_keeps_the_tolerance(void** state)
     judged += case_lit(&drawn) > CASE_PIXELS / 20;
     case_destroy(&c);
   }
-  assert_true(judged > SEEDS / 3);
+  assert_true(judged > (int)seeds() / 3);
 }
 
 static void it_takes_fewer_samples_than_cells(void** state)
@@ -69,7 +75,7 @@ static void nothing_but_the_tolerance_changes_it(void** state)
   stratus_context* context = *state;
   const int best = context->isa;
   int lit = 0;
-  for (uint32_t seed = 0; seed < SEEDS; ++seed) {
+  for (uint32_t seed = 0; seed < seeds(); ++seed) {
     picture_case c;
     case_create_local(context, seed, &c);
     c.options.structure = STRATUS_STRUCTURE_NONE;
@@ -93,7 +99,7 @@ static void nothing_but_the_tolerance_changes_it(void** state)
     }
     case_destroy(&c);
   }
-  assert_true(lit > SEEDS / 2);
+  assert_true(lit > (int)seeds() / 2);
 }
 
 /* The map of rough blocks is of one function and of one tolerance: after a change, a caster draws what a new one does. */

@@ -408,7 +408,8 @@ static void memory_of_a_cell(void** state)
   }
   tetra_camera(*state, &c.listed, 5, 0, 0);
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = ours.rgba };
-  for (int method = STRATUS_TETRA_METHOD_AUTO; method <= STRATUS_TETRA_METHOD_PROJECT; method += 2) {
+  const int last = few_run() ? STRATUS_TETRA_METHOD_AUTO : STRATUS_TETRA_METHOD_PROJECT; /* the projection has no bound */
+  for (int method = STRATUS_TETRA_METHOD_AUTO; method <= last; method += 2) {
     c.listed.options.method = (stratus_tetra_method)method;
     assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
     assert_int_equal(
