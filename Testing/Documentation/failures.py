@@ -54,6 +54,9 @@ class Tests:
                     self.add_c(relative)
                 elif re.fullmatch(r"(Test\w+)\.cxx|(test\w+)\.py", name):
                     self.source[name.rsplit(".", 1)[0]] = relative
+                elif name == "test_command_line":  # each part is a function
+                    self.source[name] = relative
+                    self.cases[name] = re.findall(r"^(\w+)\(\) \{$", self.read(relative), re.M)
                 elif name == "CMakeLists.txt" or name.endswith(".cmake"):
                     for test in re.findall(r"stratus_add_test\((\w+) ", self.read(relative)):
                         self.source.setdefault(test, relative)
