@@ -10,12 +10,12 @@
 extern "C" {
 #endif
 
-/* A visibility order lists the cells of a mesh so that no cell hides one before it. Of two neighbours, the cell on the eye's side of their
+/* Cells are listed front to back: no cell hides a cell that is listed before it. Of two neighbours, the cell on the eye's side of their
  * common face is in front. This test uses double if rounding cannot change its result, otherwise exact arithmetic. An order is therefore
- * exact for relations through faces. Cells on both sides of a gap are ordered by their border faces where these overlap in the view
- * (peeling nearest only; peeling layers ignores gaps). The planes of the tree order the leaves. Cells without volume pass relations on.
- * Neighbours on the same side of a face (folded) count as not sharing it. Cells with coincident faces count as sharing them, even if they
- * name different points. */
+ * exact for relations through faces. Peeling nearest also orders cells on both sides of a gap, by border faces that overlap in the
+ * view. Peeling layers does not: across gaps its order may be wrong, and no counter reports it. The planes of the tree order the leaves.
+ * Cells without volume pass relations on. Neighbours on the same side of a face (folded) count as not sharing it. Cells with coincident
+ * faces count as sharing them, even if they name different points. */
 
 typedef struct stratus_visibility_order stratus_visibility_order;
 
@@ -28,8 +28,8 @@ typedef enum stratus_peeling {
 } stratus_peeling;
 
 /* Create an order, and find each cell's neighbours once. The order borrows the mesh (points, vertices) and the arrays of `leaves` until it
- * is destroyed. leaves NULL: one leaf. STRATUS_INVALID_ARGUMENT if a cell reaches out of its leaf's box farther than a partition's cells
- * may. */
+ * is destroyed. The mesh must list its cells in `vertices`; lattices and blocks are refused. leaves NULL: one leaf.
+ * STRATUS_INVALID_ARGUMENT if a cell reaches out of its leaf's box farther than a partition's cells may. */
 STRATUS_API stratus_status stratus_visibility_order_create(
   stratus_context* context, const stratus_mesh* mesh, const stratus_leaves* leaves, stratus_visibility_order** order);
 STRATUS_API void stratus_visibility_order_destroy(stratus_visibility_order* order);
@@ -40,12 +40,12 @@ typedef struct stratus_visibility_result {
   int64_t count;
   int layers; /* peeling layers: number of layers of the leaf with most layers; otherwise 0 */
   /* Cycles found and broken. A cycle is broken across a gap if it crosses one, otherwise at the face that is seen smallest, unless the
-   * search for that face took too long. A leaf counts its cycles across gaps only if it had no others. */
+   * search for that face took too long. If a leaf has cycles through faces, its cycles across gaps are not counted. */
   int64_t cycles;
   /* Cells that may come before cells that hide them. Layers: cells listed by distance only, because a leaf had too many cycles. Nearest:
    * cells listed without regard to gaps, because their leaf had exceeded the limit of `overlaps` and `gate_tests`. */
   int64_t forced;
-  /* Nearest: cycles across gaps, found and broken. The cells across the gap were both before and behind, as where cells overlap. A leaf of
+  /* Nearest: cycles across gaps, found and broken. Two cells were each in front of the other, as happens if cells overlap. A leaf of
    * n cells with g border faces at gaps ignores gaps after 64 + sqrt(n) such cycles, after 64 g sqrt(g) gate tests, or once its fractions
    * of both limits add up to 1. */
   int64_t overlaps;

@@ -93,7 +93,8 @@ struct stratus_visibility_order {
   int64_t* leaf_output; /* each leaf's first entry in `cells` */
   int64_t* leaf_work;   /* per leaf: estimated time to peel * STRATUS_LEAVES_MAX + leaf, the longest first */
 
-  uint32_t* gap_faces; /* 4*place + face of the border faces beyond whose planes lies more of their leaf: leaf by leaf, ascending */
+  /* 4*place + face of each gap face (a border face with more of its leaf beyond its plane), ascending within each leaf */
+  uint32_t* gap_faces;
   int64_t* gap_begin;  /* leaf_count + 1 */
   uint32_t* gap_at;    /* for each block of STRATUS_GAP_BLOCK cells: the first gap face of the block, or after it */
   stratus_gate* gates; /* the gap faces in this view */
@@ -104,7 +105,7 @@ struct stratus_visibility_order {
   uint32_t* cells;                             /* the result, front to back, by the mesh's cell numbers */
   bool relations_changed;                      /* the last view changed some cell's state */
   struct stratus_device_signs* device_signs;   /* the device's buffers, kept from view to view; NULL: it has not been used */
-  struct stratus_device_layers* device_layers; /* the same for peeling in layers */
+  struct stratus_device_layers* device_layers; /* the device's buffers for peeling in layers; NULL: not used yet */
   stratus_order_seed* seeds;                   /* seed_count for each thread that peels: the largest leaf's */
   int64_t seed_count;
   int64_t steps_per_cell; /* limit of the search for rings: STRATUS_STEPS_PER_CELL; tests lower it */
@@ -226,8 +227,8 @@ typedef struct stratus_gates {
   stratus_gate_node* nodes; /* level by level: first those over gates, then those over nodes of the level before */
   int64_t level_begin[STRATUS_GATE_LEVELS_MAX];
   int levels;
-  int64_t tests;      /* nodes and gates compared with ways in so far */
-  int64_t tests_left; /* tests that may follow; below 0: no way in waits for anything any more */
+  int64_t tests;      /* nodes and gates compared with entry gates */
+  int64_t tests_left; /* tests that may follow; below 0: no entry waits any longer */
   int64_t ring_tests; /* tests_left that a ring across gaps costs */
 } stratus_gates;
 
@@ -260,7 +261,7 @@ stratus_status stratus_gates_allocate(stratus_visibility_order* order, int64_t g
 void stratus_gates_open(stratus_gates* gates, stratus_visibility_order* order, int32_t leaf);
 /* A cell that is not listed yet and has to come, across a gap, before this cell marked STRATUS_GATE_IN; STRATUS_NO_CELL: none. */
 uint32_t stratus_gates_before(stratus_gates* gates, uint32_t cell);
-/* Closes the cell's ways in that wait for `before`, as a ring gives way there. Returns whether there were any. */
+/* Drop the relations by which the cell's entry gates wait for `before`. Return true if there were any. */
 bool stratus_gates_cut(stratus_gates* gates, uint32_t cell, uint32_t before);
 /* Notes that a cell marked STRATUS_GATE_OUT is listed. */
 void stratus_gates_pass(stratus_gates* gates, uint32_t cell);
