@@ -59,7 +59,7 @@ static size_t hidden_bytes(const stratus_ray_caster* caster)
     (caster->hides & HIDDEN_CELLS ? stratus_ray_hidden_cells(&caster->volume, caster->hidden_by_value) : 0);
 }
 
-/* Gives the device the whole volume, or the end of it, where it is to be in pages, and the hidden bytes. */
+/* Send the hidden bytes, and the whole volume unless its values come in pages; then free the device's whole copy. */
 static stratus_status upload_data(stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, bool in_pages)
 {
   stratus_ray_device* d = caster->device;

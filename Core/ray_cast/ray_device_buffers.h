@@ -41,7 +41,7 @@ struct stratus_ray_device {
   const float* layers; /* what LAYERS holds, of that table and step */
 };
 
-/* ray_cast_device.c. Returns what the frame has of that which few frames have, the bits RAY_HAS. */
+/* ray_cast_device.c: return the RAY_HAS bits, the rare features that this frame uses. */
 int stratus_ray_rarities(const stratus_ray_cast_arguments* a);
 /* Returns how many parts of a picture count for themselves: tiles of packets, or rows of rays. */
 size_t stratus_ray_device_parts(size_t width, size_t height, bool packets);

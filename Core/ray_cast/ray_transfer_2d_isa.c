@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Isosurfaces, compiled for one instruction set, STRATUS_ISA. */
+ * Composite rays by a function of two variables, compiled for one instruction set, STRATUS_ISA. */
 #include "ray_cast_packets.h"
 
 #define STRATUS_PREINTEGRATED 0

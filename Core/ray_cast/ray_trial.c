@@ -35,10 +35,10 @@
  * / n of the other's squares. With as many squares as there are tiles that is at most TILES + 1, plus the time by which the last square
  * exceeded it: to find a loser costs no more than to compare two that are equally fast. */
 #define LOST ((double)TILES)
-/* Builds of other maps, and trials, may take these shares of the time that frames have taken since the transfer function changed. A map
- * that never pays has then cost these shares in all, plus one trial and the error of the map's price. On the other side, a map which makes
- * frames take 1/k of the time comes late: a camera that stops just then has paid k times the necessary time. Any share trades one cost for
- * the other. These are policy: frames differ by as much from run to run, so that nobody sees that structures are tried. */
+/* Other maps and trials may use these shares of the frame time since the last edit. A map that never pays costs at most its share, one
+ * trial, and the error of its estimated build time. On the other side, a map which makes frames take 1/k of the time comes late: a camera
+ * that stops just then has paid k times the necessary time. Any share trades one cost for the other. These are policy: frames differ by as
+ * much from run to run, so that nobody sees that structures are tried. */
 #define BUILD_SHARE 0.05
 #define TRIAL_SHARE 0.02
 /* Octant maps skip at least as far as a distance map, so that only the cache can make them slower. They are used unless they are slower by

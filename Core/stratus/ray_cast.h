@@ -89,11 +89,12 @@ typedef struct stratus_material {
   double ambient, diffuse, specular, specular_power; /* with the ranges of stratus_shading */
 } stratus_material;
 
-/* Phong shading. C is the transfer function's colour. The lit colour is c = ambient C + sum over lights of diffuse max(0, N L) l C +
- * specular max(0, R V)^power s, where l is a light's colour and s the colour of its highlights.
+/* Phong shading. C is the transfer function's colour. First hits are lit by this formula: the lit colour is c = ambient C + sum over lights
+ * of diffuse max(0, N L) l C + specular max(0, R V)^power s, where l is a light's colour and s the colour of its highlights.
  *
- * Samples of volumes (composite) are lit as VTK's mappers light them: N H replaces R V, where H is half way between L and V (Blinn), and
- * specular counts only if N L > 0. N points against the gradient, which is found by central differences. N is 0 where the gradient is 0.
+ * Samples of volumes (composite) and isosurfaces are lit as VTK's mappers light them: N H replaces R V, where H is half way between L and V
+ * (Blinn), and specular counts only if N L > 0. N points against the gradient, which is found by central differences. N is 0 where the
+ * gradient is 0.
  *
  * If nothing is lit, the other numbers of a shading are neither read nor checked. This is so in first hits if `on` is 0, in composite and
  * isosurface if `shade` is 0, and in all other modes. */
@@ -146,8 +147,8 @@ typedef struct stratus_ray_cast_options {
   /* Sampling by cells: the largest departure of the field from a straight line within a piece, as a fraction of the values that the
    * functions' points span. At least 0 and finite; 0 (default): by the tolerance. A cell has at most 32 pieces. */
   double cell_error;
-  /* World length, at most 4096 voxels; 0 (default): by the tolerance. Where a voxel's longest side is more than 64 times its shortest, an
-   * automatic distance follows each ray: it is a number of voxels, or a part of one, along the ray's own way. */
+  /* World length, at most 4096 voxels; 0 (default): by the tolerance. If a voxel's longest side is more than 64 times its shortest, and the
+   * distance is automatic, then each ray has its own distance: a fixed fraction or multiple of the voxel length along that ray. */
   double sample_distance;
   double termination; /* a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance */
   /* The root mean square error of RGBA in 0..1 over the lit pixels that the automatic settings may cause. At least 0, finite. Default .001:
@@ -276,8 +277,10 @@ STRATUS_API void stratus_ray_caster_destroy(stratus_ray_caster* caster);
  * - camera, image: see camera.h. options, report: may be NULL.
  *
  * The caster keeps the structures that it builds, and rebuilds one only when its inputs change. Ranges depend on the volume's pointers,
- * type, dimensions, stride, centring and revision, and on the block size. Tables, occupancy and structure depend on the transfer function
- * and the sampling, and tables also on the sample distance. A change of geometry or camera rebuilds nothing.
+ * type, dimensions, stride, centring and revision, and on the block size. Occupancy and the structure depend on the ranges, the transfer
+ * function, the mode with its values (average_range, contours), and the interpolation. Tables depend on these, on the sampling rule, on the
+ * tolerance and, under the midpoint rule, on the sample distance. A camera rebuilds nothing. A change of the voxels' world length makes a
+ * new choice of sampling and may rebuild a table.
  *
  * Returns STRATUS_INVALID_ARGUMENT for values outside their ranges, and STRATUS_UNSUPPORTED for combinations that the options' comments
  * exclude. A failed call leaves the image undefined, and the caster ready for the next call. */
@@ -287,9 +290,9 @@ STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster,
 
 #define STRATUS_SEVERAL_MAX 8
 
-struct stratus_mesh; /* of tetrahedra.h */
-struct stratus_tetra_caster;
-struct stratus_tetra_options;
+struct stratus_mesh;          /* mesh.h */
+struct stratus_tetra_caster;  /* tetrahedra.h */
+struct stratus_tetra_options; /* tetrahedra.h */
 
 /* An input that is drawn with others: a volume, or a mesh of tetrahedra. */
 typedef struct stratus_ray_cast_input {

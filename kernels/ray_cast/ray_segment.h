@@ -8,8 +8,8 @@
 #include "ray_grid.h"
 #include "ray_setup.h"
 
-/* The structure is asked once all lanes that are left need it, or one lane has waited for SKIP_PATIENCE samples. A lane that waits takes
- * samples, which add nothing. Then it has wasted about as much as the question costs, for which all other lanes wait. */
+/* Read the structure when every live lane needs it, or when one lane has waited SKIP_PATIENCE samples. By then the lane has wasted about
+ * the cost of one read. */
 #define SKIP_PATIENCE STRATUS_WIDTH
 
 /* BIAS_OF(a): the double that values of wide types are relative to. stratus_index: an index into a volume of any size. */
