@@ -49,7 +49,8 @@ public:
   const std::vector<double>& GetAxis(int axis) const { return this->Axes[axis]; } // ascending
   // Returns 0, 1, 2 for a coordinate along x, y, z, and -1 if its attributes name no axis.
   int AxisOf(const Variable& coordinate) const;
-  // Returns whether the variable depends on time and the three axes only, and whether on one of them.
+  // Fits: true if the variable depends only on time, the three axes and dimensions that are read at one index. Has: true if it depends on
+  // the axis.
   bool Fits(const Variable& variable) const;
   bool Has(const Variable& variable, int axis) const;
   // Reads a variable that fits. One on other dimensions than the grid's own needs those.

@@ -4,10 +4,11 @@
  * @brief   reads a variable of three dimensions from a netCDF file with CF's conventions
  *
  * The output's class follows from the coordinates of the variable's dimensions:
- * - evenly spaced ones along all axes give a vtkImageData (so do dimensions without coordinates, counted from 0);
- * - others a vtkRectilinearGrid, at the very coordinates that the file has;
- * - two-dimensional ones (latitude and longitude of a turned or curved grid), or heights that differ from column to column, give a
- *   vtkStructuredGrid, anew at each time step where they change in time.
+ * - Coordinates that are evenly spaced along all axes give a vtkImageData (so do dimensions without coordinates, counted from 0).
+ * - Other one-dimensional coordinates give a vtkRectilinearGrid, with the file's coordinates.
+ * - Two-dimensional coordinates that the attribute `coordinates` of the variable names (latitude and longitude of a turned or curved grid;
+ *   WRF's are found by their names), or heights that differ between columns, give a vtkStructuredGrid. It is rebuilt at each time step if
+ *   they change in time.
  *
  * Variables in groups have their path in their names ("run1/rho"). Coordinates and terms are looked up in the variable's group, in the
  * groups above it, then in all groups.
@@ -28,15 +29,15 @@
  * continuous everywhere: cells whose longitudes differ by more than 180 degrees are blanked by vtkGhostType.
  *
  * Heights, in metres, follow from the first of these that the file has:
- * - a coordinate of three dimensions;
+ * - a variable on all three dimensions that the attribute `coordinates` of the variable names;
  * - formula_terms, by every formula of the conventions' appendix D. A formula for pressure gives heights by the hypsometric equation of dry
  *   air where the file has air_temperature on the same levels: up from surface_altitude (or surface_geopotential), else from the height of
  *   the surface pressure in the standard atmosphere. Without a temperature, pressure becomes the height of the standard atmosphere;
  * - PH and PHB of WRF, by (PH + PHB) / 9.81, in the middle of layers for variables there. Staggered variables have the mean of the heights
  *   around them. WRF's ideal cases, whose longitudes are all alike, have DX and DY as distances of points;
  * - the levels' coordinate: a length, a geopotential, a pressure as the height of the standard atmosphere, or a pressure in decibars as the
- *   depth of sea water of 1025 kg m-3. It counts down if positive is "down" in any case, or without this attribute, if standard_name is
- *   depth or the name begins with "depth" over values none of which is negative.
+ *   depth of sea water of 1025 kg m-3. Levels count downwards if `positive` is `down` (upper or lower case). Without `positive`, they do if
+ *   standard_name is `depth` or begins with `depth_`; without both, if the name begins with "depth" and no value is negative.
  * Levels that have no unit stay numbers, with a warning where x and y are metres.
  *
  * GetDescription() says which variables coordinates came from, and how their units were converted. Values are point data of the variable's

@@ -21,7 +21,7 @@ public:
   // others: the variables that the attribute coordinates names
   vtkStratusCFVertical(const vtkStratusCFGrid& grid, const Variable* levels, const std::vector<const Variable*>& others);
 
-  // Whether heights differ from column to column. If not, they follow from the levels by Convert(), or from the levels' numbers.
+  // True if heights differ between columns. If false, Convert() gives a height from each level, or from its number if there are no levels.
   bool IsCurved() const { return this->Kind != Axis; }
   bool IsLength() const { return this->Kind == Formula || this->Kind == Wrf || this->Unit.IsLength() || this->Unit.IsPressure(); }
   bool IsWrf() const { return this->Kind == Wrf; }
