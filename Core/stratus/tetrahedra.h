@@ -169,8 +169,8 @@ STRATUS_API void stratus_tetra_caster_destroy(stratus_tetra_caster* caster);
  *
  * Both methods use the context's device, or the host if there is no device or the mesh is too large for it. Projection finds the cells of
  * each tile on the host. Lattices are marched by their points' numbers, which keeps about 21 bytes for each point and 56 for each face at
- * the border; one byte more for each point where cells turn both ways (a tripolar grid, a layer that is partly below the one beneath). Only
- * to project a lattice its tetrahedra are listed.
+ * the border. A lattice whose cells have both orientations (tripolar grids, folded layers) needs one more byte per point. Projection lists
+ * a lattice's tetrahedra; marching does not.
  *
  * A failed call leaves the image undefined, and the caster ready for the next call. More than INT32_MAX/8 cells, INT32_MAX/4 points or
  * INT32_MAX/8 faces at the border give STRATUS_UNSUPPORTED. */

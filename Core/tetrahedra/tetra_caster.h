@@ -149,10 +149,13 @@ typedef struct stratus_tetra_places {
 
 stratus_status stratus_tetra_order(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_places* places, int32_t** names);
 
-/* tetra_march.c: converts a table's running sums for rays. The result holds four sums per entry, up to the entry's middle, because values
- * are rounded to the nearest entry: sums up to its lower end would be half an entry too low. Then come four numbers per entry of the entry
- * by itself, then the table's two rows of opaque entries, and last two per entry: the running sum, up to the entry's middle, of optical
- * depth times the entry's number, less its lowest 16 bits, and these. *sums is NULL if the table has no sums. */
+/* tetra_march.c: convert a table's running sums for rays. The result has four parts, each for all entries, with these numbers per entry:
+ * - 4: the sums up to its middle. Values are rounded to the nearest entry, and sums up to its lower end would be half an entry too low;
+ * - 4: its own numbers, the differences of the table's sums;
+ * - 2: the table's opaque-entry numbers, one row of all entries after the other;
+ * - 2: the high and the low word (16 bits) of the sum, up to its middle, of optical depth times entry number.
+ *
+ * *sums is NULL if the table has no sums. */
 #define STRATUS_TETRA_SUMS 12 /* ints per entry */
 stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table* table, int32_t** sums);
 
@@ -198,11 +201,16 @@ stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, con
   const stratus_tetra_options* options, double* ms);
 void stratus_tetra_components_drop(stratus_tetra_caster* caster);
 void stratus_tetra_frame_components(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_tetra_options* options);
-/* tetra_parts.c: make the tables of the caster's mesh if its look has another function, mode or range; otherwise made->table is NULL. */
+/* tetra_look.c: the tables of a transfer function. Return the values of a mesh for which a table is made; low..high: their range. */
+stratus_table_values stratus_tetra_look_values(const stratus_mesh* mesh, float low, float high, double bias);
+/* Make a look if `known` has another function, mode or range; otherwise made->table is NULL. */
+stratus_status stratus_tetra_look_make(stratus_context* context, const stratus_table_values* values, const stratus_transfer* transfer,
+  const stratus_tetra_options* options, const stratus_tetra_look* known, stratus_tetra_look* made);
+/* Make the look of the caster's mesh in the same way. */
 stratus_status stratus_tetra_look_update(
   stratus_tetra_caster* caster, const stratus_transfer* transfer, const stratus_tetra_options* options, stratus_tetra_look* made);
 void stratus_tetra_look_drop(stratus_context* context, stratus_tetra_look* look);
-/* Whether each component has a picture of its own. */
+/* tetra_parts.c: true if each component has an image of its own. */
 bool stratus_tetra_draws_parts(const stratus_mesh* mesh, const stratus_tetra_options* options);
 stratus_status stratus_tetra_parts_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfers,
   const stratus_tetra_options* options, double* ms);

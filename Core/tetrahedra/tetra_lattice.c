@@ -42,8 +42,8 @@ static lattice_build build_of(stratus_tetra_mesh* tetra, const stratus_mesh* who
   return b;
 }
 
-/* Numbers the points of all lattices. A hexahedron behind the lower end of a lattice would be named by a point up to a layer before the
- * first: there lie points of the layer that ends the lattice before, or no points at all. Lattices begin at whole words of bits. */
+/* Number the points of all lattices. Leave unused point numbers before a lattice, so that a step out of its lower end finds no hexahedron
+ * there: up to one layer, less the last layer of the lattice before. Lattices begin at whole words of bits. */
 static stratus_status number_points(stratus_tetra_mesh* tetra, const stratus_mesh* whole)
 {
   const int count = stratus_mesh_part_count(whole);

@@ -116,8 +116,7 @@ static int fitting_orientation(const stratus_mesh* mesh, int64_t cell, int f, in
   return face < 0 ? 0 : -sign * stratus_face_points(w, face, same) * orientation;
 }
 
-/* Gives each flat cell the orientation that fits a neighbour: one with volume, or else one that has got its own so. Cells that no chain of
- * flat ones leads to keep 0. */
+/* Orient each flat cell to fit a neighbour: one with volume or, failing that, a flat one already oriented. Other flat cells keep 0. */
 static stratus_status orient_flat_cells(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency)
 {
   void* memory = NULL;

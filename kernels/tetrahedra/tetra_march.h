@@ -117,8 +117,8 @@ INLINE vint tetra_turn_bit(vint d0, vint d1, vint d2)
 /* The next cell of a lattice, next[0], and its fourth point, next[1]. A path ends where tetrahedra that turn left meet others: there both
  * are on the same side of their face, which is a border face of each. The points of a tetrahedron, in rising order, go from a hexahedron's
  * first corner to its last along three edges. In the tetrahedron behind a face two of these edges have changed places, or the first has
- * become the last, or the last the first: its fourth point is the sum of those before and after the dropped one, in a ring, less that. Its
- * lowest point names its hexahedron. */
+ * become the last, or the last the first. Order the points in a ring: the next cell's fourth point is previous + following - dropped. The
+ * lowest point of the next cell names its hexahedron. */
 INLINE void tetra_lattice_next(
   CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r, vint dropped, vmask live, vint next[2])
 {
