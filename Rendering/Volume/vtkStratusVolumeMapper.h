@@ -47,12 +47,12 @@
  * Colours are those that GetColor() of the property's function returns, also where a vtkDiscretizableColorTransferFunction discretises and
  * where lookup is indexed, which VTK's mappers ignore.
  *
- * A setting that the mode does not use is left out, as VTK's mappers leave it out, and one warning a mapper says so: Shade outside of
+ * If the mode does not use a setting, the setting is ignored, as VTK's mappers ignore it, and each mapper warns once: Shade outside of
  * composite, isosurface and first hits; GradientOpacity, label maps and functions of two variables outside of composite; functions of
  * labels without a label map; transforms of clipping planes and of SliceFunction.
  *
- * All else (shaders of the prop's own, other data than these two) is refused by an error, and nothing is drawn. docs/vtk-parity.md has a
- * table.
+ * Other data and the prop's own shaders are refused by an error, and nothing is drawn. Calls listed as *kept* in docs/vtk-parity.md have
+ * no effect.
  *
  * RenderModeToFirstHit draws voxels of opacity > 0 as solids in the light of the renderer, and writes their depth. The property's Shade,
  * Ambient, Diffuse, Specular and SpecularPower apply. A voxel of point data is a box about its point, halfway to the next ones, so that
@@ -328,8 +328,8 @@ public:
   //@}
 
   /**
-   * Get whether a property could be drawn in any window: 1, or 0 where the next picture would be refused for it. The data are not looked
-   * at.
+   * Get whether a property could be drawn in any window: 1, or 0 if it would be refused. Checks the mapper's settings, the isosurface
+   * values and the slice function; functions without points are refused only when drawing. The data are not checked.
    */
   int IsRenderSupported(vtkRenderWindow* window, vtkVolumeProperty* property);
 
