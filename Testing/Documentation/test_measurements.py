@@ -1,36 +1,48 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every figure in the tables of docs/measurements.md, docs/install.md and README.md is the one that a committed CSV holds.
+"""Every figure in the tables of docs/measurements.md, docs/measurements/, docs/install.md and README.md equals a value of a committed CSV.
 
 Usage: test_measurements.py [ROOT-OF-THE-REPOSITORY]
 
 A comment before each table says where its cells come from:
 
-    <!-- figures: Testing/Benchmarks/results/MACHINE/volume.csv
-    scene = text
-    Stratus, ms = {frame_ms('stratus:auto')}
-    times faster = {frame_ms('vtk:fixedpoint') / frame_ms('stratus:auto')} (goal {text})
-    over all views = {min(psnr_db.all('stratus:*', '*'))}..{max(psnr_db.all('stratus:*', '*'))}
-    row cloud, lit = cloud+shade
+    <!-- figures: MACHINE/volume.csv
+    where S = stratus:auto; F = vtk:fixedpoint
+    row *, lit = *+shade
+    | text | {frame_ms(S)} | {frame_ms(F) / frame_ms(S)} (goal {text}) | {span psnr_db.all('stratus:*', '*')} |
     -->
+    | scene | Stratus, ms | times faster | all errors, dB |
 
-- COLUMN = TEMPLATE: text outside the braces is in the cell as it is. An expression is Python's. METRIC(METHOD, SCENE) is a value of
+The CSV is below Testing/Benchmarks/results. The lines of the comment:
+
+- | TEMPLATE | ... |: a template for each column. Text outside the braces is in the cell as it is. An expression is Python's. METRIC(METHOD, SCENE) is a value of
   the CSV; METRIC.all(METHODS, SCENES) lists those that match (* and ?); METRIC.over(METHOD, OTHER, SCENES) lists the first method's over
   the other's, scene by scene. Without SCENE it is the row's. The cell's number must be the value, rounded to the digits that it shows. It
   is `-` where the CSV lacks a value that the expression needs, and only there.
+- {span LIST}: the cell is `LEAST to MOST` of the list.
 - {text}, or a template that is only `text`: not checked.
-- row LABEL = NAME: what `scene` is in the row whose first cell is LABEL; else it is the first cell itself.
+- where NAME = METHOD; ...: names of methods, for the expressions.
+- row LABEL = NAME: `scene` in the row whose first cell is LABEL (default: the first cell). A * of LABEL stands for any text, which replaces
+  the * of NAME at the same place, without the commas of a number.
 - `figures: none, REASON` for a table whose digits come from no CSV; all of its cells are text.
 
-A table without a comment fails; in README.md and install.md only if it contains digits (not counting code and links). In measurements.md each
-section also has to name processor, commit and date of every run whose rows its tables show, and its links must lead to files.
+The index in measurements.md has `figures: index` and a line `SECTION = FILE.csv, SCENE: TEMPLATE` for each row. SECTION is the anchor to
+which the first cell links; TEMPLATE describes the second cell. Without `, SCENE` it is `*`. The third cell is the commit of the values that
+the expressions read, and the fourth cell is the CSV's MACHINE. A section of docs/measurements/ that has a table needs a row of the index.
+
+A table without a comment fails; in README.md and install.md only if it contains digits (not counting code and links). In docs/measurements/
+each section also has to name processor, commit and date of every run whose rows its tables show. Links of measurements.md and
+docs/measurements/ must lead to files.
 """
 import fnmatch
+import glob
 import os
 import re
 import sys
 from decimal import ROUND_HALF_UP, Decimal
 
+RESULTS = "Testing/Benchmarks/results"
+INDEX = "docs/measurements.md"
 NUMBER = r"(-|[+]?(?:\d{1,3}(?:,\d{3})+|\d+)?(?:\.\d+)?)"
 
 
@@ -104,9 +116,9 @@ class Metric:
         return found
 
 
-def evaluate(expression, table, scene, used):
-    """The value, or None where the CSV lacks what it is made of."""
-    names = {"scene": scene, "min": min, "max": max, "sum": sum, "len": len}
+def evaluate(expression, table, scene, used, methods=None):
+    """Return the value, or None if the CSV lacks a value that the expression needs."""
+    names = {"scene": scene, "min": min, "max": max, "sum": sum, "len": len, **(methods or {})}
     for metric in {key[2] for key in table.values}:
         names[metric] = Metric(table, metric, scene, used)
     try:
@@ -136,6 +148,7 @@ def template_parts(template):
     """Expressions of a template, and the pattern of a cell."""
     if template == "text":
         return [], re.compile(r".*")
+    template = re.sub(r"\{span ([^{}]*)\}", r"{min(\1)} to {max(\1)}", template)
     pieces = re.split(r"\{([^{}]*)\}", template)
     expressions, pattern = [], ""
     for i, piece in enumerate(pieces):
@@ -147,6 +160,22 @@ def template_parts(template):
             expressions.append(piece)
             pattern += NUMBER
     return expressions, re.compile(pattern)
+
+
+def scene_of(label, rows):
+    """Return the scene of a row, and the line of the comment that describes it or None."""
+    for pattern, name in rows.items():
+        match = re.fullmatch("(.*?)".join(map(re.escape, pattern.split("*"))), label)
+        if match:
+            for text in match.groups():
+                name = name.replace("*", re.sub(r"(?<=\d),(?=\d)", "", text), 1)
+            return name, pattern
+    return label.replace("`", ""), None
+
+
+def anchor_of(title):
+    """Return the anchor that GitHub makes of a heading."""
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
 
 
 def cells_of(line):
@@ -189,16 +218,17 @@ class Document:
             self.lines = file.read().splitlines()
         self.errors, self.checked, self.tables, self.numbers = [], 0, 0, []
         self.csv = {}
+        self.anchors = []
 
     def fail(self, line, what):
         self.errors.append(f"{self.name}:{line}: {what}")
 
     def section(self, line):
-        """Text of the section (##) that a line is in."""
+        """Lines of the section (##) that a line is in."""
         heads = [i for i, text in enumerate(self.lines) if text.startswith("## ")]
         start = max([i for i in heads if i < line], default=0)
         end = min([i for i in heads if i >= line], default=len(self.lines))
-        return " ".join(self.lines[start:end])
+        return self.lines[start:end]
 
     def check(self):
         for line, comment, header, rows in tables_of(self.lines):
@@ -210,51 +240,88 @@ class Document:
             elif comment.startswith("none"):
                 if not re.match(r"none, \S", comment):
                     self.fail(line, "a table without figures of ours needs a reason: none, REASON")
+            elif comment.startswith("index"):
+                self.check_index(line, comment.splitlines()[1:], header, rows)
             else:
                 self.check_table(line, comment.splitlines(), header, rows)
+                heads = [text.lstrip("# ") for text in self.lines[:line] if re.match("##+ ", text)]
+                self.anchors.append(os.path.basename(self.name) + "#" + anchor_of(heads[-1] if heads else ""))
         if self.strict:
             for number, text in enumerate(self.lines, 1):
                 for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
                     if not os.path.exists(os.path.join(self.root, os.path.dirname(self.name), target)):
                         self.fail(number, f"{target} is not there")
 
-    def check_table(self, line, comment, header, rows):
-        path, columns, scenes = comment[0].strip(), {}, {}
+    @staticmethod
+    def lines_of(comment):
+        """Return the lines `NAME = TEXT` of a comment, and the methods of its lines `where`."""
+        lines, methods = {}, {}
+        for text in filter(None, map(str.strip, comment)):
+            name, _, value = text.partition(" = ")
+            if name.startswith("where "):
+                methods.update(pair.strip().split(" = ") for pair in text[6:].split(";"))
+            else:
+                lines[name] = value.strip()
+        return lines, methods
+
+    def open(self, line, path):
+        """Return the CSV of a comment, or None if it cannot be read."""
         try:
-            table = self.csv.setdefault(path, None) or Table(os.path.join(self.root, path))
+            self.csv[path] = self.csv.get(path) or Table(os.path.join(self.root, RESULTS, path))
         except (OSError, ValueError) as error:
             self.fail(line, str(error))
+        return self.csv.get(path)
+
+    def check_index(self, line, comment, header, rows):
+        answers, methods = self.lines_of(comment)
+        for number, cells in rows:
+            target = re.fullmatch(r"\[.*\]\(measurements/(.*)#(.*)\)", cells[0])
+            source = re.fullmatch(r"([^,:]+)(?:, (.*?))?: (.*)", answers.pop(target[2], "") if target else "")
+            if not source or len(cells) != 4:
+                self.fail(number, f"no line of the comment describes {cells[0]}, or the row has not four cells")
+                continue
+            table, used = self.open(line, f"{cells[3]}/{source[1]}"), set()
+            if not table:
+                continue
+            self.anchors.append(f"{target[1]}#{target[2]}")
+            self.check_cell(number, header[1], cells[1], source[3], table, source[2] or "*", used, methods)
+            commits = ", ".join(dict.fromkeys(run["commit"] for run in table.origins if used & set(run["scenes"].split(","))))
+            self.checked += 2
+            if cells[2] != commits:
+                self.fail(number, f"{header[2]}: '{cells[2]}' is not '{commits}'")
+        for name in answers:
+            self.fail(line, f"there is no row {name}")
+
+    def check_table(self, line, comment, header, rows):
+        path, used, met = comment[0].strip(), set(), set()
+        table = self.open(line, path)
+        if not table:
             return
-        self.csv[path] = table
-        for text in comment[1:]:
-            name, _, template = text.strip().partition(" = ")
-            if name.startswith("row "):
-                scenes[name[4:].strip()] = template.strip()
-            elif name:
-                columns[name] = template.strip()
-        for name in header:
-            if name not in columns:
-                self.fail(line, f"nothing describes column '{name}'")
-        for name in columns.keys() - set(header):
-            self.fail(line, f"there is no column '{name}'")
-        for label in scenes.keys() - {cells[0] for _, cells in rows}:
-            self.fail(line, f"there is no row '{label}'")
-        used = set()
+        templates = [cells_of(text) for text in comment if text.startswith("|")]
+        if len(templates) != 1 or len(templates[0]) != len(header):
+            self.fail(line, f"the comment needs one line of {len(header)} templates")
+            return
+        lines, methods = self.lines_of(text for text in comment[1:] if not text.startswith("|"))
+        scenes = {name[4:].strip(): scene for name, scene in lines.items() if name.startswith("row ")}
+        for name in lines.keys() - {"row " + label for label in scenes}:
+            self.fail(line, f"'{name}' is no line of a comment")
         for number, cells in rows:
             if len(cells) != len(header):
                 self.fail(number, f"{len(cells)} cells under {len(header)} columns")
                 continue
-            scene = scenes.get(cells[0], cells[0].replace("`", ""))
+            scene, row = scene_of(cells[0], scenes)
+            met.add(row)
             before = self.checked
-            for name, cell in zip(header, cells):
-                if columns.get(name):
-                    self.check_cell(number, name, cell, columns[name], table, scene, used)
+            for name, cell, template in zip(header, cells, templates[0]):
+                self.check_cell(number, name, cell, template, table, scene, used, methods)
             if self.checked == before:
                 self.fail(number, f"no figure of this row is checked ('{scene}' may be no scene)")
+        for label in scenes.keys() - met:
+            self.fail(line, f"there is no row '{label}'")
         if self.strict:
-            self.check_origins(line, path, table, used)
+            self.check_origins(line, f"{RESULTS}/{path}", table, used)
 
-    def check_cell(self, number, name, cell, template, table, scene, used):
+    def check_cell(self, number, name, cell, template, table, scene, used, methods=None):
         expressions, pattern = template_parts(template)
         if cell == "-" and expressions:  # all of the cell's figures are missing
             texts = ["-"] * len(expressions)
@@ -266,7 +333,7 @@ class Document:
             texts = match.groups()
         for expression, text in zip(expressions, texts):
             try:
-                value = evaluate(expression, table, scene, used)
+                value = evaluate(expression, table, scene, used, methods)
             except Exception as error:  # whatever an expression may be wrong in
                 self.fail(number, f"{name}: {expression}: {error}")
                 continue
@@ -278,7 +345,7 @@ class Document:
                 self.numbers += [] if wrong else [(text, value)]
 
     def check_origins(self, line, path, table, used):
-        section = self.section(line)
+        section = " ".join(self.section(line))
         if os.path.relpath(path, os.path.dirname(self.name)) not in section:
             self.fail(line, f"its section has no link to {path}")
         for origin in table.origins:
@@ -306,10 +373,17 @@ def change_digit(text):
 def main():
     root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
     errors = [error for error in (check_judge(),) if error]
-    for name, strict in (("docs/measurements.md", True), ("README.md", False), ("docs/install.md", False)):
+    pages = sorted(os.path.relpath(path, root) for path in glob.glob(os.path.join(root, "docs", "measurements", "*.md")))
+    indexed, sections = [], []
+    for name in [INDEX, *pages, "README.md", "docs/install.md"]:
+        strict = name not in ("README.md", "docs/install.md")
         document = Document(root, name, strict)
         document.check()
         errors += document.errors
+        if name == INDEX:
+            indexed = document.anchors
+        elif strict:
+            sections += document.anchors
         # Any other last digit would have been seen.
         for text, value in document.numbers:
             if judge(change_digit(text), value) is None:
@@ -317,6 +391,8 @@ def main():
         if strict and document.checked == 0:
             errors.append(f"{name}: nothing was checked")
         print(f"{name}: {document.checked} figures in {document.tables} tables")
+    errors += [f"{INDEX}: {name} is not in the index" for name in dict.fromkeys(sections) if name not in indexed]
+    errors += [f"{INDEX}: {name} has no table" for name in dict.fromkeys(indexed) if name not in sections]
     print("\n".join(errors) if errors else "all as in the tables of the benchmarks")
     return 1 if errors else 0
 
