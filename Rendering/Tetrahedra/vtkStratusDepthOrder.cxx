@@ -74,7 +74,7 @@ Kind FindKind(vtkVolume* volume)
 // Adds a prop's volumes. parent: matrix of the assembly that the prop is a part of, nullptr if it is not.
 void AddEntries(vtkProp* prop, vtkMatrix4x4* parent, std::vector<Entry>& entries)
 {
-  vtkProp3D* prop3D = vtkProp3D::SafeDownCast(prop);
+  vtkProp3D* prop3D = prop->IsA("vtkActor") ? nullptr : vtkProp3D::SafeDownCast(prop); // most props are actors
   if (!prop3D || !prop3D->GetVisibility()) {
     return;
   }
