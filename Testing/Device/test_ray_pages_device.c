@@ -183,7 +183,7 @@ static void pages_draw_the_whole_volumes_bits(void** state)
   const bool one_ray = *(const bool*)*state;
   device->device->is_cpu = !one_ray;
   device->device->builds = !tiny; /* other tests show a simulator what builds */
-  for (uint32_t i = one_ray && !tiny; i < COUNT_OF(cases); i += tiny ? 1 : few_run() ? 6 : one_ray ? 3 : 1) {
+  for (uint32_t i = one_ray && !tiny; i < COUNT_OF(cases); i += tiny ? 1 : few_run() ? 10 : one_ray ? 3 : 1) {
     picture_case c;
     if (tiny && cases[i].type > STRATUS_UINT8) {
       continue;
@@ -366,20 +366,31 @@ static void pages_survive_a_device_that_fails(void** state)
   case_destroy(&c);
 }
 
+static bool packets = false, one_ray = true;
+
 int test_ray_pages_device(void)
 {
   if (no_device()) {
     return TEST_SKIPPED;
   }
-  static bool packets = false, one_ray = true;
   const struct CMUnitTest tests[] = {
     cmocka_unit_test_prestate(pages_draw_the_whole_volumes_bits, &packets),
-    cmocka_unit_test_prestate(pages_draw_the_whole_volumes_bits, &one_ray),
-    cmocka_unit_test(pages_serve_the_local_rule),
     cmocka_unit_test(pages_are_sent_once_and_anew_where_more_shows),
-    cmocka_unit_test(what_does_not_fit_is_drawn_on_the_host),
     cmocka_unit_test(pages_survive_a_device_that_fails),
   };
-  const struct CMUnitTest few[] = { tests[0], tests[1] };
+  const struct CMUnitTest few[] = { tests[0], cmocka_unit_test_prestate(pages_draw_the_whole_volumes_bits, &one_ray) };
   return tiny ? cmocka_run_group_tests(few, open_device, close_device) : cmocka_run_group_tests(tests, open_device, close_device);
+}
+
+int test_ray_pages_by_rays_device(void)
+{
+  if (no_device()) {
+    return TEST_SKIPPED;
+  }
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test_prestate(pages_draw_the_whole_volumes_bits, &one_ray),
+    cmocka_unit_test(pages_serve_the_local_rule),
+    cmocka_unit_test(what_does_not_fit_is_drawn_on_the_host),
+  };
+  return cmocka_run_group_tests(tests, open_device, close_device);
 }
