@@ -26,16 +26,22 @@ class Sources:
 
     def __init__(self, root, files):
         self.root, self.files, self.codes = root, files, {}
+        self.stems = {os.path.basename(file).split(".")[0] for file in files}
 
     def find(self, text):
         """Return the files that a name of a file or folder means."""
         pattern = re.sub(r"<[^<>]*>|^(?=_)", "*", re.sub(r"^(\.\./)+", "", text))
         if pattern.endswith("/") or not os.path.splitext(pattern)[1]:
             inside = pattern.rstrip("/") + "/*"
-            folder = [file for file in self.files if fnmatch.fnmatchcase(file, inside) or fnmatch.fnmatchcase(file, "*/" + inside)]
+            folder = self.match(inside)
             if folder or pattern.endswith("/"):
                 return folder
-        return [file for file in self.files if fnmatch.fnmatchcase(file, pattern) or fnmatch.fnmatchcase(file, "*/" + pattern)]
+        return self.match(pattern)
+
+    def match(self, pattern):
+        """Return the files whose path, or the end of whose path after a slash, matches."""
+        expression = re.compile("(?:.*/)?" + fnmatch.translate(pattern))
+        return [file for file in self.files if expression.match(file)]
 
     def code(self, file):
         """Return the text of a source without comments."""
@@ -56,7 +62,7 @@ class Sources:
         patterns = [re.compile(rf"(?<!\w){part}(?!\w)") for part in parts[:-1]]
         start = r"\w*" if parts[-1].startswith("_") else ""  # `_same` abbreviates a name with the prefix of the name before it
         patterns.append(re.compile(rf"(?<!\w){start}{parts[-1]}" + (rf"\s*{call}" if call else r"(?!\w)")))
-        if any(os.path.basename(file).split(".")[0] == name for file in self.files):
+        if name in self.stems:
             return True  # a class or module that has a file of its own
         return any(all(pattern.search(self.code(file)) for pattern in patterns) for file in files)
 
