@@ -11,33 +11,33 @@ stratus_ray_cast_options casting_of(const options& o, int up)
 {
   stratus_ray_cast_options cast = stratus_ray_cast_options_default();
   cast.mode = o.mode;
-  cast.normals = o.normals;
-  std::copy(o.average.begin(), o.average.end(), cast.average_range);
-  cast.contour_count = static_cast<int>(o.contours.size());
-  std::copy(o.contours.begin(), o.contours.end(), cast.contours);
+  cast.light.normals = o.normals;
+  std::copy(o.average.begin(), o.average.end(), cast.optics.average_range);
+  cast.optics.contour_count = static_cast<int>(o.contours.size());
+  std::copy(o.contours.begin(), o.contours.end(), cast.optics.contours);
   for (size_t a = 0; a < 3 && !o.slice.empty(); ++a) {
     const double scale = static_cast<int>(a) == up ? o.exaggeration : 1.0;
     cast.slice.center[a] = o.slice[a] * scale;
     cast.slice.linear[a] = o.slice[3 + a] / scale;
   }
-  cast.jitter = o.jitter < 0 ? 0 : 1;
-  cast.jitter_seed = static_cast<uint32_t>(std::max(0, o.jitter));
-  cast.structure = o.structure;
-  cast.sampling = o.sampling;
-  cast.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-  cast.sample_distance = o.sample_distance;
-  cast.cell_error = o.cell_error;
-  cast.tolerance = o.tolerance;
-  cast.shade = o.shade;
-  cast.audit = o.audit;
+  cast.sampling.jitter = o.jitter < 0 ? 0 : 1;
+  cast.sampling.jitter_seed = static_cast<uint32_t>(std::max(0, o.jitter));
+  cast.skipping.structure = o.structure;
+  cast.sampling.rule = o.sampling;
+  cast.sampling.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+  cast.sampling.distance = o.sample_distance;
+  cast.sampling.cell_error = o.cell_error;
+  cast.sampling.tolerance = o.tolerance;
+  cast.light.shade = o.shade;
+  cast.skipping.audit = o.audit;
   return cast;
 }
 
 void volume_parts::set(const options& o, context& core, const stratus_volume& volume, stratus_ray_cast_options& cast)
 {
-  cast.crop = o.crop.empty() ? 0 : 1;
-  std::copy(o.crop.begin(), o.crop.end(), cast.crop_bounds);
-  cast.crop_regions = static_cast<uint32_t>(o.crop_regions);
+  cast.clipping.crop = o.crop.empty() ? 0 : 1;
+  std::copy(o.crop.begin(), o.crop.end(), cast.clipping.crop_bounds);
+  cast.clipping.crop_regions = static_cast<uint32_t>(o.crop_regions);
   if (o.mask.empty()) {
     return;
   }
@@ -48,7 +48,7 @@ void volume_parts::set(const options& o, context& core, const stratus_volume& vo
   if (bytes.type != STRATUS_UINT8 || !std::equal(bytes.dimensions, bytes.dimensions + 3, volume.dimensions)) {
     throw failure("mask '" + o.mask + "' has " + describe(bytes) + ", one uint8 for each value of " + describe(volume) + " is needed");
   }
-  cast.mask = static_cast<const uint8_t*>(bytes.values);
+  cast.mask.bytes = static_cast<const uint8_t*>(bytes.values);
 }
 
 void print_cast(const options& o, const context& core, const transfer& functions, const stratus_ray_cast_report& r)

@@ -96,12 +96,12 @@ static bool make_ray(const first_hit_frame* frame, uint32_t x, uint32_t y, strat
   if (frame->image->opaque_depth) {
     ray->t_max = fmin(ray->t_max, opaque_k(frame, x, y));
   }
-  for (uint32_t side = 0; frame->options->crop && side < 6; ++side) {
+  for (uint32_t side = 0; frame->options->clipping.crop && side < 6; ++side) {
     const uint32_t axis = side / 2;
     const double sign = side % 2 ? -1.0 : 1.0;
     cut(sign * (ray->origin[axis] - frame->crop[side]), sign * ray->direction[axis], STRATUS_CUT_CROP + side, ray, &pixel->cut);
   }
-  for (int p = 0; p < frame->options->clip_plane_count; ++p) {
+  for (int p = 0; p < frame->options->clipping.clip_plane_count; ++p) {
     const double* plane = frame->planes[p];
     const double height = plane[0] * ray->origin[0] + plane[1] * ray->origin[1] + plane[2] * ray->origin[2] + plane[3];
     const double slope = plane[0] * ray->direction[0] + plane[1] * ray->direction[1] + plane[2] * ray->direction[2];
@@ -240,7 +240,7 @@ static stratus_status draw(stratus_context* context, first_hit_frame* frame, str
   TRY_CLEANUP(stratus_allocate(context, most, sizeof *frame->pixels, &pixels));
   TRY_CLEANUP(stratus_allocate(context, most, sizeof *frame->hits, &hits));
   TRY_CLEANUP(stratus_allocate(context, (size_t)rows, sizeof(size_t), &counts));
-  if (frame->options->audit) {
+  if (frame->options->skipping.audit) {
     TRY_CLEANUP(stratus_allocate(context, most, sizeof *frame->plain_hits, &plain_hits));
   }
   frame->rays = rays;
@@ -271,10 +271,10 @@ static void set_limits(const stratus_volume* volume, const double index_to_world
     const double spacing = stratus_volume_spacing(volume, side / 2);
     const double begin = volume->origin[side / 2] + stratus_volume_begin(volume, side / 2);
     const int from = spacing < 0.0 ? side ^ 1 : side; /* falling coordinates turn the sides round */
-    frame->crop[side] = (frame->options->crop_bounds[from] - begin) / spacing - half;
+    frame->crop[side] = (frame->options->clipping.crop_bounds[from] - begin) / spacing - half;
   }
-  for (int p = 0; p < frame->options->clip_plane_count; ++p) {
-    const double* plane = frame->options->clip_planes[p];
+  for (int p = 0; p < frame->options->clipping.clip_plane_count; ++p) {
+    const double* plane = frame->options->clipping.clip_planes[p];
     for (int column = 0; column < 4; ++column) {
       frame->planes[p][column] = column == 3 ? plane[3] : 0.0;
       for (int row = 0; row < 3; ++row) {
@@ -305,7 +305,8 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the volume's matrix has no inverse");
   }
-  TRY(stratus_first_hit_update(caster, volume, transfer, borders, options->structure, options->audit != 0, &frame->scene, report));
+  TRY(stratus_first_hit_update(
+    caster, volume, transfer, borders, options->skipping.structure, options->skipping.audit != 0, &frame->scene, report));
   const double start = stratus_now_ms();
   stratus_matrix_point(world_to_index, camera->eye, frame->eye);
   stratus_matrix_vector(world_to_index, camera->forward, frame->forward);
@@ -337,8 +338,8 @@ stratus_status stratus_first_hit_render(stratus_ray_caster* caster, const stratu
   void* memory = NULL;
   const bool stretched = stratus_volume_is_stretched(volume);
   TRY(stratus_camera_check(context, camera, image));
-  if (options->shading.on) {
-    TRY(stratus_shading_check(context, &options->shading));
+  if (options->light.shading.on) {
+    TRY(stratus_shading_check(context, &options->light.shading));
   }
   if (stretched) {
     TRY(stratus_first_hit_borders(context, volume, &borders, &memory));

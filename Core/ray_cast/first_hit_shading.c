@@ -46,14 +46,14 @@ void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, co
     memcpy(shader->face[axis], world_to_index + 4 * axis, sizeof shader->face[axis]);
     (void)stratus_vector_normalize(shader->face[axis]);
   }
-  for (int p = 0; p < options->clip_plane_count; ++p) {
+  for (int p = 0; p < options->clipping.clip_plane_count; ++p) {
     for (int axis = 0; axis < 3; ++axis) {
-      shader->plane[p][axis] = -options->clip_planes[p][axis];
+      shader->plane[p][axis] = -options->clipping.clip_planes[p][axis];
     }
     (void)stratus_vector_normalize(shader->plane[p]);
   }
-  if (options->shading.on) {
-    set_lights(shader, camera, &options->shading);
+  if (options->light.shading.on) {
+    set_lights(shader, camera, &options->light.shading);
   }
 }
 
@@ -161,7 +161,7 @@ static double reaching(const stratus_light* light, const double to[3], double di
 static void illuminate(
   const stratus_shader* shader, const double point[3], const double normal[3], const double direction[3], double rgb[3])
 {
-  const stratus_shading* shading = &shader->options->shading;
+  const stratus_shading* shading = &shader->options->light.shading;
   double light[3] = { shading->ambient, shading->ambient, shading->ambient }, gloss[3] = { 0.0, 0.0, 0.0 };
   for (int i = 0; i < shader->light_count; ++i) {
     double to[3];
@@ -201,7 +201,7 @@ void stratus_shader_apply(
   stratus_matrix_vector(shader->index_to_world, ray->direction, direction);
   const double length = sqrt(stratus_vector_dot(direction, direction));
   stratus_transfer_at(shader->transfer, value_at(shader, at) + shader->bias, shown);
-  if (shader->options->shading.on) {
+  if (shader->options->light.shading.on) {
     for (int axis = 0; axis < 3; ++axis) {
       direction[axis] /= length;
       index[axis] = ray->origin[axis] + t * ray->direction[axis];
@@ -209,7 +209,7 @@ void stratus_shader_apply(
     stratus_matrix_point(shader->index_to_world, index, point);
     if (face < 0) {
       cut_normal(shader, cut, direction, normal);
-    } else if (shader->options->normals != STRATUS_NORMALS_GRADIENT || !gradient_normal(shader, voxel, direction, normal)) {
+    } else if (shader->options->light.normals != STRATUS_NORMALS_GRADIENT || !gradient_normal(shader, voxel, direction, normal)) {
       for (int axis = 0; axis < 3; ++axis) {
         normal[axis] = (face & 1 ? 1.0 : -1.0) * shader->face[face / 2][axis];
       }

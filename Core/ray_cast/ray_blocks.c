@@ -75,7 +75,8 @@ static stratus_camera camera_of(const blocks* b, const int window[4])
 /* Gives the transparency below which a ray of the block's picture ends. */
 static float least_transparency(const stratus_ray_cast_options* options)
 {
-  return (float)(options->termination > 0.0 ? 1.0 - options->termination : stratus_ray_termination(options->tolerance));
+  return (float)(options->sampling.termination > 0.0 ? 1.0 - options->sampling.termination
+                                                     : stratus_ray_termination(options->sampling.tolerance));
 }
 
 /* Sets where the rays of a part end: at opaque geometry, and at once where the picture is opaque already. Returns whether any ray is left,
@@ -139,7 +140,8 @@ static stratus_status draw_block(blocks* b, int number, stratus_ray_cast_report*
   part.width = window[1] - window[0];
   part.height = window[3] - window[2];
   part.opaque_depth = ends ? b->ends : NULL;
-  options.tolerance /= sqrt(cbrt((double)b->count)); /* of errors of as many blocks as a ray may meet, which add up by their squares */
+  options.sampling.tolerance /=
+    sqrt(cbrt((double)b->count)); /* of errors of as many blocks as a ray may meet, which add up by their squares */
   const stratus_camera camera = camera_of(b, window);
   TRY(stratus_ray_caster_render(in->caster, in->volume, in->transfer, &camera, &options, &part, report));
   blend_behind(b, window, report->window);

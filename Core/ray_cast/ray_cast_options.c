@@ -17,7 +17,8 @@ const char* stratus_sampling_name(stratus_sampling sampling)
 
 stratus_ray_cast_options stratus_ray_cast_options_default(void)
 {
-  return (stratus_ray_cast_options){
-    .tolerance = 0.001, .shading = stratus_shading_default(), .average_range = { -INFINITY, INFINITY }, .crop_regions = STRATUS_CROP_INSIDE
-  };
+  return (stratus_ray_cast_options){ .sampling.tolerance = 0.001,
+    .light.shading = stratus_shading_default(),
+    .optics.average_range = { -INFINITY, INFINITY },
+    .clipping.crop_regions = STRATUS_CROP_INSIDE };
 }

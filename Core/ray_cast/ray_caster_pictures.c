@@ -9,7 +9,7 @@ static bool draws_parts(const stratus_volume* volume, const stratus_ray_cast_opt
 {
   const bool one_value = options->mode == STRATUS_MODE_MAXIMUM || options->mode == STRATUS_MODE_MINIMUM ||
     options->mode == STRATUS_MODE_AVERAGE || options->mode == STRATUS_MODE_ADDITIVE;
-  return one_value && stratus_volume_components(volume) > 1 && !options->dependent;
+  return one_value && stratus_volume_components(volume) > 1 && !options->optics.dependent;
 }
 
 void stratus_ray_cast_report_add(stratus_ray_cast_report* sum, const stratus_ray_cast_report* part)
@@ -89,12 +89,12 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
     return STRATUS_INVALID_ARGUMENT;
   }
   options = options ? options : &defaults;
-  if (options->transfer_2d) {
+  if (options->optics.transfer_2d) {
     TRY(stratus_volume_check(caster->context, volume));
     TRY(stratus_ray_transfer_2d_check(caster, volume, options));
   }
   TRY(stratus_ray_transfer_2d_update(caster, options));
-  transfer = options->transfer_2d ? &caster->transfer_2d.shown : transfer;
+  transfer = options->optics.transfer_2d ? &caster->transfer_2d.shown : transfer;
   TRY(stratus_ray_check_input(caster->context, volume, transfer, options));
   TRY(stratus_image_check(caster->context, image));
   TRY((draws_parts(volume, options) ? draw_parts : stratus_ray_render_one)(caster, volume, transfer, camera, options, image, &mine));

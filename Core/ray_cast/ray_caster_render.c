@@ -23,21 +23,21 @@
 
 static stratus_status check_crop(stratus_context* context, const stratus_ray_cast_options* options)
 {
-  for (int axis = 0; options->crop && axis < 3; ++axis) {
-    const double lo = options->crop_bounds[2 * axis], hi = options->crop_bounds[2 * axis + 1];
+  for (int axis = 0; options->clipping.crop && axis < 3; ++axis) {
+    const double lo = options->clipping.crop_bounds[2 * axis], hi = options->clipping.crop_bounds[2 * axis + 1];
     if (!(lo <= hi) || !isfinite(lo) || !isfinite(hi)) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "crop bounds %g..%g along axis %d are reversed or not finite", lo, hi, axis);
     }
   }
-  if (options->clip_plane_count < 0 || options->clip_plane_count > STRATUS_CLIP_PLANES_MAX) {
+  if (options->clipping.clip_plane_count < 0 || options->clipping.clip_plane_count > STRATUS_CLIP_PLANES_MAX) {
     return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "%d clip planes, must be 0..%d", options->clip_plane_count, STRATUS_CLIP_PLANES_MAX);
+      context, STRATUS_INVALID_ARGUMENT, "%d clip planes, must be 0..%d", options->clipping.clip_plane_count, STRATUS_CLIP_PLANES_MAX);
   }
-  for (int p = 0; p < options->clip_plane_count; ++p) {
+  for (int p = 0; p < options->clipping.clip_plane_count; ++p) {
     for (int i = 0; i < 4; ++i) {
-      if (!isfinite(options->clip_planes[p][i])) {
+      if (!isfinite(options->clipping.clip_planes[p][i])) {
         return stratus_fail(
-          context, STRATUS_INVALID_ARGUMENT, "clip plane %d has coefficient %g, must be finite", p, options->clip_planes[p][i]);
+          context, STRATUS_INVALID_ARGUMENT, "clip plane %d has coefficient %g, must be finite", p, options->clipping.clip_planes[p][i]);
       }
     }
   }
@@ -47,11 +47,11 @@ static stratus_status check_crop(stratus_context* context, const stratus_ray_cas
 /* Gradients at clip planes need a distance of one voxel, which only grids of equal spacing have, and one component. */
 static stratus_status check_clip_gradients(stratus_context* context, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
-  if (!options->clip_gradients || options->clip_plane_count == 0) {
+  if (!options->clipping.clip_gradients || options->clipping.clip_plane_count == 0) {
     return STRATUS_OK;
   }
-  if (!isfinite(options->clipped_value)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "clipped value %g, must be finite", options->clipped_value);
+  if (!isfinite(options->clipping.clipped_value)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "clipped value %g, must be finite", options->clipping.clipped_value);
   }
   if (volume->coordinates[0] || volume->coordinates[1] || volume->coordinates[2] || stratus_volume_components(volume) > 1) {
     return stratus_fail(context, STRATUS_UNSUPPORTED,
@@ -63,35 +63,36 @@ static stratus_status check_clip_gradients(stratus_context* context, const strat
 
 static stratus_status check_options(stratus_context* context, const stratus_ray_cast_options* options)
 {
-  if ((unsigned)options->mode > STRATUS_MODE_SLICE || (unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
+  if ((unsigned)options->mode > STRATUS_MODE_SLICE || (unsigned)options->light.normals > STRATUS_NORMALS_GRADIENT) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d (0..%d) or normals %d (0..%d) are out of range", (int)options->mode,
-      STRATUS_MODE_SLICE, (int)options->normals, STRATUS_NORMALS_GRADIENT);
+      STRATUS_MODE_SLICE, (int)options->light.normals, STRATUS_NORMALS_GRADIENT);
   }
-  if ((unsigned)options->structure > STRATUS_STRUCTURE_HYBRID || (unsigned)options->sampling > STRATUS_SAMPLING_CELLS ||
-    (unsigned)options->interpolation > STRATUS_INTERPOLATION_NEAREST) {
+  if ((unsigned)options->skipping.structure > STRATUS_STRUCTURE_HYBRID || (unsigned)options->sampling.rule > STRATUS_SAMPLING_CELLS ||
+    (unsigned)options->sampling.interpolation > STRATUS_INTERPOLATION_NEAREST) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-      "structure %d (0..%d), sampling %d (0..%d) or interpolation %d (0..%d) is out of range", (int)options->structure,
-      STRATUS_STRUCTURE_HYBRID, (int)options->sampling, STRATUS_SAMPLING_CELLS, (int)options->interpolation, STRATUS_INTERPOLATION_NEAREST);
+      "structure %d (0..%d), sampling %d (0..%d) or interpolation %d (0..%d) is out of range", (int)options->skipping.structure,
+      STRATUS_STRUCTURE_HYBRID, (int)options->sampling.rule, STRATUS_SAMPLING_CELLS, (int)options->sampling.interpolation,
+      STRATUS_INTERPOLATION_NEAREST);
   }
-  if (!(options->sample_distance >= 0.0) || !isfinite(options->sample_distance)) {
+  if (!(options->sampling.distance >= 0.0) || !isfinite(options->sampling.distance)) {
     return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "sample distance %g, must be positive, or 0 for automatic", options->sample_distance);
+      context, STRATUS_INVALID_ARGUMENT, "sample distance %g, must be positive, or 0 for automatic", options->sampling.distance);
   }
-  if (!(options->cell_error >= 0.0) || !isfinite(options->cell_error)) {
+  if (!(options->sampling.cell_error >= 0.0) || !isfinite(options->sampling.cell_error)) {
     return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "cell error %g, must be positive and finite, or 0 for automatic", options->cell_error);
+      context, STRATUS_INVALID_ARGUMENT, "cell error %g, must be positive and finite, or 0 for automatic", options->sampling.cell_error);
   }
-  if (!(options->termination >= 0.0 && options->termination <= 1.0)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "termination %g outside 0..1", options->termination);
+  if (!(options->sampling.termination >= 0.0 && options->sampling.termination <= 1.0)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "termination %g outside 0..1", options->sampling.termination);
   }
-  if (!(options->tolerance >= 0.0) || !isfinite(options->tolerance)) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "tolerance %g, must be at least 0 and finite", options->tolerance);
+  if (!(options->sampling.tolerance >= 0.0) || !isfinite(options->sampling.tolerance)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "tolerance %g, must be at least 0 and finite", options->sampling.tolerance);
   }
-  if (!(options->gradient_distance >= 0.0) || !isfinite(options->gradient_distance)) {
+  if (!(options->optics.gradient_distance >= 0.0) || !isfinite(options->optics.gradient_distance)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "gradient distance %g, must be positive and finite, or 0 for optical depths",
-      options->gradient_distance);
+      options->optics.gradient_distance);
   }
-  const int size = options->block_size;
+  const int size = options->skipping.block_size;
   if (size != 0 && size != 2 && size != 4 && size != 8 && size != 16 && size != 32) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "block size %d, must be 2, 4, 8, 16, 32, or 0 for the default", size);
   }
@@ -223,11 +224,11 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   stratus_ray_drawn drawn = { .count = 0 };
   bool empty = false;
   const bool times = !image->samples; /* an image of samples must not depend on times, because samples depend on the structure */
-  const bool tries = times && options->structure == STRATUS_STRUCTURE_AUTO;
+  const bool tries = times && options->skipping.structure == STRATUS_STRUCTURE_AUTO;
 
   caster->where[0] = '\0';
   TRY(stratus_ray_update_tables(caster, volume, transfer, options, (size_t)image->width * (size_t)image->height, report));
-  TRY(stratus_ray_update_structures(caster, options->structure, times, &used, why, sizeof why, report));
+  TRY(stratus_ray_update_structures(caster, options->skipping.structure, times, &used, why, sizeof why, report));
   if (caster->choice.provisional) {
     TRY(stratus_ray_probe(caster, volume, options, report));
   }
@@ -265,7 +266,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
       stratus_image_clear(image);
       memset(report->window, 0, sizeof report->window);
     }
-    if (options->audit) {
+    if (options->skipping.audit) {
       TRY(audit(caster, &arguments, image, &report->differing_pixels));
     }
   }

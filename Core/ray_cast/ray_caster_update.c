@@ -49,8 +49,8 @@ int stratus_ray_block_size(const stratus_volume* volume)
 static stratus_status update_ranges(
   stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, size_t rays, double* ms)
 {
-  const int block_size = chosen_block_size(volume, options->block_size);
-  const bool by_value = options->interpolation == STRATUS_INTERPOLATION_NEAREST && volume->cell_centered;
+  const int block_size = chosen_block_size(volume, options->skipping.block_size);
+  const bool by_value = options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST && volume->cell_centered;
   const bool same = same_data(caster, volume, block_size);
   if (!same || caster->hidden_by_value != by_value || !stratus_ray_mask_same(caster, options)) {
     const double start = stratus_now_ms();
@@ -59,7 +59,8 @@ static stratus_status update_ranges(
     int hides = 0;
     stratus_status status = stratus_ray_hidden_make(caster->context, volume, by_value, &hidden);
     if (status == STRATUS_OK) {
-      status = stratus_ray_mask_join(caster->context, volume, options->mask, options->label_count > 0, by_value, &hidden, &hides);
+      status =
+        stratus_ray_mask_join(caster->context, volume, options->mask.bytes, options->mask.label_count > 0, by_value, &hidden, &hides);
     }
     if (status == STRATUS_OK && !same) {
       status = stratus_value_range_create(caster->context, volume, block_size, &ranges);
@@ -76,8 +77,8 @@ static stratus_status update_ranges(
     caster->hidden = hidden;
     caster->hidden_by_value = by_value;
     caster->hides = hides;
-    caster->mask = options->mask;
-    caster->mask_revision = options->mask_revision;
+    caster->mask = options->mask.bytes;
+    caster->mask_revision = options->mask.revision;
     stratus_ray_drop_offer_map(caster);
     caster->inputs.tolerance = caster->measured_for.tolerance = -1.0; /* equals none: the choice is made anew */
     ++caster->data_serial;
@@ -129,23 +130,24 @@ static stratus_status keep_transfers(stratus_ray_caster* caster, const stratus_t
 /* Return the inputs of the caster's choice, except values and transfer functions. */
 static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
-  const int materials = options->materials && options->mode == STRATUS_MODE_COMPOSITE ? stratus_ray_shading_media(volume, options) : 0;
+  const int materials =
+    options->light.materials && options->mode == STRATUS_MODE_COMPOSITE ? stratus_ray_shading_media(volume, options) : 0;
   stratus_ray_choice_inputs in;
   memset(&in, 0, sizeof in); /* padding, too: inputs are compared as bytes */
-  in.sampling = options->sampling;
-  in.sample_distance = options->sample_distance;
-  in.cell_error = options->cell_error;
-  in.tolerance = options->tolerance;
-  in.interpolation = options->interpolation;
-  in.shade = options->shade != 0;
-  in.mean_components = options->mean_components != 0;
-  in.gradient_distance = options->gradient_distance;
+  in.sampling = options->sampling.rule;
+  in.sample_distance = options->sampling.distance;
+  in.cell_error = options->sampling.cell_error;
+  in.tolerance = options->sampling.tolerance;
+  in.interpolation = options->sampling.interpolation;
+  in.shade = options->light.shade != 0;
+  in.mean_components = options->optics.mean_components != 0;
+  in.gradient_distance = options->optics.gradient_distance;
   for (int c = 0; c < materials && c < 4; ++c) { /* field by field: their padding is anything */
-    in.materials[c].shade = options->materials[c].shade != 0;
-    in.materials[c].ambient = options->materials[c].ambient;
-    in.materials[c].diffuse = options->materials[c].diffuse;
-    in.materials[c].specular = options->materials[c].specular;
-    in.materials[c].specular_power = options->materials[c].specular_power;
+    in.materials[c].shade = options->light.materials[c].shade != 0;
+    in.materials[c].ambient = options->light.materials[c].ambient;
+    in.materials[c].diffuse = options->light.materials[c].diffuse;
+    in.materials[c].specular = options->light.materials[c].specular;
+    in.materials[c].specular_power = options->light.materials[c].specular_power;
   }
   in.voxel = stratus_ray_voxel_length(volume);
   return in;
@@ -158,17 +160,17 @@ static stratus_status update_function(stratus_ray_caster* caster, const stratus_
 {
   const int media = stratus_ray_shading_media(volume, options);
   const stratus_ray_shown shown = stratus_ray_modes_shown(options);
-  if (!same_transfers(caster, transfer, media, options->dependent != 0)) {
-    TRY(keep_transfers(caster, transfer, media, options->dependent != 0));
+  if (!same_transfers(caster, transfer, media, options->optics.dependent != 0)) {
+    TRY(keep_transfers(caster, transfer, media, options->optics.dependent != 0));
     *changed = true;
   }
-  if (!caster->values.of || !stratus_ray_modes_same(&caster->shown, &shown) || caster->interpolation != options->interpolation) {
+  if (!caster->values.of || !stratus_ray_modes_same(&caster->shown, &shown) || caster->interpolation != options->sampling.interpolation) {
     const stratus_fetching fetching = stratus_value_range_fetching(caster->ranges);
     stratus_ray_drop_values(caster);
     *changed = true;
     TRY(stratus_ray_modes_values(caster->context, &shown, caster->transfers, &fetching, &caster->values));
     caster->shown = shown;
-    caster->interpolation = options->interpolation;
+    caster->interpolation = options->sampling.interpolation;
   }
   return STRATUS_OK;
 }

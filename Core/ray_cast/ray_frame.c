@@ -103,7 +103,7 @@ static void crop_at(const stratus_volume* volume, const stratus_ray_cast_options
   const double spacing = stratus_volume_spacing(volume, axis), begin = volume->origin[axis] + stratus_volume_begin(volume, axis);
   const double half = volume->cell_centered ? 0.5 : 0.0;
   for (int side = 0; side < 2; ++side) { /* falling coordinates turn the sides round */
-    at[spacing < 0.0 ? 1 - side : side] = (options->crop_bounds[2 * axis + side] - begin) / spacing - half;
+    at[spacing < 0.0 ? 1 - side : side] = (options->clipping.crop_bounds[2 * axis + side] - begin) / spacing - half;
   }
 }
 
@@ -114,7 +114,7 @@ static bool set_box(const stratus_ray_caster* caster, const stratus_ray_cast_opt
   for (int axis = 0; axis < 3; ++axis) {
     const double last = (double)(volume->dimensions[axis] - 1), margin = (last + 1.0 + voxels) * FLOAT_COARSENESS;
     double lo = volume->cell_centered ? -0.5 : margin, hi = volume->cell_centered ? last + 0.5 : last - margin;
-    if (options->crop && options->crop_regions == STRATUS_CROP_INSIDE) {
+    if (options->clipping.crop && options->clipping.crop_regions == STRATUS_CROP_INSIDE) {
       double bounds[2];
       crop_at(volume, options, axis, bounds);
       lo = fmax(lo, bounds[0]);
@@ -152,10 +152,11 @@ static uint32_t regions_by_index(const stratus_volume* volume, uint32_t regions)
 /* Sets crop regions other than just the inside. Returns false if none is shown. */
 static bool set_regions(const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
-  if (!options->crop || options->crop_regions == STRATUS_CROP_INSIDE || options->crop_regions == STRATUS_CROP_ALL) {
+  if (!options->clipping.crop || options->clipping.crop_regions == STRATUS_CROP_INSIDE ||
+    options->clipping.crop_regions == STRATUS_CROP_ALL) {
     return true;
   }
-  a->crop.regions = (int)regions_by_index(volume, options->crop_regions);
+  a->crop.regions = (int)regions_by_index(volume, options->clipping.crop_regions);
   for (int axis = 0; axis < 3; ++axis) {
     double bounds[2];
     crop_at(volume, options, axis, bounds);
@@ -192,9 +193,9 @@ static bool set_piece(const stratus_ray_caster* caster, stratus_ray_cast_argumen
 /* Transforms the world planes to index coordinates: n . (M x + t) + d. */
 static void set_clip_planes(const stratus_ray_cast_options* options, const double m[16], stratus_ray_cast_arguments* a)
 {
-  a->crop.clip_count = options->clip_plane_count;
-  for (int p = 0; p < options->clip_plane_count; ++p) {
-    const double* plane = options->clip_planes[p];
+  a->crop.clip_count = options->clipping.clip_plane_count;
+  for (int p = 0; p < options->clipping.clip_plane_count; ++p) {
+    const double* plane = options->clipping.clip_planes[p];
     double result[4] = { 0.0, 0.0, 0.0, plane[3] };
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column) {
@@ -314,13 +315,13 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
   a->picture.want_depth = image->depth != NULL;
   a->picture.want_samples = image->samples != NULL;
   a->picture.want_bytes = image->rgba8 != NULL;
-  a->values.nearest = options->interpolation == STRATUS_INTERPOLATION_NEAREST;
+  a->values.nearest = options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST;
   a->values.clamp = volume->cell_centered != 0;
-  a->termination =
-    (float)(options->termination > 0.0 ? 1.0 - options->termination : stratus_ray_termination(stratus_ray_tolerance(options)));
+  a->termination = (float)(options->sampling.termination > 0.0 ? 1.0 - options->sampling.termination
+                                                               : stratus_ray_termination(stratus_ray_tolerance(options)));
   set_clip_planes(options, index_to_world, a);
-  a->crop.clipped = options->clip_gradients && options->clip_plane_count > 0;
-  a->crop.clipped_value = (float)fmax(fmin(options->clipped_value - caster->ranges->bias, CLIPPED_MOST), -CLIPPED_MOST);
+  a->crop.clipped = options->clipping.clip_gradients && options->clipping.clip_plane_count > 0;
+  a->crop.clipped_value = (float)fmax(fmin(options->clipping.clipped_value - caster->ranges->bias, CLIPPED_MOST), -CLIPPED_MOST);
   set_addressing(volume, a);
   a->grid = caster->grid.arguments;
   const double bias = stratus_volume_bias(volume);
@@ -328,8 +329,8 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
   memcpy(&bits, &bias, sizeof bits);
   a->values.bias_low = (int)(uint32_t)bits;
   a->values.bias_high = (int)(uint32_t)(bits >> 32);
-  a->lattice.jitter = options->jitter != 0;
-  a->lattice.seed = (int)options->jitter_seed;
+  a->lattice.jitter = options->sampling.jitter != 0;
+  a->lattice.seed = (int)options->sampling.jitter_seed;
   *empty = !set_box(caster, options, voxels_a_sample(volume, world_to_index, sample_distance, follows), a) || !set_piece(caster, a) ||
     !set_regions(volume, options, a);
   return STRATUS_OK;

@@ -9,8 +9,8 @@
 bool stratus_ray_mask_same(const stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
   const bool labels = (caster->hides & HIDDEN_LABELS) != 0;
-  return caster->mask == options->mask && labels == (options->mask && options->label_count > 0) &&
-    (!options->mask || caster->mask_revision == options->mask_revision);
+  return caster->mask == options->mask.bytes && labels == (options->mask.bytes && options->mask.label_count > 0) &&
+    (!options->mask.bytes || caster->mask_revision == options->mask.revision);
 }
 
 size_t stratus_ray_hidden_cells(const stratus_volume* volume, bool by_value)

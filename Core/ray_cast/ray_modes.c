@@ -27,16 +27,16 @@ static bool is_sum(stratus_mode mode)
 
 static stratus_status check_contours(stratus_context* context, const stratus_ray_cast_options* options)
 {
-  if (options->contour_count < 1 || options->contour_count > STRATUS_CONTOURS_MAX) {
-    return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "%d contour values, an isosurface needs 1..%d", options->contour_count, STRATUS_CONTOURS_MAX);
+  if (options->optics.contour_count < 1 || options->optics.contour_count > STRATUS_CONTOURS_MAX) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d contour values, an isosurface needs 1..%d", options->optics.contour_count,
+      STRATUS_CONTOURS_MAX);
   }
-  for (int n = 0; n < options->contour_count; ++n) {
-    if (!isfinite(options->contours[n])) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "contour %d has value %g, must be finite", n, options->contours[n]);
+  for (int n = 0; n < options->optics.contour_count; ++n) {
+    if (!isfinite(options->optics.contours[n])) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "contour %d has value %g, must be finite", n, options->optics.contours[n]);
     }
   }
-  if (options->interpolation == STRATUS_INTERPOLATION_NEAREST) {
+  if (options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST) {
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "isosurfaces of values taken as they are (nearest) are not supported, only linear interpolation is");
   }
@@ -45,17 +45,18 @@ static stratus_status check_contours(stratus_context* context, const stratus_ray
 
 stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_ray_cast_options* options)
 {
-  const double* range = options->average_range;
+  const double* range = options->optics.average_range;
   if (!(range[0] <= range[1])) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "average range %g..%g is reversed or no number", range[0], range[1]);
   }
-  if (options->crop_regions > STRATUS_CROP_ALL) {
-    return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "crop regions 0x%x, must be 0..0x%x", (unsigned)options->crop_regions, (unsigned)STRATUS_CROP_ALL);
+  if (options->clipping.crop_regions > STRATUS_CROP_ALL) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "crop regions 0x%x, must be 0..0x%x", (unsigned)options->clipping.crop_regions,
+      (unsigned)STRATUS_CROP_ALL);
   }
-  if (options->mode == STRATUS_MODE_FIRST_HIT && (options->mask || (options->crop && options->crop_regions != STRATUS_CROP_INSIDE))) {
+  if (options->mode == STRATUS_MODE_FIRST_HIT &&
+    (options->mask.bytes || (options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE))) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "first hits with %s are not supported",
-      options->mask ? "a mask" : "crop regions other than the inside");
+      options->mask.bytes ? "a mask" : "crop regions other than the inside");
   }
   if (options->mode == STRATUS_MODE_SLICE) {
     return stratus_ray_slice_check(context, &options->slice);
@@ -67,11 +68,12 @@ stratus_ray_shown stratus_ray_modes_shown(const stratus_ray_cast_options* option
 {
   stratus_ray_shown shown = { .mode = options->mode };
   if (options->mode == STRATUS_MODE_AVERAGE) {
-    shown.average_range[0] = options->average_range[0];
-    shown.average_range[1] = options->average_range[1];
+    shown.average_range[0] = options->optics.average_range[0];
+    shown.average_range[1] = options->optics.average_range[1];
   }
-  for (int n = 0; options->mode == STRATUS_MODE_ISOSURFACE && n < options->contour_count; ++n) { /* insertion sort without duplicates */
-    const double contour = options->contours[n];
+  for (int n = 0; options->mode == STRATUS_MODE_ISOSURFACE && n < options->optics.contour_count;
+       ++n) { /* insertion sort without duplicates */
+    const double contour = options->optics.contours[n];
     int at = shown.contour_count;
     while (at > 0 && shown.contours[at - 1] >= contour) {
       --at;
@@ -214,7 +216,7 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->mode.sum = is_sum(options->mode);
   float counted[2] = { -INFINITY, INFINITY };
   if (!additive) {
-    fetched_range(options->average_range, ranges->bias, counted);
+    fetched_range(options->optics.average_range, ranges->bias, counted);
   }
   a->mode.counted_first = counted[0];
   a->mode.counted_last = counted[1];

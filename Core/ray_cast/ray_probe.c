@@ -92,11 +92,11 @@ static void take(const probe* p, const setting* s, stratus_ray_choice* choice)
   const bool cells = s->sampling == STRATUS_SAMPLING_CELLS;
   choice->sampling = s->sampling;
   const int cell_rung = s->sampling == STRATUS_SAMPLING_LOCAL ? s->cells : s->rung;
-  choice->cell_error = options->cell_error > 0.0 ? options->cell_error : exp2(-2.0 - 0.5 * cell_rung);
-  choice->sample_distance = cells    ? p->voxel
-    : options->sample_distance > 0.0 ? options->sample_distance
-                                     : exp2(2.0 - 0.25 * s->rung) * p->voxel;
-  choice->follows = (cells || !(options->sample_distance > 0.0)) && stratus_ray_follows_voxels(&p->caster->traversed);
+  choice->cell_error = options->sampling.cell_error > 0.0 ? options->sampling.cell_error : exp2(-2.0 - 0.5 * cell_rung);
+  choice->sample_distance = cells      ? p->voxel
+    : options->sampling.distance > 0.0 ? options->sampling.distance
+                                       : exp2(2.0 - 0.25 * s->rung) * p->voxel;
+  choice->follows = (cells || !(options->sampling.distance > 0.0)) && stratus_ray_follows_voxels(&p->caster->traversed);
 }
 
 /* ---- drawing */
@@ -247,7 +247,7 @@ static stratus_status measure(probe* p, family* f, int rung)
 {
   const setting s = setting_of(f, rung);
   if (f->error[rung] < 0.0) {
-    TRY(draw_patches(p, &s, p->options->tolerance, p->coarse));
+    TRY(draw_patches(p, &s, p->options->sampling.tolerance, p->coarse));
     f->error[rung] = error_of(p);
     const stratus_ray_choice* c = &p->caster->choice;
     note(p, "%s%s %.3g: %.2g", *p->caster->tried ? ", " : "tried ", stratus_sampling_name(s.sampling),
@@ -276,7 +276,7 @@ static double cost_of(const probe* p, const family* f, int rung)
  * that graze a surface, and the probe may have none of these. */
 static int coarsest_cells(const probe* p, const family* f)
 {
-  const double rung = -2.0 * (log2(p->options->tolerance) + 2.0);
+  const double rung = -2.0 * (log2(p->options->sampling.tolerance) + 2.0);
   return rung < 0.0 ? 0 : rung < f->rungs - 1 ? (int)rung : f->rungs - 1;
 }
 
@@ -353,7 +353,7 @@ static stratus_status search_local(probe* p, candidates* k, double most, int cel
       continue;
     }
     family f = { .sampling = STRATUS_SAMPLING_LOCAL,
-      .rungs = p->options->sample_distance > 0.0 ? 1 : LATTICE_RUNGS,
+      .rungs = p->options->sampling.distance > 0.0 ? 1 : LATTICE_RUNGS,
       .cost = costs[STRATUS_SAMPLING_LOCAL],
       .cells = cells,
       .beyond = beyond,
@@ -392,7 +392,7 @@ static stratus_status compare(probe* p, candidates* k, double most, int* best, f
   int cell_rung = k->fine.rung - FINER_BY;
   *found = NULL;
   p->caster->tried[0] = '\0';
-  TRY(draw_patches(p, &k->fine, CELL_SHARE * p->options->tolerance, p->fine));
+  TRY(draw_patches(p, &k->fine, CELL_SHARE * p->options->sampling.tolerance, p->fine));
   for (int i = 0; i < k->count; ++i) {
     cells_cost = k->of[i].sampling == STRATUS_SAMPLING_CELLS ? k->of[i].cost : cells_cost;
   }
@@ -417,7 +417,7 @@ static stratus_status compare(probe* p, candidates* k, double most, int* best, f
       *found = f;
     }
   }
-  return p->options->sampling == STRATUS_SAMPLING_AUTO && stratus_ray_can_sample(p->caster, p->options, STRATUS_SAMPLING_LOCAL)
+  return p->options->sampling.rule == STRATUS_SAMPLING_AUTO && stratus_ray_can_sample(p->caster, p->options, STRATUS_SAMPLING_LOCAL)
     ? search_local(p, k, most, cell_rung > 0 ? cell_rung : 0, &least, best, found)
     : STRATUS_OK;
 }
@@ -427,11 +427,11 @@ static void add_family(candidates* k, const probe* p, stratus_sampling sampling)
   const stratus_ray_cast_options* options = p->options;
   const bool cells = sampling == STRATUS_SAMPLING_CELLS;
   if (stratus_ray_can_sample(p->caster, options, sampling) &&
-    (options->sampling == STRATUS_SAMPLING_AUTO || options->sampling == sampling ||
-      !stratus_ray_can_sample(p->caster, options, options->sampling))) {
+    (options->sampling.rule == STRATUS_SAMPLING_AUTO || options->sampling.rule == sampling ||
+      !stratus_ray_can_sample(p->caster, options, options->sampling.rule))) {
     family* f = &k->of[k->count++];
     *f = (family){ .sampling = sampling, .cost = costs[sampling], .rungs = cells ? CELL_RUNGS : LATTICE_RUNGS };
-    f->rungs = (cells ? options->cell_error : options->sample_distance) > 0.0 ? 1 : f->rungs;
+    f->rungs = (cells ? options->sampling.cell_error : options->sampling.distance) > 0.0 ? 1 : f->rungs;
   }
 }
 
@@ -439,7 +439,7 @@ static void add_family(candidates* k, const probe* p, stratus_sampling sampling)
 static bool too_near(const probe* p, const family* f, int rung, const setting* fine)
 {
   const bool local = f->sampling == STRATUS_SAMPLING_LOCAL; /* and then the finer one is of cells */
-  const bool open = local ? !(p->options->cell_error > 0.0) : f->rungs > 1;
+  const bool open = local ? !(p->options->sampling.cell_error > 0.0) : f->rungs > 1;
   return (local || alike(f->sampling, fine->sampling)) && open && (local ? f->cells : rung) > fine->rung - FINER_BY;
 }
 
@@ -460,8 +460,8 @@ static stratus_status measure_taken(probe* p, const family* f, int rung, const s
   if (f->beyond > 0) {
     TRY(lend_rough(p, f->beyond));
   }
-  p->whole.tolerance = p->options->tolerance;
-  TRY(draw_patches(p, &s, p->options->tolerance, p->coarse));
+  p->whole.sampling.tolerance = p->options->sampling.tolerance;
+  TRY(draw_patches(p, &s, p->options->sampling.tolerance, p->coarse));
   *error = expected_of(f, rung, error_of(p), fine);
   return STRATUS_OK;
 }
@@ -496,22 +496,22 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
   const stratus_ray_cast_options* options = p->options;
   const bool cells = stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_CELLS);
   const bool preintegrates = stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_PREINTEGRATED);
-  const double most = SHARE * options->tolerance;
+  const double most = SHARE * options->sampling.tolerance;
   const int last = (cells ? CELL_RUNGS : LATTICE_RUNGS) - 1;
   candidates k = { .count = 0 };
   for (stratus_sampling rule = STRATUS_SAMPLING_MIDPOINT; rule <= STRATUS_SAMPLING_CELLS; ++rule) {
     add_family(&k, p, rule);
   }
   k.fine.sampling = cells ? STRATUS_SAMPLING_CELLS : preintegrates ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
-  if (!(options->tolerance > 0.0)) {
-    const bool open = options->sampling == STRATUS_SAMPLING_AUTO;
+  if (!(options->sampling.tolerance > 0.0)) {
+    const bool open = options->sampling.rule == STRATUS_SAMPLING_AUTO;
     const setting finest = { .sampling = open ? k.fine.sampling : choice->sampling, .rung = last };
     take(p, &finest, choice);
     return STRATUS_OK;
   }
-  p->whole.tolerance = CELL_SHARE * options->tolerance;
+  p->whole.sampling.tolerance = CELL_SHARE * options->sampling.tolerance;
   const int finest = finest_to_compare(p, k.fine.sampling, last);
-  const double wanted = cells ? -2.0 * (log2(CELL_SHARE * options->tolerance) + 2.0) : LATTICE_FINE;
+  const double wanted = cells ? -2.0 * (log2(CELL_SHARE * options->sampling.tolerance) + 2.0) : LATTICE_FINE;
   k.fine.rung = wanted < FINER_BY ? FINER_BY : wanted < finest ? (int)ceil(wanted) : finest;
   for (;;) {
     family* found = NULL;
@@ -535,8 +535,9 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
 /* Draws the picture of this frame with the setting that was measured last, where there is one that can draw it. The next frame measures. */
 static void keep_last(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
-  const bool open = options->sampling == STRATUS_SAMPLING_AUTO && (caster->measured.sampling != STRATUS_SAMPLING_LOCAL || caster->rough);
-  const bool wanted = open || caster->measured.sampling == options->sampling;
+  const bool open =
+    options->sampling.rule == STRATUS_SAMPLING_AUTO && (caster->measured.sampling != STRATUS_SAMPLING_LOCAL || caster->rough);
+  const bool wanted = open || caster->measured.sampling == options->sampling.rule;
   if (caster->measured.sample_distance > 0.0 && wanted && stratus_ray_can_sample(caster, options, caster->measured.sampling)) {
     caster->choice = caster->measured;
   }
@@ -557,7 +558,7 @@ stratus_status stratus_ray_probe(
   stratus_distance_map* const last = caster->rough;
   void* memory = NULL;
   int beyond = 0;
-  p.whole.crop = p.whole.clip_plane_count = p.whole.jitter = 0;
+  p.whole.clipping.crop = p.whole.clipping.clip_plane_count = p.whole.sampling.jitter = 0;
   caster->tried[0] = '\0';
   stratus_status status = stratus_ray_probe_rays(caster, p.patches, &p.count, &p.classes);
   if (status == STRATUS_OK && p.count > 0) {

@@ -60,7 +60,7 @@ void stratus_ray_samples_a_voxel(const stratus_volume* volume, double sample_dis
 /* Whether gradient opacity multiplies opacities, which vary within a segment. */
 static bool thins_opacity(const stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
-  return options->gradient_distance > 0.0 && caster->transfers[0].gradient_count > 0;
+  return options->optics.gradient_distance > 0.0 && caster->transfers[0].gradient_count > 0;
 }
 
 /* Rule cells uses only a value's colour and opacity. The rules that pre-integrate treat the field as linear between two values of one
@@ -71,11 +71,12 @@ bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_
   const bool one_medium = options->mode == STRATUS_MODE_COMPOSITE && !caster->transfer_2d.on && !stratus_ray_shading_several(caster);
   switch (sampling) {
     case STRATUS_SAMPLING_CELLS:
-      return one_medium && !caster->shades && !options->mask;
+      return one_medium && !caster->shades && !options->mask.bytes;
     case STRATUS_SAMPLING_LOCAL:
-      return one_medium && !caster->shades && !options->mask && options->interpolation != STRATUS_INTERPOLATION_NEAREST && caster->owns_all;
+      return one_medium && !caster->shades && !options->mask.bytes && options->sampling.interpolation != STRATUS_INTERPOLATION_NEAREST &&
+        caster->owns_all;
     case STRATUS_SAMPLING_PREINTEGRATED:
-      return one_medium && options->interpolation != STRATUS_INTERPOLATION_NEAREST && !thins_opacity(caster, options);
+      return one_medium && options->sampling.interpolation != STRATUS_INTERPOLATION_NEAREST && !thins_opacity(caster, options);
     default:
       return true;
   }
@@ -83,24 +84,25 @@ bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_
 
 double stratus_ray_tolerance(const stratus_ray_cast_options* options)
 {
-  const bool cells = options->sampling == STRATUS_SAMPLING_CELLS;
-  const bool by_hand = options->sampling != STRATUS_SAMPLING_AUTO && (cells ? options->cell_error : options->sample_distance) > 0.0;
-  return by_hand ? stratus_ray_cast_options_default().tolerance : options->tolerance;
+  const bool cells = options->sampling.rule == STRATUS_SAMPLING_CELLS;
+  const bool by_hand =
+    options->sampling.rule != STRATUS_SAMPLING_AUTO && (cells ? options->sampling.cell_error : options->sampling.distance) > 0.0;
+  return by_hand ? stratus_ray_cast_options_default().sampling.tolerance : options->sampling.tolerance;
 }
 
 void stratus_ray_choose(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_choice* choice)
 {
   const bool surfaces = options->mode == STRATUS_MODE_ISOSURFACE || options->mode == STRATUS_MODE_SLICE;
-  const bool by_hand = options->sampling != STRATUS_SAMPLING_AUTO && stratus_ray_can_sample(caster, options, options->sampling);
-  *choice = (stratus_ray_choice){ .sampling = by_hand ? options->sampling : STRATUS_SAMPLING_MIDPOINT,
-    .cell_error = options->cell_error,
+  const bool by_hand = options->sampling.rule != STRATUS_SAMPLING_AUTO && stratus_ray_can_sample(caster, options, options->sampling.rule);
+  *choice = (stratus_ray_choice){ .sampling = by_hand ? options->sampling.rule : STRATUS_SAMPLING_MIDPOINT,
+    .cell_error = options->sampling.cell_error,
     .expected_error = NAN,
     .met = true };
   const bool cells = choice->sampling == STRATUS_SAMPLING_CELLS; /* such rays, and those to surfaces, pass from cell to cell */
-  const bool open_rule = options->sampling == STRATUS_SAMPLING_AUTO && options->mode == STRATUS_MODE_COMPOSITE;
-  const bool open_step = cells ? !(options->cell_error > 0.0) : !(options->sample_distance > 0.0);
+  const bool open_rule = options->sampling.rule == STRATUS_SAMPLING_AUTO && options->mode == STRATUS_MODE_COMPOSITE;
+  const bool open_step = cells ? !(options->sampling.cell_error > 0.0) : !(options->sampling.distance > 0.0);
   const bool of_voxels = cells || surfaces || open_step;
-  choice->sample_distance = of_voxels ? caster->inputs.voxel : options->sample_distance;
+  choice->sample_distance = of_voxels ? caster->inputs.voxel : options->sampling.distance;
   choice->follows = of_voxels && stratus_ray_follows_voxels(&caster->traversed);
   choice->provisional = !surfaces && (open_rule || open_step);
 }

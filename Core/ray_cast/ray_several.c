@@ -182,7 +182,7 @@ static stratus_status render(stratus_several* s, stratus_ray_cast_arguments* arg
     arguments[0].termination = termination;
     frame.picture = frame.volumes[0].frame;
     TRY(draw(s, &frame, &counts));
-    if (s->inputs[0].options.audit) {
+    if (s->inputs[0].options.skipping.audit) {
       TRY(audit(s, &frame, plain, &differing));
     }
   }
@@ -224,17 +224,17 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
       in->tetra_options.method = STRATUS_TETRA_METHOD_MARCH;
       continue;
     }
-    if (in->options.transfer_2d) {
+    if (in->options.optics.transfer_2d) {
       TRY(stratus_volume_check(s.context, inputs[n].volume));
       TRY(stratus_ray_transfer_2d_check(inputs[n].caster, inputs[n].volume, &in->options));
     }
     TRY(stratus_ray_transfer_2d_update(inputs[n].caster, &in->options));
-    in->transfer = in->options.transfer_2d ? &inputs[n].caster->transfer_2d.shown : inputs[n].transfer;
+    in->transfer = in->options.optics.transfer_2d ? &inputs[n].caster->transfer_2d.shown : inputs[n].transfer;
     TRY(stratus_ray_check_input(s.context, inputs[n].volume, in->transfer, &in->options));
     TRY(stratus_several_check_volume(s.context, n, in));
-    in->options.tolerance /= sqrt((double)count);
-    in->options.jitter = s.inputs[0].options.jitter;
-    in->options.jitter_seed = s.inputs[0].options.jitter_seed;
+    in->options.sampling.tolerance /= sqrt((double)count);
+    in->options.sampling.jitter = s.inputs[0].options.sampling.jitter;
+    in->options.sampling.jitter_seed = s.inputs[0].options.sampling.jitter_seed;
   }
   TRY(stratus_image_check(s.context, image));
   TRY(render(&s, arguments, plain));

@@ -42,19 +42,21 @@ stratus_status stratus_several_check_volume(stratus_context* context, int n, con
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "volume %d of several has mode %s: only composite mixes", n, stratus_mode_name(options->mode));
   }
-  for (int i = 0; options->gradient_distance > 0.0 && i < stratus_ray_shading_media(in->of->volume, options); ++i) {
+  for (int i = 0; options->optics.gradient_distance > 0.0 && i < stratus_ray_shading_media(in->of->volume, options); ++i) {
     if (in->transfer[i].gradient_count > 0) {
       return stratus_fail(context, STRATUS_UNSUPPORTED,
-        "volume %d of several has a gradient opacity over a length of %g, must be of optical depths, 0", n, options->gradient_distance);
+        "volume %d of several has a gradient opacity over a length of %g, must be of optical depths, 0", n,
+        options->optics.gradient_distance);
     }
   }
-  if (options->clip_gradients && options->clip_plane_count > 0) {
+  if (options->clipping.clip_gradients && options->clipping.clip_plane_count > 0) {
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "volume %d of several has gradients that clip planes change, must be the only volume", n);
   }
-  if (options->crop && options->crop_regions != STRATUS_CROP_INSIDE && options->crop_regions != STRATUS_CROP_ALL) {
+  if (options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE &&
+    options->clipping.crop_regions != STRATUS_CROP_ALL) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several shows crop regions 0x%x, must be the inside (0x%x) or all", n,
-      (unsigned)options->crop_regions, (unsigned)STRATUS_CROP_INSIDE);
+      (unsigned)options->clipping.crop_regions, (unsigned)STRATUS_CROP_INSIDE);
   }
   return STRATUS_OK;
 }

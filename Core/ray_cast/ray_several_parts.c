@@ -95,8 +95,8 @@ static stratus_status update_volume(stratus_several* s, stratus_several_input* i
     return stratus_fail(s->context, STRATUS_UNSUPPORTED, "a volume of several has DUPLICATE ghosts: only whole volumes mix");
   }
   /* times of an image of several volumes say nothing about one volume's structure */
-  TRY(stratus_ray_update_structures(caster, in->options.structure, false, &in->used, in->why, sizeof in->why, &in->report));
-  if (in->options.structure == STRATUS_STRUCTURE_AUTO && in->used != STRATUS_STRUCTURE_NONE) {
+  TRY(stratus_ray_update_structures(caster, in->options.skipping.structure, false, &in->used, in->why, sizeof in->why, &in->report));
+  if (in->options.skipping.structure == STRATUS_STRUCTURE_AUTO && in->used != STRATUS_STRUCTURE_NONE) {
     snprintf(in->why, sizeof in->why, "%s: several volumes are not timed apart", stratus_structure_name(in->used));
   }
   if (caster->choice.provisional) {
@@ -226,8 +226,8 @@ static void set_mesh(
                                     .samples = image->samples,
                                     .rgba8 = image->rgba8 },
     .mesh = &in->frame,
-    .jitter = first->jitter,
-    .seed = (int)first->jitter_seed,
+    .jitter = first->sampling.jitter,
+    .seed = (int)first->sampling.jitter_seed,
     .stride = 1,
     .preintegrated = 1 };
 }
@@ -263,7 +263,7 @@ static stratus_status set_volume(
     in->part = number;
     a->values.has_hidden = caster->hides;
     stratus_ray_modes_arguments(caster, &in->options, a);
-    a->lattice.jitter = in->options.jitter != 0; /* places on a ray by cells are places of the lattice, too */
+    a->lattice.jitter = in->options.sampling.jitter != 0; /* places on a ray by cells are places of the lattice, too */
     stratus_ray_shading_arguments(caster, in->of->volume, s->camera, &in->options, a);
     stratus_ray_frame_structures(
       &caster->grid, caster->made.table, stratus_ray_tolerance(&in->options), caster->occupancy, with_map ? caster->map : NULL, a);

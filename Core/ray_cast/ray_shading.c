@@ -11,16 +11,16 @@
 
 stratus_status stratus_ray_shading_check(stratus_context* context, const stratus_ray_cast_options* options)
 {
-  return options->shade ? stratus_shading_check(context, &options->shading) : STRATUS_OK;
+  return options->light.shade ? stratus_shading_check(context, &options->light.shading) : STRATUS_OK;
 }
 
 stratus_status stratus_ray_shading_check_materials(
   stratus_context* context, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   const int components = stratus_volume_components(volume);
-  const bool read = options->materials && components > 1 && !options->dependent && options->mode == STRATUS_MODE_COMPOSITE;
+  const bool read = options->light.materials && components > 1 && !options->optics.dependent && options->mode == STRATUS_MODE_COMPOSITE;
   for (int c = 0; read && c < components; ++c) {
-    const stratus_material* m = options->materials + c;
+    const stratus_material* m = options->light.materials + c;
     const double numbers[4] = { m->ambient, m->diffuse, m->specular, m->specular_power };
     for (int i = 0; m->shade && i < 4; ++i) {
       if (!(numbers[i] >= 0.0 && numbers[i] <= STRATUS_LIGHT_MAX)) {
@@ -29,7 +29,7 @@ stratus_status stratus_ray_shading_check_materials(
       }
     }
     if (m->shade) {
-      TRY(stratus_shading_check(context, &options->shading));
+      TRY(stratus_shading_check(context, &options->light.shading));
     }
   }
   return STRATUS_OK;
@@ -38,16 +38,17 @@ stratus_status stratus_ray_shading_check_materials(
 /* The material of component c: the shading's own where there are none of components. */
 static stratus_material material_of(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, int c)
 {
-  const stratus_shading* shading = &options->shading;
-  const bool own = options->materials && !caster->dependent && caster->shading_tables.components > 1;
-  return own ? options->materials[c]
-             : (stratus_material){ options->shade, shading->ambient, shading->diffuse, shading->specular, shading->specular_power };
+  const stratus_shading* shading = &options->light.shading;
+  const bool own = options->light.materials && !caster->dependent && caster->shading_tables.components > 1;
+  return own ? options->light.materials[c]
+             : (stratus_material){ options->light.shade, shading->ambient, shading->diffuse, shading->specular, shading->specular_power };
 }
 
 bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
-  const bool more = options->shade || transfer->gradient_count > 0 || stratus_volume_components(volume) > 1 || options->label_count > 0;
-  return options->mode == STRATUS_MODE_COMPOSITE && more && !options->transfer_2d;
+  const bool more =
+    options->light.shade || transfer->gradient_count > 0 || stratus_volume_components(volume) > 1 || options->mask.label_count > 0;
+  return options->mode == STRATUS_MODE_COMPOSITE && more && !options->optics.transfer_2d;
 }
 
 /* Largest number of samples in gradient_distance: products with the optical depth of opacity 1, 1e30, stay floats. */
@@ -60,7 +61,7 @@ static void set_tables(const stratus_ray_caster* caster, const stratus_ray_cast_
   const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
   a->media.components = shading->components;
   a->media.dependent = caster->dependent ? a->media.components - 1 : 0;
-  a->media.mean = options->mean_components && !caster->dependent;
+  a->media.mean = options->optics.mean_components && !caster->dependent;
   a->media.factor_reach = 0.0f;
   a->media.factor_last = (float)STRATUS_SHADING_FACTORS;
   a->media.label_factors = shading->label_tables && shading->label_factors;
@@ -73,7 +74,7 @@ static void set_tables(const stratus_ray_caster* caster, const stratus_ray_cast_
     const bool has = caster->shades && c < shading->components;
     a->media.factor_first[c] = has ? shading->factor_first[c] : -1;
     if (a->media.factor_first[c] >= 0 || a->media.label_factors) {
-      a->media.factor_reach = (float)fmin(options->gradient_distance / caster->choice.sample_distance, REACH_MOST);
+      a->media.factor_reach = (float)fmin(options->optics.gradient_distance / caster->choice.sample_distance, REACH_MOST);
     }
     a->media.factor_scale[c] = shading->factor_scale[c];
     a->media.first[c] = shading->first[c];
@@ -93,7 +94,7 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
 {
   const double edge = stratus_ray_voxel_length(volume);
   double index_to_world[16], world_to_index[16];
-  if (!caster->shades && !options->shade && !caster->transfer_2d.on) {
+  if (!caster->shades && !options->light.shade && !caster->transfer_2d.on) {
     return;
   }
   stratus_volume_index_to_world(volume, index_to_world);
@@ -127,5 +128,5 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
     return;
   }
   const double origin[3] = { index_to_world[3], index_to_world[7], index_to_world[11] };
-  stratus_lights_set(camera, &options->shading, origin, edge, &a->light);
+  stratus_lights_set(camera, &options->light.shading, origin, edge, &a->light);
 }

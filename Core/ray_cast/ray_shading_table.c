@@ -26,9 +26,9 @@ stratus_volume stratus_volume_component(const stratus_volume* volume, int compon
 
 int stratus_ray_shading_media(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
-  return options->label_count > 0                ? 1 + options->label_count
-    : options->dependent || options->transfer_2d ? 1
-                                                 : stratus_volume_components(volume);
+  return options->mask.label_count > 0                         ? 1 + options->mask.label_count
+    : options->optics.dependent || options->optics.transfer_2d ? 1
+                                                               : stratus_volume_components(volume);
 }
 
 /* ---- checks */
@@ -38,11 +38,11 @@ static stratus_status check_cells(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const char* what = stratus_volume_components(volume) > 1 ? "of several components"
-    : options->mask                                        ? "with a mask"
-    : options->shade                                       ? "with light"
+    : options->mask.bytes                                  ? "with a mask"
+    : options->light.shade                                 ? "with light"
     : transfer->gradient_count > 0                         ? "with a gradient opacity"
                                                            : NULL;
-  if (options->sampling == STRATUS_SAMPLING_CELLS && options->mode == STRATUS_MODE_COMPOSITE && what) {
+  if (options->sampling.rule == STRATUS_SAMPLING_CELLS && options->mode == STRATUS_MODE_COMPOSITE && what) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "sampling by cells of a volume %s is not supported", what);
   }
   return STRATUS_OK;
@@ -54,30 +54,30 @@ stratus_status stratus_ray_shading_check_volume(
   const int components = stratus_volume_components(volume);
   const bool surfaces =
     options->mode == STRATUS_MODE_FIRST_HIT || options->mode == STRATUS_MODE_ISOSURFACE || options->mode == STRATUS_MODE_SLICE;
-  if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE && (surfaces || options->dependent)) {
+  if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE && (surfaces || options->optics.dependent)) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of a volume of %d %s components: %s", stratus_mode_name(options->mode),
-      components, options->dependent ? "dependent" : "independent",
+      components, options->optics.dependent ? "dependent" : "independent",
       surfaces ? "only modes without surfaces take more than 1" : "only composite takes dependent ones");
   }
-  if (options->label_count < 0 || options->label_count > 255 || (options->label_count > 0 && !options->mask)) {
+  if (options->mask.label_count < 0 || options->mask.label_count > 255 || (options->mask.label_count > 0 && !options->mask.bytes)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d labels %s a mask, must be 0..255, and there must be one",
-      options->label_count, options->mask ? "with" : "without");
+      options->mask.label_count, options->mask.bytes ? "with" : "without");
   }
-  if (options->label_count > 0 && (components > 1 || options->mode != STRATUS_MODE_COMPOSITE)) {
+  if (options->mask.label_count > 0 && (components > 1 || options->mode != STRATUS_MODE_COMPOSITE)) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "labels in mode %s of a volume of %d components: only composite of 1 takes them",
       stratus_mode_name(options->mode), components);
   }
-  if (options->dependent && components == 3) {
+  if (options->optics.dependent && components == 3) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "3 dependent components, must be 2 or 4");
   }
-  if (options->dependent && components == 4 && volume->type != STRATUS_UINT8) {
+  if (options->optics.dependent && components == 4 && volume->type != STRATUS_UINT8) {
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "4 dependent components of type %d, must be bytes (%d)", (int)volume->type, STRATUS_UINT8);
   }
   for (int c = 0; c < stratus_ray_shading_media(volume, options); ++c) {
     TRY(stratus_transfer_check(context, transfer + c));
     const double weight = transfer[c].weight;
-    if (components > 1 && !options->dependent && !(weight >= 0.0 && weight <= 1.0)) {
+    if (components > 1 && !options->optics.dependent && !(weight >= 0.0 && weight <= 1.0)) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "weight %g of component %d outside 0..1", weight, c);
     }
   }
@@ -169,7 +169,7 @@ static stratus_status create_table(stratus_ray_caster* caster, const stratus_tra
  * for them with this number of labels. Then half of the room is left for narrow features. */
 static int entries_of_labels(const stratus_ray_caster* caster)
 {
-  const int least = stratus_table_entries_for(STRATUS_SAMPLING_MIDPOINT, stratus_ray_cast_options_default().tolerance);
+  const int least = stratus_table_entries_for(STRATUS_SAMPLING_MIDPOINT, stratus_ray_cast_options_default().sampling.tolerance);
   int entries = caster->made.entries;
   while (entries > least && 2.0 * entries * caster->transfer_count > 0.5 * LABEL_ENTRIES_MOST) {
     entries /= 2;

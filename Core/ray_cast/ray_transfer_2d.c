@@ -58,21 +58,21 @@ stratus_status stratus_ray_transfer_2d_check(
   const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   stratus_context* context = caster->context;
-  const stratus_transfer_2d* of = options->transfer_2d;
+  const stratus_transfer_2d* of = options->optics.transfer_2d;
   const bool known = caster->transfer_2d.table && same_function(&caster->transfer_2d.of, of); /* and checked */
   const int components = stratus_volume_components(volume);
   if (options->mode != STRATUS_MODE_COMPOSITE) {
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "a two-dimensional function in mode %s: only composite has them", stratus_mode_name(options->mode));
   }
-  if (options->sampling == STRATUS_SAMPLING_PREINTEGRATED || options->sampling == STRATUS_SAMPLING_CELLS) {
+  if (options->sampling.rule == STRATUS_SAMPLING_PREINTEGRATED || options->sampling.rule == STRATUS_SAMPLING_CELLS) {
     return stratus_fail(context, STRATUS_UNSUPPORTED,
       "sampling %s with a two-dimensional function: only midpoint and auto sample both variables",
-      stratus_sampling_name(options->sampling));
+      stratus_sampling_name(options->sampling.rule));
   }
-  if (options->label_count > 0) {
+  if (options->mask.label_count > 0) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "%d labels with a two-dimensional function: labels have functions of only the value",
-      options->label_count);
+      options->mask.label_count);
   }
   if (components > 2) {
     return stratus_fail(context, STRATUS_UNSUPPORTED,
@@ -152,7 +152,7 @@ void stratus_ray_transfer_2d_release(stratus_ray_caster* caster)
 stratus_status stratus_ray_transfer_2d_update(stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
   stratus_ray_transfer_2d* t = &caster->transfer_2d;
-  const stratus_transfer_2d* of = options->transfer_2d;
+  const stratus_transfer_2d* of = options->optics.transfer_2d;
   if (t->on != (of != NULL) || (of && !(t->table && same_function(&t->of, of)))) {
     stratus_ray_drop_transfer(caster);
   }

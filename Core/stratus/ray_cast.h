@@ -99,7 +99,7 @@ typedef struct stratus_material {
  * If nothing is lit, the other numbers of a shading are neither read nor checked. This is so in first hits if `on` is 0, in composite and
  * isosurface if `shade` is 0, and in all other modes. */
 typedef struct stratus_shading {
-  int on;                /* first hits; 0: c = C. Default 1. Composite and isosurface read stratus_ray_cast_options.shade instead. */
+  int on;                /* first hits; 0: c = C. Default 1. Composite and isosurface read stratus_ray_light_options.shade instead. */
   double ambient;        /* 0..STRATUS_LIGHT_MAX, default .1 */
   double diffuse;        /* 0..STRATUS_LIGHT_MAX, default .9 */
   double specular;       /* default 0 */
@@ -139,38 +139,38 @@ typedef struct stratus_slice {
 #define STRATUS_CROP_INSIDE 0x2000u
 #define STRATUS_CROP_ALL 0x7ffffffu
 
-typedef struct stratus_ray_cast_options {
-  stratus_structure structure; /* default AUTO: the structure that renders fastest, found by timing; see the report */
+/* How rays sample the field, and how far they may be off. */
+typedef struct stratus_ray_sampling_options {
   /* Default AUTO: the cheapest rule that keeps the tolerance, as a probe measures. Nearest interpolation is never pre-integrated. */
-  stratus_sampling sampling;
+  stratus_sampling rule;
   stratus_interpolation interpolation; /* default linear */
-  /* Sampling by cells: the largest departure of the field from a straight line within a piece, as a fraction of the values that the
-   * functions' points span. At least 0 and finite; 0 (default): by the tolerance. A cell has at most 32 pieces. */
+  /* Rule cells: the largest departure of the field from a straight line within a piece, as a fraction of the values that the functions'
+   * points span. At least 0 and finite; 0 (default): by the tolerance. A cell has at most 32 pieces. */
   double cell_error;
-  /* World length, at most 4096 voxels; 0 (default): by the tolerance. If a voxel's longest side is more than 64 times its shortest, and the
-   * distance is automatic, then each ray has its own distance: a fixed fraction or multiple of the voxel length along that ray. */
-  double sample_distance;
+  /* World length of a sample, at most 4096 voxels; 0 (default): by the tolerance. If a voxel's longest side is more than 64 times its
+   * shortest, and the distance is automatic, then each ray has its own distance: a fixed fraction or multiple of the voxel length along
+   * that ray. */
+  double distance;
   double termination; /* a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance */
   /* The root mean square error of RGBA in 0..1 over the lit pixels that the automatic settings may cause. At least 0, finite. Default .001:
-   * 60 dB, a quarter of an 8-bit step. 0: the finest settings. The tolerance governs the settings that are left automatic: sampling,
-   * sample_distance, cell_error and termination. */
+   * 60 dB, a quarter of an 8-bit step. 0: the finest settings. The tolerance governs the settings that are left automatic: rule, distance,
+   * cell_error and termination. */
   double tolerance;
-  int block_size;        /* 2, 4, 8, 16, 32; 0 (default): 4, or larger if the maps would need more than 2e9 bytes */
-  int crop;              /* 1: only the regions of crop_regions show. Default 0. */
-  double crop_bounds[6]; /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
-  /* Regions that show, of the 27 into which the bounds' six planes divide space. Bit x + 3 y + 9 z is region (x, y, z), where each
-   * coordinate is 0 (below the lower plane), 1 (between the planes) or 2 (above the upper plane). Default STRATUS_CROP_INSIDE: between all
-   * planes. First hits support no other value. */
+  /* 1: each ray's samples move along it by 0..1 sample distances, by a number made from the pixel and jitter_seed. This turns wood grain
+   * into noise. Rule cells does not jitter, and rule local jitters only in its smooth blocks. Default 0. */
+  int jitter;
+  uint32_t jitter_seed; /* default 0 */
+} stratus_ray_sampling_options;
 
-  uint32_t crop_regions;
-  int clip_plane_count;                           /* 0..6 */
-  double clip_planes[STRATUS_CLIP_PLANES_MAX][4]; /* world coordinates: points with a x + b y + c z + d >= 0 show */
-  int audit;                                      /* 1: also draw without a structure, and count the pixels whose bits differ. Default 0. */
-  stratus_mode mode;                              /* default composite */
-  /* First hits; default faces. Where a clip plane or the crop cuts the hit voxel, the hit has the normal of the plane that cuts. */
-  stratus_normals normals;
-  stratus_shading shading; /* used in first hits, and in composite and isosurface if `shade` is 1 */
-  int shade;               /* composite and isosurface; 1: `shading` lights the samples. Default 0. */
+/* How rays skip what is empty. It changes no bit of an image. */
+typedef struct stratus_ray_skipping_options {
+  stratus_structure structure; /* default AUTO: the structure that renders fastest, found by timing; see the report */
+  int block_size;              /* 2, 4, 8, 16, 32; 0 (default): 4, or larger if the maps would need more than 2e9 bytes */
+  int audit;                   /* 1: also draw without a structure, and count the pixels whose bits differ. Default 0. */
+} stratus_ray_skipping_options;
+
+/* The colour and opacity of samples before they are lit. */
+typedef struct stratus_ray_optics_options {
   /* Volumes of several components. First hits, isosurface and slice do not draw them, and only composite draws dependent ones: other
    * requests give STRATUS_UNSUPPORTED.
    *
@@ -182,10 +182,6 @@ typedef struct stratus_ray_cast_options {
    * (STRATUS_UINT8 only), the first three are red, green and blue in 0..255, and the fourth has the opacity. The gradient is the last
    * component's. */
   int dependent;
-  /* Composite, independent components: one material for each component, which replaces `shade` and the material in `shading`. The lights of
-   * `shading` are read if a material has shade. NULL (default): all components have the material of `shading`. Borrowed during the
-   * render. */
-  const stratus_material* materials;
   /* Composite, independent components. 0 (default): optical depths add up, as if media share a place. 1: each component counts by its share
    * of the optical depths, so that depths d give (sum of d^2) / (sum of d), while emitted light adds up. VTK's mappers mix components in
    * this way. */
@@ -199,30 +195,64 @@ typedef struct stratus_ray_cast_options {
    * other rules and labels give STRATUS_UNSUPPORTED. An automatic step keeps the tolerance as measured. It has no bound from the function,
    * because the function is sampled at both variables. */
   const stratus_transfer_2d* transfer_2d;
-  stratus_slice slice; /* the surface of mode slice. Default: no surface, which mode slice refuses. */
+  /* Average: the values that count, ends included, first <= last, infinities allowed. Default: all. */
+  double average_range[2];
+  int contour_count;                     /* isosurface: 1..16; other modes ignore it. Default 0. */
+  double contours[STRATUS_CONTOURS_MAX]; /* finite, in any order */
+} stratus_ray_optics_options;
+
+/* How samples and surfaces are lit. */
+typedef struct stratus_ray_light_options {
+  int shade;               /* composite and isosurface; 1: `shading` lights the samples. Default 0. */
+  stratus_shading shading; /* used in first hits, and in composite and isosurface if `shade` is 1 */
+  /* Composite, independent components: one material for each component, which replaces `shade` and the material in `shading`. The lights of
+   * `shading` are read if a material has shade. NULL (default): all components have the material of `shading`. Borrowed during the
+   * render. */
+  const stratus_material* materials;
+  /* First hits; default faces. Where a clip plane or the crop cuts the hit voxel, the hit has the normal of the plane that cuts. */
+  stratus_normals normals;
+} stratus_ray_light_options;
+
+/* Which part of the volume shows, by planes. */
+typedef struct stratus_ray_clipping_options {
+  int crop;              /* 1: only the regions of crop_regions show. Default 0. */
+  double crop_bounds[6]; /* xmin xmax ymin ymax zmin zmax along the grid's axes: origin + spacing*index, before direction and matrix */
+  /* Regions that show, of the 27 into which the bounds' six planes divide space. Bit x + 3 y + 9 z is region (x, y, z), where each
+   * coordinate is 0 (below the lower plane), 1 (between the planes) or 2 (above the upper plane). Default STRATUS_CROP_INSIDE: between all
+   * planes. First hits support no other value. */
+  uint32_t crop_regions;
+  int clip_plane_count;                           /* 0..6 */
+  double clip_planes[STRATUS_CLIP_PLANES_MAX][4]; /* world coordinates: points with a x + b y + c z + d >= 0 show */
   /* Gradients of light, gradient opacity and functions of two variables read the field one voxel before and behind a sample along each
    * axis. 1: where a clip plane hides that place, they read clipped_value instead. 0 (default): they read the whole field. Grids of equal
    * spacing and one component only. */
   int clip_gradients;
   double clipped_value; /* finite. Default 0. */
-  /* Average: the values that count, ends included, first <= last, infinities allowed. Default: all. */
-  double average_range[2];
-  int contour_count;                     /* isosurface: 1..16; other modes ignore it. Default 0. */
-  double contours[STRATUS_CONTOURS_MAX]; /* finite, in any order */
+} stratus_ray_clipping_options;
+
+/* Which values show or how they are coloured, by a byte for each value. */
+typedef struct stratus_ray_mask_options {
   /* One byte for each value of the volume; NULL (default): no mask. A sample is transparent if the byte of the nearest value is 0. A
    * pre-integrated segment is transparent if the byte at either end is 0. First hits with a mask give STRATUS_UNSUPPORTED. The caster
    * copies the mask when its pointer, its revision or the volume's data changes. */
-  const uint8_t* mask;
-  uint64_t mask_revision; /* the caller raises it when the bytes change under the same pointer. Default 0. */
+  const uint8_t* bytes;
+  uint64_t revision; /* the caller raises it when the bytes change under the same pointer. Default 0. */
   /* Composite, one component. 0 (default): no labels. 1..255, with a mask: its bytes are labels and hide nothing. A sample has the label of
    * the nearest value, and the interpolated value. If its label l is in 1..label_count, then transfer[l] gives its colour and opacity.
    * Other labels use transfer[0]. A label whose function has no gradient opacity uses the gradient opacity of transfer[0]. Samples with
    * labels are never pre-integrated. */
   int label_count;
-  /* 1: each ray's samples move along it by 0..1 sample distances, by a number made from the pixel and jitter_seed. This turns wood grain
-   * into noise. Rule cells does not jitter, and rule local jitters only in its smooth blocks. Default 0. */
-  int jitter;
-  uint32_t jitter_seed; /* default 0 */
+} stratus_ray_mask_options;
+
+typedef struct stratus_ray_cast_options {
+  stratus_mode mode; /* default composite */
+  stratus_ray_sampling_options sampling;
+  stratus_ray_skipping_options skipping;
+  stratus_ray_optics_options optics;
+  stratus_ray_light_options light;
+  stratus_ray_clipping_options clipping;
+  stratus_ray_mask_options mask;
+  stratus_slice slice; /* the surface of mode slice. Default: no surface, which mode slice refuses. */
 } stratus_ray_cast_options;
 
 /* Return options with their defaults. */

@@ -151,7 +151,7 @@ def materials_of(options, shade, count):
         return None
     result = (c.stratus_material * count)()
     for n, own in enumerate(_each(shade, count, lambda value: False, "shade")):
-        one = library.stratus_ray_cast_options_default()
+        one = library.stratus_ray_cast_options_default().light
         set_shading(one, own)
         result[n].shade = one.shade
         for name in "ambient", "diffuse", "specular", "specular_power":

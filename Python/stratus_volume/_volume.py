@@ -81,18 +81,18 @@ class Asked:
         self.mode, self.options = mode, library.stratus_ray_cast_options_default()
         options = self.options
         options.mode = choice(mode, "stratus_mode", "STRATUS_MODE_", "mode")
-        options.structure = choice(structure, "stratus_structure", "STRATUS_STRUCTURE_", "structure")
-        options.sampling = choice(sampling, "stratus_sampling", "STRATUS_SAMPLING_", "sampling", ("local",))
-        options.interpolation = choice(interpolation, "stratus_interpolation", "STRATUS_INTERPOLATION_", "interpolation")
-        options.sample_distance = number(sample_distance, "sample_distance")
+        options.skipping.structure = choice(structure, "stratus_structure", "STRATUS_STRUCTURE_", "structure")
+        options.sampling.rule = choice(sampling, "stratus_sampling", "STRATUS_SAMPLING_", "sampling", ("local",))
+        options.sampling.interpolation = choice(interpolation, "stratus_interpolation", "STRATUS_INTERPOLATION_", "interpolation")
+        options.sampling.distance = number(sample_distance, "sample_distance")
         if tolerance is not None:
-            options.tolerance = number(tolerance, "tolerance")
-        options.jitter, options.audit = int(bool(jitter)), int(bool(audit))
-        options.dependent, options.mean_components = int(bool(dependent)), int(bool(mean_components))
-        self._materials = materials_of(options, shade, grid.components)
-        set_planes(options, clip_planes, c.CONSTANTS["STRATUS_CLIP_PLANES_MAX"])
+            options.sampling.tolerance = number(tolerance, "tolerance")
+        options.sampling.jitter, options.skipping.audit = int(bool(jitter)), int(bool(audit))
+        options.optics.dependent, options.optics.mean_components = int(bool(dependent)), int(bool(mean_components))
+        self._materials = materials_of(options.light, shade, grid.components)
+        set_planes(options.clipping, clip_planes, c.CONSTANTS["STRATUS_CLIP_PLANES_MAX"])
         if crop is not None:
-            options.crop, options.crop_bounds[:] = 1, grid.crop(crop_box(crop))
+            options.clipping.crop, options.clipping.crop_bounds[:] = 1, grid.crop(crop_box(crop))
         if unit_distance is not None:
             positive(unit_distance, "unit_distance")
         if mode == "slice":
@@ -103,7 +103,8 @@ class Asked:
         looks = looks_of(labels, looks)
         self._labels = None if labels is None else Labels(labels, grid)
         if looks:
-            options.mask, options.mask_revision, options.label_count = address(self._labels.bytes), self._labels.revision, max(looks)
+            mask = options.mask
+            mask.bytes, mask.revision, mask.label_count = address(self._labels.bytes), self._labels.revision, max(looks)
         if grid.nothing:
             if grid.components == 1:
                 own_points(opacity)
@@ -111,16 +112,16 @@ class Asked:
         wanted = self._wanted = functions_of(grid, opacity, color, gradient_opacity, weights, dependent, looks)
         own = [point for each in wanted for point in own_points(each.opacity) or ()]
         self.power = power = grid.power(own or None)
-        self._contours = set_contours(options, contours, power, c.CONSTANTS["STRATUS_CONTOURS_MAX"])
+        self._contours = set_contours(options.optics, contours, power, c.CONSTANTS["STRATUS_CONTOURS_MAX"])
         if average_range is not None:
-            options.average_range[:] = value_interval(average_range, "average_range", power)
+            options.optics.average_range[:] = value_interval(average_range, "average_range", power)
         self.bounds = grid.bounds(drawn.context)
         self.unit = unit = unit_length(unit_distance, length_of([self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3)]))
         self.transfers = [each.transfer(power, unit) for each in wanted]
         self.functions = (c.stratus_transfer * len(wanted))(*(each.struct for each in self.transfers))
         self._function_2d = None if function_2d is None else Function2D(function_2d, power, unit)
         if self._function_2d:
-            options.transfer_2d = ctypes.pointer(self._function_2d.struct)
+            options.optics.transfer_2d = ctypes.pointer(self._function_2d.struct)
         self.volume = grid.view(power)
 
     def explain(self, rgba, rays=None):

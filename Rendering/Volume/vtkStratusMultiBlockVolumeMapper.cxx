@@ -348,8 +348,8 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::PrepareContext(std::string& er
       return false;
     }
     this->Inputs[i].caster = this->Casters[i];
-    const bool boxed = this->Options[i].crop && this->Options[i].crop_regions == STRATUS_CROP_INSIDE;
-    this->Scene.Boxes.push_back({ this->Inputs[i].volume, boxed ? this->Options[i].crop_bounds : nullptr });
+    const bool boxed = this->Options[i].clipping.crop && this->Options[i].clipping.crop_regions == STRATUS_CROP_INSIDE;
+    this->Scene.Boxes.push_back({ this->Inputs[i].volume, boxed ? this->Options[i].clipping.crop_bounds : nullptr });
     this->Mappers[i]->Internal->OfferTree(this->Casters[i], this->Context.Get());
   }
   return true;

@@ -233,8 +233,8 @@ bool vtkStratusMultiVolume::Internals::Render(vtkRenderer* renderer, std::string
       error = stratus_context_message(this->Context.Get());
       return false;
     }
-    const bool boxed = this->Options[n].crop && this->Options[n].crop_regions == STRATUS_CROP_INSIDE;
-    this->Scene.Boxes.push_back({ this->Inputs[n].volume, boxed ? this->Options[n].crop_bounds : nullptr });
+    const bool boxed = this->Options[n].clipping.crop && this->Options[n].clipping.crop_regions == STRATUS_CROP_INSIDE;
+    this->Scene.Boxes.push_back({ this->Inputs[n].volume, boxed ? this->Options[n].clipping.crop_bounds : nullptr });
   }
   this->Scene.Renderer = renderer;
   this->Scene.Prop = this->Prop;

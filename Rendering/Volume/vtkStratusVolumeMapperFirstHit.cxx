@@ -22,7 +22,7 @@ bool vtkStratusVolumeMapper::Internals::SetMaterials(vtkVolumeProperty* property
   bool alike = true;
   const bool lit = vtkStratusSetMaterials(property, components, this->Materials.data(), alike);
   const bool mixes = options.mode == STRATUS_MODE_COMPOSITE && components > 1 && property->GetIndependentComponents();
-  options.materials = mixes && !alike ? this->Materials.data() : nullptr;
+  options.light.materials = mixes && !alike ? this->Materials.data() : nullptr;
   return mixes && lit;
 }
 
@@ -33,9 +33,9 @@ bool vtkStratusVolumeMapper::Internals::SetShading(
   if (!this->SetMaterials(property, options) && !this->IsFirstHit() && !shade) {
     return true;
   }
-  stratus_shading& shading = options.shading;
-  shading.on = shade || options.materials ? 1 : 0;
-  options.shade = shade ? 1 : 0;
+  stratus_shading& shading = options.light.shading;
+  shading.on = shade || options.light.materials ? 1 : 0;
+  options.light.shade = shade ? 1 : 0;
   return vtkStratusSetShading(renderer, property, shading, error);
 }
 

@@ -169,7 +169,7 @@ void vtkStratusVolumeMapper::Internals::WarnOfCrop(const stratus_ray_cast_option
   for (int i = 0; i < 9; ++i) {
     turned = turned || volume.direction[i] != (i % 4 == 0 ? 1.0 : 0.0);
   }
-  for (int a = 0; turned && options.crop && options.crop_regions == STRATUS_CROP_INSIDE && a < 3; ++a) {
+  for (int a = 0; turned && options.clipping.crop && options.clipping.crop_regions == STRATUS_CROP_INSIDE && a < 3; ++a) {
     const double* planes = this->Mapper->CroppingRegionPlanes + 2 * a;
     const double begin = volume.origin[a] - this->Image.GetCropOffset()[a];
     const double end = begin + volume.spacing[a] * static_cast<double>(volume.dimensions[a] - (volume.cell_centered ? 0 : 1));
@@ -313,9 +313,9 @@ bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, str
     error = "MaskInput's array has " + std::to_string(bytes->GetNumberOfTuples()) + " values for " +
       std::to_string(mask->GetNumberOfPoints()) + " points";
   } else {
-    options.label_count = this->HasLabels() ? HighestLabel(property) : 0;
-    options.mask = this->HasLabels() && options.label_count == 0 ? nullptr : bytes->GetPointer(0);
-    options.mask_revision = std::max<uint64_t>({ bytes->GetMTime(), mask->GetMTime(), time });
+    options.mask.label_count = this->HasLabels() ? HighestLabel(property) : 0;
+    options.mask.bytes = this->HasLabels() && options.mask.label_count == 0 ? nullptr : bytes->GetPointer(0);
+    options.mask.revision = std::max<uint64_t>({ bytes->GetMTime(), mask->GetMTime(), time });
   }
   return error.empty();
 }
@@ -325,7 +325,7 @@ bool vtkStratusVolumeMapper::Internals::SetContours(
   vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const
 {
   if (options.mode == STRATUS_MODE_AVERAGE) {
-    std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.average_range);
+    std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.optics.average_range);
   }
   if (options.mode != STRATUS_MODE_ISOSURFACE) {
     return true;
@@ -336,9 +336,9 @@ bool vtkStratusVolumeMapper::Internals::SetContours(
     error = std::to_string(count) + " isosurface values are not supported, at most " + std::to_string(STRATUS_CONTOURS_MAX) + " are";
     return false;
   }
-  options.contour_count = count;
+  options.optics.contour_count = count;
   for (int n = 0; n < count; ++n) {
-    options.contours[n] = contours->GetValue(n);
+    options.optics.contours[n] = contours->GetValue(n);
   }
   return true;
 }
@@ -348,33 +348,33 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
   const vtkStratusVolumeMapper* mapper = this->Mapper;
   options = stratus_ray_cast_options_default();
   options.mode = this->GetMode();
-  options.normals = static_cast<stratus_normals>(mapper->Normals);
-  options.structure = static_cast<stratus_structure>(mapper->Structure);
-  options.sampling = static_cast<stratus_sampling>(mapper->Sampling);
-  options.interpolation =
+  options.light.normals = static_cast<stratus_normals>(mapper->Normals);
+  options.skipping.structure = static_cast<stratus_structure>(mapper->Structure);
+  options.sampling.rule = static_cast<stratus_sampling>(mapper->Sampling);
+  options.sampling.interpolation =
     property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-  options.sample_distance = mapper->SampleDistance <= 0.0 ? 0.0 : mapper->SampleDistance; // the core refuses NaN
-  options.cell_error = mapper->CellError <= 0.0 ? 0.0 : mapper->CellError;
-  options.termination = mapper->Termination;
-  options.tolerance = mapper->ImageErrorTolerance;
-  options.gradient_distance = this->GetGradientOpacityDistance();
-  options.mean_components = mapper->ComponentMixing == MEAN_COMPONENTS ? 1 : 0;
-  options.dependent = property->GetIndependentComponents() ? 0 : 1;
-  options.block_size = mapper->BlockSize;
-  options.audit = mapper->Audit ? 1 : 0;
+  options.sampling.distance = mapper->SampleDistance <= 0.0 ? 0.0 : mapper->SampleDistance; // the core refuses NaN
+  options.sampling.cell_error = mapper->CellError <= 0.0 ? 0.0 : mapper->CellError;
+  options.sampling.termination = mapper->Termination;
+  options.sampling.tolerance = mapper->ImageErrorTolerance;
+  options.optics.gradient_distance = this->GetGradientOpacityDistance();
+  options.optics.mean_components = mapper->ComponentMixing == MEAN_COMPONENTS ? 1 : 0;
+  options.optics.dependent = property->GetIndependentComponents() ? 0 : 1;
+  options.skipping.block_size = mapper->BlockSize;
+  options.skipping.audit = mapper->Audit ? 1 : 0;
   if (mapper->Cropping) {
-    options.crop = 1;
-    options.crop_regions = static_cast<uint32_t>(mapper->CroppingRegionFlags);
+    options.clipping.crop = 1;
+    options.clipping.crop_regions = static_cast<uint32_t>(mapper->CroppingRegionFlags);
     for (int b = 0; b < 6; ++b) {
-      options.crop_bounds[b] = mapper->CroppingRegionPlanes[b] + this->Image.GetCropOffset()[b / 2];
+      options.clipping.crop_bounds[b] = mapper->CroppingRegionPlanes[b] + this->Image.GetCropOffset()[b / 2];
     }
   }
-  options.transfer_2d = HasTransfer2D(property) ? &this->Transfer2D : nullptr;
-  options.clip_gradients = property->GetUseClippedVoxelIntensity() ? 1 : 0;
-  options.clipped_value = property->GetClippedVoxelIntensity();
-  options.jitter = mapper->UseJittering ? 1 : 0;
-  options.jitter_seed = mapper->JitterSeed;
+  options.optics.transfer_2d = HasTransfer2D(property) ? &this->Transfer2D : nullptr;
+  options.clipping.clip_gradients = property->GetUseClippedVoxelIntensity() ? 1 : 0;
+  options.clipping.clipped_value = property->GetClippedVoxelIntensity();
+  options.sampling.jitter = mapper->UseJittering ? 1 : 0;
+  options.sampling.jitter_seed = mapper->JitterSeed;
   return this->SetMask(property, options, error) && this->SetContours(property, options, error) &&
     this->SetSlice(property, options, error) &&
-    vtkStratusClipPlanes(this->Mapper, STRATUS_CLIP_PLANES_MAX, options.clip_planes, options.clip_plane_count, error);
+    vtkStratusClipPlanes(this->Mapper, STRATUS_CLIP_PLANES_MAX, options.clipping.clip_planes, options.clipping.clip_plane_count, error);
 }

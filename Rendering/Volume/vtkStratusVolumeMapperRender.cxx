@@ -106,7 +106,7 @@ bool vtkStratusVolumeMapper::Internals::CastTo(const stratus_ray_cast_options& o
   const stratus_image image = this->Picture.MakeRoom(rgba, this->PartDepth, depths);
   stratus_ray_cast_options plain = options;
   stratus_ray_cast_report report;
-  plain.audit = 0;
+  plain.skipping.audit = 0;
   return stratus_ray_caster_render(
            this->Caster, &this->Image.GetVolume(), this->Functions.data(), &this->Picture.Camera, &plain, &image, &report) == STRATUS_OK;
 }
@@ -141,7 +141,7 @@ bool vtkStratusVolumeMapper::Internals::Probe(stratus_ray_caster* caster, stratu
   camera.forward[2] = camera.right[0] = camera.up[1] = 1.0;
   camera.far_k = 1.0;
   stratus_ray_cast_report report = stratus_ray_cast_report();
-  options.audit = 0;
+  options.skipping.audit = 0;
   const stratus_status status =
     stratus_ray_caster_render(caster, &this->Image.GetVolume(), this->Functions.data(), &camera, &options, &image, &report);
   choice[0] = std::min<int>(report.sampling, CELLS_SAMPLING);
@@ -173,11 +173,12 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   this->OfferTree(this->Caster, this->Context.Get());
   const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);
   if (coarseness.Step > 1.0) {
-    options.sample_distance = coarseness.Step * this->FullSampleDistance;
-    options.sampling = this->FullSampling; // rule and step by hand: nothing is probed while a camera moves
+    options.sampling.distance = coarseness.Step * this->FullSampleDistance;
+    options.sampling.rule = this->FullSampling; // rule and step by hand: nothing is probed while a camera moves
   }
-  const bool boxed = options.crop && options.crop_regions == STRATUS_CROP_INSIDE;
-  if (!this->Picture.Set(renderer, this->Image.GetVolume(), boxed ? options.crop_bounds : nullptr, coarseness.Pixels, this->IsFirstHit())) {
+  const bool boxed = options.clipping.crop && options.clipping.crop_regions == STRATUS_CROP_INSIDE;
+  if (!this->Picture.Set(
+        renderer, this->Image.GetVolume(), boxed ? options.clipping.crop_bounds : nullptr, coarseness.Pixels, this->IsFirstHit())) {
     error = "the camera's projection has no inverse";
     return false;
   }

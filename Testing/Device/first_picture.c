@@ -76,14 +76,14 @@ int main(int argc, char** argv)
   options.device = argv[1];
   options.log = show;
   draw.mode = mode_named(argc > 3 ? argv[3] : "composite");
-  draw.shade = argc > 4;
+  draw.light.shade = argc > 4;
   if (stratus_context_create(&host_options, &host, message, sizeof message) != STRATUS_OK ||
     stratus_scene_create(host, name, &scene) != STRATUS_OK || stratus_volume_bounds(host, &scene->volume, bounds) != STRATUS_OK ||
     stratus_scene_camera(host, bounds, scene->up_axis, 0, 0, 1.0, &camera) != STRATUS_OK) {
     return failed(name, host ? stratus_context_message(host) : message);
   }
-  draw.contour_count = 1;
-  draw.contours[0] = scene->transfer.opacity[2 * (scene->transfer.opacity_count / 2)];
+  draw.optics.contour_count = 1;
+  draw.optics.contours[0] = scene->transfer.opacity[2 * (scene->transfer.opacity_count / 2)];
   cost at[3];
   at[0] = spent();
   if (stratus_context_create(&options, &device, message, sizeof message) != STRATUS_OK) {
@@ -98,7 +98,7 @@ int main(int argc, char** argv)
     return failed(argv[1], stratus_context_message(device));
   }
   printf("%s,%s,%s%s,%s,first picture,%.0f ms,processor,%.0f ms,second picture,%.0f ms,processor,%.0f ms\n", stratus_context_device(device),
-    name, stratus_mode_name(draw.mode), draw.shade ? " lit" : "", stratus_sampling_name(report.sampling), at[1].wall - at[0].wall,
+    name, stratus_mode_name(draw.mode), draw.light.shade ? " lit" : "", stratus_sampling_name(report.sampling), at[1].wall - at[0].wall,
     at[1].cpu - at[0].cpu, at[2].wall - at[1].wall, at[2].cpu - at[1].cpu);
   stratus_ray_caster_destroy(caster);
   stratus_context_destroy(device);

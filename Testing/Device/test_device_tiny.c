@@ -163,10 +163,10 @@ static int same_pictures(stratus_context* context, const stratus_volume* volume,
     picture* p = structure == STRATUS_STRUCTURE_NONE ? &plain : &other;
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
     const stratus_image image = { .width = SIDE, .height = SIDE, .rgba = p->rgba, .depth = p->depth, .samples = p->samples };
-    options.structure = (stratus_structure)structure;
-    options.sampling = sampling;
-    options.interpolation = interpolation;
-    options.block_size = 2;
+    options.skipping.structure = (stratus_structure)structure;
+    options.sampling.rule = sampling;
+    options.sampling.interpolation = interpolation;
+    options.skipping.block_size = 2;
     memset(p, 0xff, sizeof *p);
     if (stratus_ray_caster_render(caster, volume, transfer, &camera, &options, &image, NULL) != STRATUS_OK) {
       bad = failed(context, "picture", name);

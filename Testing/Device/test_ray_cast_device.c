@@ -51,13 +51,13 @@ static void compare(bool one_ray)
       ++local_cases;
     }
     const stratus_structure structure = (stratus_structure)((seed - 500) / step % 5);
-    c.options.structure = structure;
+    c.options.skipping.structure = structure;
     case_render(host, &c, &on_host);
-    c.options.audit = 1;
+    c.options.skipping.audit = 1;
     case_render(device, &c, &on_device);
     if (on_device.report.differing_pixels) {
       print_error("seed %u, %s, %s, %s: the audit on the device found %llu pixels\n", seed, stratus_structure_name(structure),
-        case_type_names[c.volume.type], c.options.interpolation ? "nearest" : "linear",
+        case_type_names[c.volume.type], c.options.sampling.interpolation ? "nearest" : "linear",
         (unsigned long long)on_device.report.differing_pixels);
       fail();
     }

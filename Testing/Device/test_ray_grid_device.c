@@ -33,21 +33,21 @@ static void make_look(stratus_context* context, grid_look look, picture_case* c,
     case_create(context, c, STRATUS_FLOAT32, 24, 31, 19, 4u + (uint32_t)look);
   }
   c->volume.cell_centered = look % 2;
-  c->options.sampling = look == PREINTEGRATED ? STRATUS_SAMPLING_PREINTEGRATED
-    : look == CELLS || look == NEAREST_CELLS  ? STRATUS_SAMPLING_CELLS
-    : look == LOCAL                           ? STRATUS_SAMPLING_AUTO
-                                              : STRATUS_SAMPLING_MIDPOINT;
+  c->options.sampling.rule = look == PREINTEGRATED ? STRATUS_SAMPLING_PREINTEGRATED
+    : look == CELLS || look == NEAREST_CELLS       ? STRATUS_SAMPLING_CELLS
+    : look == LOCAL                                ? STRATUS_SAMPLING_AUTO
+                                                   : STRATUS_SAMPLING_MIDPOINT;
   c->options.mode = look == MAXIMUM ? STRATUS_MODE_MAXIMUM
     : look == ADDITIVE              ? STRATUS_MODE_ADDITIVE
     : look == ISOSURFACE            ? STRATUS_MODE_ISOSURFACE
     : look >= FIRST_HIT             ? STRATUS_MODE_FIRST_HIT
                                     : STRATUS_MODE_COMPOSITE;
-  c->options.interpolation = look == NEAREST_CELLS ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-  c->options.shade = look == LIT || look == ISOSURFACE;
-  c->options.contour_count = look == ISOSURFACE;
-  c->options.contours[0] = base + 0.2 * scale;
-  c->options.structure = look == FIRST_HIT ? STRATUS_STRUCTURE_OCTANT : STRATUS_STRUCTURE_DISTANCE;
-  c->options.audit = 1;
+  c->options.sampling.interpolation = look == NEAREST_CELLS ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+  c->options.light.shade = look == LIT || look == ISOSURFACE;
+  c->options.optics.contour_count = look == ISOSURFACE;
+  c->options.optics.contours[0] = base + 0.2 * scale;
+  c->options.skipping.structure = look == FIRST_HIT ? STRATUS_STRUCTURE_OCTANT : STRATUS_STRUCTURE_DISTANCE;
+  c->options.skipping.audit = 1;
   grid_case_set(c, grid, look == LOCAL ? GRID_RANDOM : GRID_GEOMETRIC, look == LOCAL ? 7 : 1 + (int)look % 7, -3.0, 1.0,
     look == LOCAL ? 8.0 : 100.0, &random);
   case_camera(context, c, (int)look % 8, (int)look / 2 % 2);
@@ -103,7 +103,7 @@ static void tables_are_sent_when_coordinates_change(void** state)
   grid_case grid;
   uint64_t uploads = 0;
   make_look(device, MIDPOINT, &c, &grid);
-  c.options.audit = 0; /* it sends a frame without map */
+  c.options.skipping.audit = 0; /* it sends a frame without map */
   assert_int_equal(stratus_ray_caster_create(device, &caster), STRATUS_OK);
   for (int turn = 0; turn < 4; ++turn) {
     uint32_t none = 0;

@@ -26,20 +26,20 @@ static void ask_for(picture_case* c, int mode, uint32_t seed, const uint8_t* mas
 {
   const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
   c->options.mode = (stratus_mode)mode;
-  c->options.sample_distance = 0.7;
-  c->options.structure = (stratus_structure)(seed % 6);
-  c->options.contour_count = 2;
-  c->options.contours[0] = base + 0.3 * scale;
-  c->options.contours[1] = base + 0.1 * scale;
-  c->options.average_range[1] = base + 0.5 * scale;
-  c->options.mask = seed % 2 ? mask : NULL;
-  c->options.jitter = seed % 3 == 1;
-  c->options.jitter_seed = seed;
-  c->options.crop = seed % 3 == 2;
-  c->options.crop_regions = 0x5140145u;
+  c->options.sampling.distance = 0.7;
+  c->options.skipping.structure = (stratus_structure)(seed % 6);
+  c->options.optics.contour_count = 2;
+  c->options.optics.contours[0] = base + 0.3 * scale;
+  c->options.optics.contours[1] = base + 0.1 * scale;
+  c->options.optics.average_range[1] = base + 0.5 * scale;
+  c->options.mask.bytes = seed % 2 ? mask : NULL;
+  c->options.sampling.jitter = seed % 3 == 1;
+  c->options.sampling.jitter_seed = seed;
+  c->options.clipping.crop = seed % 3 == 2;
+  c->options.clipping.crop_regions = 0x5140145u;
   for (int a = 0; a < 3; ++a) {
-    c->options.crop_bounds[2 * a] = 7.3;
-    c->options.crop_bounds[2 * a + 1] = 13.1;
+    c->options.clipping.crop_bounds[2 * a] = 7.3;
+    c->options.clipping.crop_bounds[2 * a + 1] = 13.1;
   }
 }
 
@@ -63,7 +63,7 @@ static void modes_are_those_of_the_host(void** state)
     case_create(host, &c, types[seed / 5 % 2], 21, 19, 23, seed);
     ask_for(&c, mode, seed, mask);
     case_render(host, &c, &on_host);
-    c.options.audit = 1;
+    c.options.skipping.audit = 1;
     case_render(device, &c, &on_device);
     if (on_device.report.differing_pixels) {
       print_error("seed %u, %s: the audit on the device found %llu pixels\n", seed, stratus_mode_name(c.options.mode),
@@ -105,7 +105,7 @@ static void thin_voxels_are_those_of_the_host(void** state)
     c.transfer.unit_distance = 1e-2;
     c.options = stratus_ray_cast_options_default();
     c.options.mode = modes[i];
-    c.options.sampling = i == 2 ? STRATUS_SAMPLING_CELLS : STRATUS_SAMPLING_AUTO;
+    c.options.sampling.rule = i == 2 ? STRATUS_SAMPLING_CELLS : STRATUS_SAMPLING_AUTO;
     case_camera(host, &c, 2 + i, i == 1);
     case_render(host, &c, &on_host);
     case_render(device, &c, &on_device);

@@ -82,17 +82,17 @@ static void make_case(const page_case* p, uint32_t seed, picture_case* c)
     set_peak(c, p->mode == STRATUS_MODE_MINIMUM ? -0.5 : p->sample_distance > 2.0 ? 0.75 : shown);
   }
   c->options.mode = p->mode;
-  c->options.sampling = p->sampling;
-  c->options.interpolation = p->interpolation;
-  c->options.structure = p->structure;
-  c->options.sample_distance = p->sample_distance;
-  c->options.cell_error = p->sampling == CELLS ? 0.01 : 0.0;
-  c->options.shade = p->shade;
-  c->options.shading.specular = 0.3;
-  c->options.contour_count = 1;
-  c->options.contours[0] = base + 0.65 * scale;
-  c->options.average_range[0] = base + shown * scale;
-  c->options.average_range[1] = base + 0.8 * scale;
+  c->options.sampling.rule = p->sampling;
+  c->options.sampling.interpolation = p->interpolation;
+  c->options.skipping.structure = p->structure;
+  c->options.sampling.distance = p->sample_distance;
+  c->options.sampling.cell_error = p->sampling == CELLS ? 0.01 : 0.0;
+  c->options.light.shade = p->shade;
+  c->options.light.shading.specular = 0.3;
+  c->options.optics.contour_count = 1;
+  c->options.optics.contours[0] = base + 0.65 * scale;
+  c->options.optics.average_range[0] = base + shown * scale;
+  c->options.optics.average_range[1] = base + 0.8 * scale;
   c->volume.cell_centered = p->centered;
   if (p->components) { /* every second value the other component */
     c->volume.dimensions[0] /= 2;
@@ -110,8 +110,8 @@ static void make_case(const page_case* p, uint32_t seed, picture_case* c)
     for (size_t v = 0; v < sizeof labels; ++v) {
       labels[v] = (uint8_t)(v / 5 % 3);
     }
-    c->options.mask = labels;
-    c->options.label_count = p->label_count;
+    c->options.mask.bytes = labels;
+    c->options.mask.label_count = p->label_count;
   }
   case_camera(host_context, c, (int)(seed % 8), 0);
 }
@@ -258,10 +258,10 @@ static void pages_are_sent_once_and_anew_where_more_shows(void** state)
   stratus_context_start_build_report(device);
   assert_int_equal(draw_both(caster, &c, largest, "another view"), 0);
   assert_int_equal(count_stage("pages of values"), 0);
-  c.options.sample_distance = 9.0; /* segments end farther from visible blocks; the table of sums serves */
+  c.options.sampling.distance = 9.0; /* segments end farther from visible blocks; the table of sums serves */
   assert_true(draw_both(caster, &c, largest, "longer segments") >= 2);
   assert_int_equal(count_stage("pages of values"), 1);
-  c.options.sample_distance = 0.8;
+  c.options.sampling.distance = 0.8;
   assert_int_equal(draw_both(caster, &c, largest, "shorter segments"), 0);
   set_peak(&c, 0.5);
   assert_true(draw_both(caster, &c, largest, "another peak") >= 4); /* slabs, page table, map, table */

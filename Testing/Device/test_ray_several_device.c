@@ -27,16 +27,16 @@ static void make_case(stratus_context* context, uint32_t seed, several_case* m, 
       several_place(c, seed + 17u * (uint32_t)n);
       several_color(c, n);
     }
-    c->options.sampling = (seed + (uint32_t)n) % 3 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
-    c->options.sample_distance = n == 1 ? 0.9 : 0.4;
-    c->options.structure = (stratus_structure)(STRATUS_STRUCTURE_AUTO + (seed + (uint32_t)n) % 6);
-    c->options.shade = (seed + (uint32_t)n) % 4 == 0;
+    c->options.sampling.rule = (seed + (uint32_t)n) % 3 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+    c->options.sampling.distance = n == 1 ? 0.9 : 0.4;
+    c->options.skipping.structure = (stratus_structure)(STRATUS_STRUCTURE_AUTO + (seed + (uint32_t)n) % 6);
+    c->options.light.shade = (seed + (uint32_t)n) % 4 == 0;
     c->transfer.gradient = gradient;
     c->transfer.gradient_count = (seed + (uint32_t)n) % 5 == 0 ? 2 : 0;
   }
   m->of[0].camera = camera;
-  m->of[0].options.audit = 1;
-  m->of[0].options.jitter = seed % 3 == 0;
+  m->of[0].options.skipping.audit = 1;
+  m->of[0].options.sampling.jitter = seed % 3 == 0;
   if (seed % 4 == 1) { /* a wall */
     picture_case* c = &m->of[1];
     const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
@@ -62,20 +62,20 @@ static void make_sharp_case(stratus_context* context, uint32_t seed, several_cas
   if (seed < 3) {
     memcpy(c->opacity, functions[seed], sizeof c->opacity);
   }
-  c->options.sampling = STRATUS_SAMPLING_CELLS;
-  c->options.cell_error = 0.001;
+  c->options.sampling.rule = STRATUS_SAMPLING_CELLS;
+  c->options.sampling.cell_error = 0.001;
   if (seed == 3) {
     case_destroy(c);
     case_create_local(context, 43, c);
-    c->options.crop = 0;
+    c->options.clipping.crop = 0;
     several_place(c, seed);
   }
   if (seed == 4) {
-    c->options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+    c->options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
   }
   m->of[0].camera = camera;
-  m->of[0].options.audit = 1;
-  m->of[0].options.jitter = seed == 2;
+  m->of[0].options.skipping.audit = 1;
+  m->of[0].options.sampling.jitter = seed == 2;
 }
 
 /* A function of two variables (seed 0), components and labels, together with a volume of one medium. */
@@ -90,8 +90,8 @@ static void make_media_case(stratus_context* context, uint32_t seed, several_cas
   several_create(context, m, 2, 740 + seed);
   picture_case* c = &m->of[seed % 2];
   media->function.pairs = NULL;
-  c->options.sampling = STRATUS_SAMPLING_MIDPOINT;
-  c->options.shade = seed % 2 == 0;
+  c->options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+  c->options.light.shade = seed % 2 == 0;
   if (seed < 2) {
     transfer_2d_case_set(c, &media->function, 12 + seed, 0.25);
   } else if (seed == 2) {
@@ -100,15 +100,15 @@ static void make_media_case(stratus_context* context, uint32_t seed, several_cas
     for (size_t v = 0; v < sizeof media->labels; ++v) {
       media->labels[v] = (uint8_t)(v / 7 % 3);
     }
-    c->options.mask = media->labels;
-    c->options.label_count = 2;
+    c->options.mask.bytes = media->labels;
+    c->options.mask.label_count = 2;
   }
   for (int i = 0; i < 3; ++i) {
     media->transfers[i] = c->transfer;
     media->transfers[i].unit_distance = 2.0 + i;
   }
   m->transfers[seed % 2] = media->transfers;
-  m->of[0].options.audit = 1;
+  m->of[0].options.skipping.audit = 1;
 }
 
 /* Samples are not compared: which of them a packet leaps over depends on its width. */
@@ -200,8 +200,8 @@ static void what_did_not_change_stays_on_the_device(void** state)
   several_case m;
   several_casters casters;
   several_create(device, &m, 2, 44);
-  m.of[0].options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
-  m.of[1].options.sampling = STRATUS_SAMPLING_MIDPOINT;
+  m.of[0].options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
+  m.of[1].options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
   several_casters_create(device, &casters);
   assert_int_equal(several_draw_with(&casters, &m, &on_device, reports), STRATUS_OK);
   const uint64_t first[2] = { reports[0].uploads, reports[1].uploads };
@@ -217,7 +217,7 @@ static void what_did_not_change_stays_on_the_device(void** state)
   assert_true(reports[1].uploads > first[1] && reports[1].uploads <= first[1] + 3);
   /* another step changes only the layers */
   const uint64_t second = reports[1].uploads;
-  m.of[0].options.sample_distance = m.of[1].options.sample_distance = 0.3;
+  m.of[0].options.sampling.distance = m.of[1].options.sampling.distance = 0.3;
   assert_int_equal(several_draw_with(&casters, &m, &on_device, reports), STRATUS_OK);
   assert_int_equal(reports[0].uploads, first[0]);
   assert_true(reports[1].uploads > second);

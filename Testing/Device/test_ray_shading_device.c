@@ -28,7 +28,7 @@ static void compare(
     stratus_ray_cast_options options = c->options;
     for (int again = 0; again < 2;
          ++again) { /* with shading after without, and with values kept as floats: nothing stale stays on the device */
-      options.shade = again && c->options.shade;
+      options.light.shade = again && c->options.light.shade;
       assert_int_equal(stratus_ray_caster_render(caster, &c->volume, transfers, &c->camera, &options, &image, &p->report), STRATUS_OK);
     }
     stratus_ray_caster_destroy(caster);
@@ -54,14 +54,14 @@ static void device_and_host_show_the_same(void** state)
   device->device->is_cpu = !*(const bool*)*state;
   picture_case c;
   case_create(host, &c, STRATUS_UINT8, 26, 24, 28, 5);
-  c.options.shade = 1;
-  c.options.shading.specular = 0.4;
+  c.options.light.shade = 1;
+  c.options.light.shading.specular = 0.4;
   compare(host, device, &c, &c.transfer, "lit");
   c.transfer.gradient = steep;
   c.transfer.gradient_count = 2;
-  c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+  c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
   compare(host, device, &c, &c.transfer, "lit, gradient opacity, pre-integrated");
-  c.options.gradient_distance = 1.5;
+  c.options.optics.gradient_distance = 1.5;
   compare(host, device, &c, &c.transfer, "lit, gradient opacity of opacities");
   case_destroy(&c);
 
@@ -69,16 +69,16 @@ static void device_and_host_show_the_same(void** state)
   c.volume.dimensions[0] = 13;
   c.volume.components = 2;
   c.volume.value_stride = 2;
-  c.options.shade = 1;
+  c.options.light.shade = 1;
   case_camera(host, &c, 1, 0);
   const stratus_transfer both[2] = { c.transfer, c.transfer };
   compare(host, device, &c, both, "two components");
-  c.options.mean_components = 1;
+  c.options.optics.mean_components = 1;
   compare(host, device, &c, both, "two components by their share");
   const stratus_material materials[2] = { { 1, 0.1, 0.5, 0.6, 9.0 }, { 0, 0.0, 0.0, 0.0, 0.0 } };
-  c.options.materials = materials;
+  c.options.light.materials = materials;
   compare(host, device, &c, both, "two materials");
-  c.options.dependent = 1;
+  c.options.optics.dependent = 1;
   compare(host, device, &c, both, "two dependent components");
   case_destroy(&c);
 
@@ -91,14 +91,14 @@ static void device_and_host_show_the_same(void** state)
   stratus_transfer functions[2] = { c.transfer, c.transfer };
   functions[1].color = green;
   functions[1].color_count = 1;
-  c.options.mask = labels;
-  c.options.label_count = 1;
+  c.options.mask.bytes = labels;
+  c.options.mask.label_count = 1;
   compare(host, device, &c, functions, "labels");
   functions[1].gradient = steep;
   functions[1].gradient_count = 2;
-  c.options.shade = 1;
-  c.options.shading.light_count = 1;
-  c.options.shading.lights[0] = (stratus_light){ .vector = { 40, 50, -10 },
+  c.options.light.shade = 1;
+  c.options.light.shading.light_count = 1;
+  c.options.light.shading.lights[0] = (stratus_light){ .vector = { 40, 50, -10 },
     .color = { 20, 20, 20 },
     .positional = 1,
     .attenuation = { 0.5, 0.02, 0.03 },

@@ -67,7 +67,8 @@ if nm:
 
 # Results by value, which a wrong layout would shift.
 options = stratus_volume._core.library.stratus_ray_cast_options_default()
-check(options.tolerance == 0.001 and options.crop_regions == 0x2000 and options.shading.diffuse == 0.9 and options.shading.light_count == -1,
+check(options.sampling.tolerance == 0.001 and options.clipping.crop_regions == 0x2000 and options.light.shading.diffuse == 0.9
+      and options.light.shading.light_count == -1,
       "defaults of rays")
 check(list(stratus_volume._core.library.stratus_volume_default().matrix) == [float(n % 5 == 0) for n in range(16)], "the identity")
 

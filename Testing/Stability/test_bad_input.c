@@ -204,34 +204,35 @@ static void spoilt_cameras_are_refused(void** state)
 static void spoilt_options_are_refused(void** state)
 {
   fixture* f = *state;
-  REFUSED(f, "99", in.options.structure = (stratus_structure)99);
-  REFUSED(f, "-1", in.options.structure = (stratus_structure)-1);
-  REFUSED(f, "98", in.options.sampling = (stratus_sampling)98);
-  REFUSED(f, "97", in.options.interpolation = (stratus_interpolation)97);
-  REFUSED(f, "-1.5", in.options.sample_distance = -1.5);
-  REFUSED(f, "nan", in.options.sample_distance = NAN);
-  REFUSED(f, "inf", in.options.sample_distance = INFINITY);
-  REFUSED(f, "1e-300", in.options.sample_distance = 1e-300);
-  REFUSED(f, "1.75", in.options.termination = 1.75);
-  REFUSED(f, "-0.25", in.options.termination = -0.25);
-  REFUSED(f, "nan", in.options.termination = NAN);
-  REFUSED(f, "-0.001", in.options.tolerance = -0.001);
-  REFUSED(f, "nan", in.options.tolerance = NAN);
-  REFUSED(f, "inf", in.options.tolerance = INFINITY);
-  REFUSED(f, "1e+16", (in.options.shade = 1, in.options.shading.ambient = 1e16));
-  REFUSED(f, "1e+153", (in.options.shade = 1, in.options.shading.specular_power = 1e153));
-  REFUSED(f, "1e+308", (in.options.shade = in.options.shading.light_count = 1, in.options.shading.lights[0].color[2] = 1e308));
+  REFUSED(f, "99", in.options.skipping.structure = (stratus_structure)99);
+  REFUSED(f, "-1", in.options.skipping.structure = (stratus_structure)-1);
+  REFUSED(f, "98", in.options.sampling.rule = (stratus_sampling)98);
+  REFUSED(f, "97", in.options.sampling.interpolation = (stratus_interpolation)97);
+  REFUSED(f, "-1.5", in.options.sampling.distance = -1.5);
+  REFUSED(f, "nan", in.options.sampling.distance = NAN);
+  REFUSED(f, "inf", in.options.sampling.distance = INFINITY);
+  REFUSED(f, "1e-300", in.options.sampling.distance = 1e-300);
+  REFUSED(f, "1.75", in.options.sampling.termination = 1.75);
+  REFUSED(f, "-0.25", in.options.sampling.termination = -0.25);
+  REFUSED(f, "nan", in.options.sampling.termination = NAN);
+  REFUSED(f, "-0.001", in.options.sampling.tolerance = -0.001);
+  REFUSED(f, "nan", in.options.sampling.tolerance = NAN);
+  REFUSED(f, "inf", in.options.sampling.tolerance = INFINITY);
+  REFUSED(f, "1e+16", (in.options.light.shade = 1, in.options.light.shading.ambient = 1e16));
+  REFUSED(f, "1e+153", (in.options.light.shade = 1, in.options.light.shading.specular_power = 1e153));
+  REFUSED(
+    f, "1e+308", (in.options.light.shade = in.options.light.shading.light_count = 1, in.options.light.shading.lights[0].color[2] = 1e308));
   REFUSED(f, "-0.5",
-    (in.options.shade = in.options.shading.light_count = in.options.shading.lights[0].separate_specular = 1,
-      in.options.shading.lights[0].vector[0] = 1.0, in.options.shading.lights[0].specular_color[1] = -0.5));
-  REFUSED(f, "5", in.options.block_size = 5);
-  REFUSED(f, "64", in.options.block_size = 64);
-  REFUSED(f, "-4", in.options.block_size = -4);
-  REFUSED(f, "7", in.options.clip_plane_count = 7);
-  REFUSED(f, "-1", in.options.clip_plane_count = -1);
-  REFUSED(f, "nan", (in.options.clip_plane_count = 1, in.options.clip_planes[0][3] = NAN));
-  REFUSED(f, "nan", (in.options.crop = 1, in.options.crop_bounds[2] = NAN));
-  REFUSED(f, "4.5", (in.options.crop = 1, in.options.crop_bounds[0] = 4.5, in.options.crop_bounds[1] = 3.5));
+    (in.options.light.shade = in.options.light.shading.light_count = in.options.light.shading.lights[0].separate_specular = 1,
+      in.options.light.shading.lights[0].vector[0] = 1.0, in.options.light.shading.lights[0].specular_color[1] = -0.5));
+  REFUSED(f, "5", in.options.skipping.block_size = 5);
+  REFUSED(f, "64", in.options.skipping.block_size = 64);
+  REFUSED(f, "-4", in.options.skipping.block_size = -4);
+  REFUSED(f, "7", in.options.clipping.clip_plane_count = 7);
+  REFUSED(f, "-1", in.options.clipping.clip_plane_count = -1);
+  REFUSED(f, "nan", (in.options.clipping.clip_plane_count = 1, in.options.clipping.clip_planes[0][3] = NAN));
+  REFUSED(f, "nan", (in.options.clipping.crop = 1, in.options.clipping.crop_bounds[2] = NAN));
+  REFUSED(f, "4.5", (in.options.clipping.crop = 1, in.options.clipping.crop_bounds[0] = 4.5, in.options.clipping.crop_bounds[1] = 3.5));
 }
 
 static void spoilt_images_are_refused(void** state)
@@ -357,8 +358,8 @@ static void lengths_of_the_unit_out_of_all_proportion_draw_numbers(void** state)
     for (int what = 0; what < 8; ++what) {
       inputs in = f->good;
       pair[0].unit_distance = pair[1].unit_distance = units[u];
-      in.options.sampling = what % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
-      in.options.shade = what / 2 == 1;
+      in.options.sampling.rule = what % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+      in.options.light.shade = what / 2 == 1;
       in.options.mode = what / 2 == 2 ? STRATUS_MODE_ADDITIVE : STRATUS_MODE_COMPOSITE;
       if (what / 2 == 3) { /* as many values as both components have */
         in.volume.components = 2;

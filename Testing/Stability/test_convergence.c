@@ -19,9 +19,9 @@ static analytic_scene scene_of(stratus_context* context, analytic_field field, i
 static stratus_ray_cast_options options_of(stratus_sampling sampling, double step)
 {
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
-  options.sampling = sampling;
-  options.sample_distance = step;
-  options.termination = 1.0;
+  options.sampling.rule = sampling;
+  options.sampling.distance = step;
+  options.sampling.termination = 1.0;
   return options;
 }
 
@@ -71,10 +71,10 @@ static void pieces_of_cells_have_order_1_in_the_allowed_departure(void** state)
   analytic_render(&s, CONVERGENCE_SIDE, 0.5, 0.0, 0.0, truth);
   for (int level = 0; level < CONVERGENCE_LEVELS; ++level) {
     stratus_ray_cast_options options = options_of(STRATUS_SAMPLING_CELLS, 0.0);
-    options.cell_error = 0.02 / (1 << level);
+    options.sampling.cell_error = 0.02 / (1 << level);
     analytic_draw(*state, &s, &volume, &options, CONVERGENCE_SIDE, rgba, NULL);
     errors[level] = convergence_rms(rgba, truth, 4 * CONVERGENCE_PIXELS);
-    options.cell_error = 0.02; /* a rule that ignores the allowed departure */
+    options.sampling.cell_error = 0.02; /* a rule that ignores the allowed departure */
     analytic_draw(*state, &s, &volume, &options, CONVERGENCE_SIDE, rgba, NULL);
     worse[level] = convergence_rms(rgba, truth, 4 * CONVERGENCE_PIXELS);
   }
@@ -97,7 +97,7 @@ static void grid_cells_have_order_2(void** state)
       for (int broken = 0; broken < 2; ++broken) {
         const stratus_volume volume = analytic_volume(s.field, 4 << level, 0.5 * broken);
         stratus_ray_cast_options options = options_of(rules[rule], rules[rule] == STRATUS_SAMPLING_CELLS ? 0.0 : 1.0 / 512);
-        options.cell_error = 1e-5;
+        options.sampling.cell_error = 1e-5;
         analytic_draw(*state, &s, &volume, &options, CONVERGENCE_SIDE, rgba, NULL);
         (broken ? worse : errors)[level] = convergence_rms(rgba, truth, 4 * CONVERGENCE_PIXELS);
         free((void*)volume.values);

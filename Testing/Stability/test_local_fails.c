@@ -38,8 +38,8 @@ static void each_allocation_may_fail(void** state)
   assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
   case_create_local(context, 1, &c);
   other = c;
-  other.options.sampling = STRATUS_SAMPLING_MIDPOINT;
-  other.options.tolerance = 0.0;
+  other.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+  other.options.sampling.tolerance = 0.0;
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   assert_int_equal(draw(caster, &c, &right), STRATUS_OK);
   assert_int_equal(draw(caster, &other, &plain), STRATUS_OK);
@@ -60,7 +60,7 @@ static void each_allocation_may_fail(void** state)
       assert_memory_equal(again.rgba, right.rgba, sizeof right.rgba);
     } else { /* there was no memory for the map, and another rule keeps the tolerance */
       ++without;
-      assert_true(again.report.tolerance_met && again.report.expected_error <= c.options.tolerance);
+      assert_true(again.report.tolerance_met && again.report.expected_error <= c.options.sampling.tolerance);
     }
     stratus_ray_caster_destroy(caster);
     assert_int_equal(allocator.live, live);

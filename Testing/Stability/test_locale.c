@@ -36,9 +36,9 @@ static void decimal_commas_change_nothing(void** state)
       stratus_context* context = case_context(automatic ? "auto" : "host", 2);
       picture_case c;
       case_create(context, &c, STRATUS_FLOAT32, 20, 21, 22, 8);
-      c.options.sampling = STRATUS_SAMPLING_AUTO;
-      c.options.sample_distance = 0.0;
-      c.options.structure = STRATUS_STRUCTURE_DISTANCE;
+      c.options.sampling.rule = STRATUS_SAMPLING_AUTO;
+      c.options.sampling.distance = 0.0;
+      c.options.skipping.structure = STRATUS_STRUCTURE_DISTANCE;
       case_render(context, &c, &pictures[commas][automatic]);
       assert_true(case_lit(&pictures[commas][automatic]) > 100);
       if (automatic) {

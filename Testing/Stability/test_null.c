@@ -272,7 +272,7 @@ static void voxel_sets(const small_scene* scene)
 
 static void ray_casters(const small_scene* scene)
 {
-  const stratus_ray_cast_options options = { .label_count = 1 };
+  const stratus_ray_cast_options options = { .mask.label_count = 1 };
   static float rgba[4 * SMALL_PIXELS];
   const stratus_image image = { .width = SMALL_WIDTH, .height = SMALL_HEIGHT, .rgba = rgba }, blank = { .width = 1, .height = 1 };
   stratus_ray_caster* c = NULL;

@@ -127,10 +127,11 @@ static void zeros_have_no_sign(void** state)
       const double opacity[8] = { -1.0, 0.0, 0.0, 0.0, 0.0, 0.3, 1.0, 0.3 }; /* a step at 0 */
       memcpy(c.opacity, opacity, sizeof opacity);
       c.options.mode = (stratus_mode)mode;
-      c.options.interpolation = nearest && mode != STRATUS_MODE_ISOSURFACE ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-      c.options.contour_count = 2;
-      c.options.contours[0] = 0.0;
-      c.options.contours[1] = 0.25;
+      c.options.sampling.interpolation =
+        nearest && mode != STRATUS_MODE_ISOSURFACE ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+      c.options.optics.contour_count = 2;
+      c.options.optics.contours[0] = 0.0;
+      c.options.optics.contours[1] = 0.25;
       float* values = c.values;
       for (int i = 0; i < 12 * 13 * 14; ++i) {
         values[i] = fmaxf(0.0f, values[i] + 20.0f) / 3.0f;
@@ -141,7 +142,7 @@ static void zeros_have_no_sign(void** state)
         values[i] = values[i] == 0.0f && i % 2 ? -0.0f : values[i];
       }
       c.opacity[2] = -0.0;
-      c.options.contours[0] = -0.0;
+      c.options.optics.contours[0] = -0.0;
       case_render(*state, &c, &second);
       assert_memory_equal(first.rgba, second.rgba, sizeof first.rgba);
       assert_memory_equal(first.depth, second.depth, sizeof first.depth);
@@ -162,11 +163,11 @@ static void create_scaled(stratus_context* context, picture_case* c, int mode, i
     c->camera.up[a] *= parallel ? factor : 1.0;
   }
   c->transfer.unit_distance *= factor;
-  c->options.sample_distance *= factor;
+  c->options.sampling.distance *= factor;
   c->options.mode = (stratus_mode)mode;
-  c->options.shade = mode == STRATUS_MODE_ISOSURFACE;
-  c->options.contour_count = 1;
-  c->options.contours[0] = -19.8;
+  c->options.light.shade = mode == STRATUS_MODE_ISOSURFACE;
+  c->options.optics.contour_count = 1;
+  c->options.optics.contours[0] = -19.8;
 }
 
 /* A picture does not know the unit of length: 1e20 and 1e-20 of it show what 1 shows, and so does every power of ten between. */
@@ -218,8 +219,8 @@ static void lengths_that_do_not_go_together_are_drawn_or_refused(void** state)
         c.volume.origin[a] = edges[i][3 + a];
       }
       c.transfer.unit_distance = edges[i][1];
-      c.options.sampling = STRATUS_SAMPLING_AUTO;
-      c.options.sample_distance = 0.0;
+      c.options.sampling.rule = STRATUS_SAMPLING_AUTO;
+      c.options.sampling.distance = 0.0;
       stratus_status status = stratus_volume_bounds(*state, &c.volume, bounds);
       if (status == STRATUS_OK) {
         status = stratus_scene_camera(*state, bounds, 2, 0, parallel, 1.2, &c.camera);
@@ -251,7 +252,7 @@ static void threads_change_no_bit_of_any_mode(void** state)
       stratus_context* context = case_context("host", threads[t]);
       picture_case c;
       create_scaled(context, &c, mode, 0, 1.0);
-      c.options.structure = STRATUS_STRUCTURE_HYBRID;
+      c.options.skipping.structure = STRATUS_STRUCTURE_HYBRID;
       case_render(context, &c, t ? &second : &first);
       if (t > 0) {
         assert_memory_equal(first.rgba, second.rgba, sizeof first.rgba);
@@ -278,7 +279,7 @@ static void pictures_of_1_and_3_pixels_show_their_rays(void** state)
         picture_case c;
         create_scaled(*state, &c, mode, parallel, 1.0);
         assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
-        c.options.audit = 1;
+        c.options.skipping.audit = 1;
         stratus_ray_cast_report report;
         assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, &report), STRATUS_OK);
         assert_int_equal(report.differing_pixels, 0);
@@ -312,9 +313,9 @@ static void volumes_of_one_voxel_are_cubes_or_nothing(void** state)
           case_store(c.values, (stratus_type)type, 0, base + 0.9 * scale);
           c.volume.cell_centered = cell;
           c.options.mode = (stratus_mode)mode;
-          c.options.structure = (stratus_structure)structure;
-          c.options.contour_count = 1;
-          c.options.contours[0] = base;
+          c.options.skipping.structure = (stratus_structure)structure;
+          c.options.optics.contour_count = 1;
+          c.options.optics.contours[0] = base;
           const double eye[3] = { 0.5, 0.5, 5.0 }, focal[3] = { 0.5, 0.5, 0.5 }, up[3] = { 0, 1, 0 };
           assert_int_equal(stratus_camera_parallel(*state, eye, focal, up, 1.0, (double)CASE_WIDTH / CASE_HEIGHT, &c.camera), STRATUS_OK);
           case_render(*state, &c, &first);
@@ -354,21 +355,21 @@ static void views_along_axes_edges_and_diagonals_are_right(void** state)
       assert_int_equal(kind & 1 ? stratus_camera_parallel(*state, eye, focal, upward, 6.6, (double)CASE_WIDTH / CASE_HEIGHT, &c.camera)
                                 : stratus_camera_perspective(*state, eye, focal, upward, 35.0, (double)CASE_WIDTH / CASE_HEIGHT, &c.camera),
         STRATUS_OK);
-      c.options.sampling = kind & 2 ? STRATUS_SAMPLING_CELLS : STRATUS_SAMPLING_MIDPOINT;
-      c.options.audit = 1;
+      c.options.sampling.rule = kind & 2 ? STRATUS_SAMPLING_CELLS : STRATUS_SAMPLING_MIDPOINT;
+      c.options.skipping.audit = 1;
       case_render(*state, &c, &first);
       assert_int_equal(first.report.differing_pixels, 0);
       const double db = db_of(&c, &first);
       worst = fmin(worst, db);
       if (!(db >= DRAWN_DB)) {
         fail_msg("along %d %d %d, %s, %s: %.1f dB", d[0], d[1], d[2], kind & 1 ? "parallel" : "perspective",
-          stratus_sampling_name(c.options.sampling), db);
+          stratus_sampling_name(c.options.sampling.rule), db);
       }
       for (int mode = STRATUS_MODE_FIRST_HIT; mode <= STRATUS_MODE_ISOSURFACE; ++mode) {
         c.options.mode = (stratus_mode)mode;
-        c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
-        c.options.contour_count = 1;
-        c.options.contours[0] = -19.8;
+        c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+        c.options.optics.contour_count = 1;
+        c.options.optics.contours[0] = -19.8;
         case_render(*state, &c, &first);
         assert_int_equal(first.report.differing_pixels, 0);
         all_are_in_range(&first);

@@ -15,13 +15,13 @@ static void choose_options(picture_case* c, double base, double scale, uint32_t*
   stratus_ray_cast_options* o = &c->options;
   const int64_t* n = c->volume.dimensions;
   o->mode = case_random(random) % 5 < 2 ? STRATUS_MODE_COMPOSITE : (stratus_mode)(int)case_uniform(random, 0.0, STRATUS_MODE_SLICE + 1.0);
-  o->contour_count = 1 + (int)(case_random(random) % 3);
-  for (int i = 0; i < o->contour_count; ++i) {
-    o->contours[i] = base + scale * case_uniform(random, -0.6, 0.6);
+  o->optics.contour_count = 1 + (int)(case_random(random) % 3);
+  for (int i = 0; i < o->optics.contour_count; ++i) {
+    o->optics.contours[i] = base + scale * case_uniform(random, -0.6, 0.6);
   }
   if (case_random(random) % 3 == 0) {
-    o->average_range[0] = base - 0.3 * scale;
-    o->average_range[1] = base + scale * case_uniform(random, -0.3, 0.9);
+    o->optics.average_range[0] = base - 0.3 * scale;
+    o->optics.average_range[1] = base + scale * case_uniform(random, -0.3, 0.9);
   }
   if (o->mode == STRATUS_MODE_SLICE) {
     for (int a = 0; a < 3; ++a) { /* a plane or a quadric through the middle of an unturned volume */
@@ -31,25 +31,25 @@ static void choose_options(picture_case* c, double base, double scale, uint32_t*
       o->slice.square[a] = case_random(random) % 2 ? case_uniform(random, -0.2, 0.2) : 0.0;
     }
   }
-  o->normals = (stratus_normals)(case_random(random) % 2);
-  o->shade = case_random(random) % 4 == 0;
-  o->shading.specular = o->shade && case_random(random) % 2 ? 0.4 : 0.0;
-  o->shading.one_sided = case_random(random) % 3 == 0;
-  o->jitter = case_random(random) % 6 == 0;
-  o->jitter_seed = case_random(random);
-  o->block_size = case_random(random) % 3 ? 0 : 2 << case_random(random) % 5;
+  o->light.normals = (stratus_normals)(case_random(random) % 2);
+  o->light.shade = case_random(random) % 4 == 0;
+  o->light.shading.specular = o->light.shade && case_random(random) % 2 ? 0.4 : 0.0;
+  o->light.shading.one_sided = case_random(random) % 3 == 0;
+  o->sampling.jitter = case_random(random) % 6 == 0;
+  o->sampling.jitter_seed = case_random(random);
+  o->skipping.block_size = case_random(random) % 3 ? 0 : 2 << case_random(random) % 5;
   if (o->mode == STRATUS_MODE_FIRST_HIT) {
-    o->crop_regions = STRATUS_CROP_INSIDE;
+    o->clipping.crop_regions = STRATUS_CROP_INSIDE;
   } else if (case_random(random) % 6 == 0) {
     const uint32_t grain = 1 + case_random(random) % 9;
     for (int64_t i = 0; i < n[0] * n[1] * n[2]; ++i) {
       mask[i] = (uint8_t)((uint64_t)(i / grain) * 2654435761u >> 7 & 3);
     }
-    o->mask = mask;
+    o->mask.bytes = mask;
   } else if (case_random(random) % 5 == 0) {
-    o->crop_regions = case_random(random) & STRATUS_CROP_ALL;
+    o->clipping.crop_regions = case_random(random) & STRATUS_CROP_ALL;
   }
-  o->interpolation = o->mode == STRATUS_MODE_ISOSURFACE ? STRATUS_INTERPOLATION_LINEAR : o->interpolation;
+  o->sampling.interpolation = o->mode == STRATUS_MODE_ISOSURFACE ? STRATUS_INTERPOLATION_LINEAR : o->sampling.interpolation;
 }
 
 static stratus_status draw(stratus_ray_caster* caster, const picture_case* c, picture* p)
@@ -75,30 +75,30 @@ static void judge(stratus_context* context, picture_case* c, uint32_t* random, u
   const bool anew = case_random(random) % 3 == 0;
   const uint32_t first = case_random(random);
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
-  c->options.structure = STRATUS_STRUCTURE_NONE;
+  c->options.skipping.structure = STRATUS_STRUCTURE_NONE;
   stratus_status status = draw(caster, c, &plain);
-  if (status == STRATUS_UNSUPPORTED && c->options.sampling == STRATUS_SAMPLING_CELLS) { /* cells draw no light and no mask */
-    c->options.sampling = STRATUS_SAMPLING_AUTO;
-    c->options.sample_distance = 0.0;
+  if (status == STRATUS_UNSUPPORTED && c->options.sampling.rule == STRATUS_SAMPLING_CELLS) { /* cells draw no light and no mask */
+    c->options.sampling.rule = STRATUS_SAMPLING_AUTO;
+    c->options.sampling.distance = 0.0;
     status = draw(caster, c, &plain);
   }
   if (status != STRATUS_OK) {
     fail_msg("%s: %s", stratus_mode_name(c->options.mode), stratus_context_message(context));
   }
-  c->options.audit = case_random(random) % 4 == 0;
+  c->options.skipping.audit = case_random(random) % 4 == 0;
   for (uint32_t i = 0; i <= STRATUS_STRUCTURE_HYBRID; ++i) {
-    c->options.structure = (stratus_structure)((i + first) % (STRATUS_STRUCTURE_HYBRID + 1));
+    c->options.skipping.structure = (stratus_structure)((i + first) % (STRATUS_STRUCTURE_HYBRID + 1));
     if (anew) {
       stratus_ray_caster_destroy(caster);
       assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
     }
     if (draw(caster, c, &skipping) != STRATUS_OK) {
-      fail_msg("%s: %s", stratus_structure_name(c->options.structure), stratus_context_message(context));
+      fail_msg("%s: %s", stratus_structure_name(c->options.skipping.structure), stratus_context_message(context));
     }
     const int differing = differing_pixels();
     if (differing > 0 || skipping.report.differing_pixels > 0) {
       fail_msg("%s, %s, structure %s: %d pixels differ from the plain march, %llu by the audit", stratus_mode_name(c->options.mode),
-        stratus_sampling_name(plain.report.sampling), stratus_structure_name(c->options.structure), differing,
+        stratus_sampling_name(plain.report.sampling), stratus_structure_name(c->options.skipping.structure), differing,
         (unsigned long long)skipping.report.differing_pixels);
     }
     *skipped += skipping.report.skipped;
@@ -124,8 +124,8 @@ static void no_structure_changes_a_bit(void** state)
       c.camera = s.camera;
       c.options = stratus_ray_cast_options_default();
       if (case_random(&random) % 4) {
-        c.options.sampling = (stratus_sampling)(STRATUS_SAMPLING_MIDPOINT + case_random(&random) % 3);
-        c.options.sample_distance = c.volume.spacing[0] * case_uniform(&random, 0.3, 3.0);
+        c.options.sampling.rule = (stratus_sampling)(STRATUS_SAMPLING_MIDPOINT + case_random(&random) % 3);
+        c.options.sampling.distance = c.volume.spacing[0] * case_uniform(&random, 0.3, 3.0);
       }
     } else if (kind == 3) { /* scenes for rule local */
       case_create_local(*state, seeds.seed, &c);

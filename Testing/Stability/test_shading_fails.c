@@ -53,10 +53,10 @@ static void fill(stratus_context* context, shading_case* c, int labels)
   c->transfers[0].gradient = steep;
   c->transfers[0].gradient_count = 2;
   c->options = stratus_ray_cast_options_default();
-  c->options.shade = 1;
-  c->options.structure = STRATUS_STRUCTURE_DISTANCE;
-  c->options.mask = labels ? c->labels : NULL;
-  c->options.label_count = labels ? 2 : 0;
+  c->options.light.shade = 1;
+  c->options.skipping.structure = STRATUS_STRUCTURE_DISTANCE;
+  c->options.mask.bytes = labels ? c->labels : NULL;
+  c->options.mask.label_count = labels ? 2 : 0;
   assert_int_equal(stratus_volume_bounds(context, &c->volume, bounds), STRATUS_OK);
   assert_int_equal(stratus_scene_camera(context, bounds, 2, 1, 0, 1.0, &c->camera), STRATUS_OK);
 }

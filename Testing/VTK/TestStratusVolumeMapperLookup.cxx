@@ -237,7 +237,7 @@ double ClippedPsnr(Scene& scene, vtkPlane* plane, int clipped, double value)
 {
   return ReferencePsnr(scene, [&](reference_scene& s) {
     static stratus_shading shading;
-    shading = stratus_ray_cast_options_default().shading;
+    shading = stratus_ray_cast_options_default().light.shading;
     shading.light_count = 1;
     shading.lights[0] = stratus_light();
     for (int a = 0; a < 3; ++a) {

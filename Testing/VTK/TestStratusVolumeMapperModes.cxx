@@ -85,8 +85,8 @@ void BlendModes()
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
     options.mode = mode.second;
     const double contours[3] = { 0.6, 0.2, 0.35 };
-    options.contour_count = 3;
-    std::copy_n(contours, 3, options.contours);
+    options.optics.contour_count = 3;
+    std::copy_n(contours, 3, options.optics.contours);
     for (int n = 0; n < 3; ++n) {
       scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(n, contours[n]);
     }
@@ -103,8 +103,8 @@ void AverageRange()
   Scene scene;
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
   options.mode = STRATUS_MODE_AVERAGE;
-  options.average_range[0] = 0.3;
-  options.average_range[1] = 0.6;
+  options.optics.average_range[0] = 0.3;
+  options.optics.average_range[1] = 0.6;
   scene.Mapper->SetBlendModeToAverageIntensity();
   const double all = scene.Light();
   scene.Mapper->SetAverageIPScalarRange(0.3, 0.6);
@@ -141,14 +141,14 @@ void CropRegions()
   for (const auto& set : sets) {
     Scene scene;
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
-    options.crop = 1;
-    options.crop_regions = static_cast<uint32_t>(set.first);
+    options.clipping.crop = 1;
+    options.clipping.crop_regions = static_cast<uint32_t>(set.first);
     double planes[6];
     scene.Image->GetBounds(planes);
     for (int a = 0; a < 3; ++a) {
       const double low = planes[2 * a], width = planes[2 * a + 1] - low;
-      planes[2 * a] = options.crop_bounds[2 * a] = low + 0.35 * width;
-      planes[2 * a + 1] = options.crop_bounds[2 * a + 1] = low + 0.6 * width;
+      planes[2 * a] = options.clipping.crop_bounds[2 * a] = low + 0.35 * width;
+      planes[2 * a + 1] = options.clipping.crop_bounds[2 * a + 1] = low + 0.6 * width;
     }
     scene.Mapper->CroppingOn();
     scene.Mapper->SetCroppingRegionPlanes(planes);
@@ -175,7 +175,7 @@ void Masks()
   scene.Mapper->SetMaskInput(mask);
   CHECK(scene.Mapper->GetMaskInput() == mask, "the mask is another");
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
-  options.mask = bytes;
+  options.mask.bytes = bytes;
   scene.Mapper->SetSamplingToMidpoint();
   Against("binary mask", scene, options, 40.0);
   const double masked = scene.Light();

@@ -210,8 +210,8 @@ void Modes()
     const SceneFunctions functions(scene);
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
     options.mode = mode.second;
-    options.contour_count = 1;
-    options.contours[0] = 0.35;
+    options.optics.contour_count = 1;
+    options.optics.contours[0] = 0.35;
     scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, 0.35);
     scene.Mapper->SetBlendMode(mode.first);
     scene.Mapper->SetSampleDistance(0.05f);

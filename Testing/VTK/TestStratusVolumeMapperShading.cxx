@@ -19,7 +19,7 @@ void Fine(Scene& scene)
 stratus_shading ReferenceShading(Scene& scene)
 {
   vtkVolumeProperty* property = scene.Volume->GetProperty();
-  stratus_shading shading = stratus_ray_cast_options_default().shading;
+  stratus_shading shading = stratus_ray_cast_options_default().light.shading;
   shading.ambient = property->GetAmbient();
   shading.diffuse = property->GetDiffuse();
   shading.specular = property->GetSpecular();

@@ -81,11 +81,11 @@ static inline void many_check(const char* what, stratus_context* context, const 
   reference_scene scene = case_scene(&m->c);
   double reference_db = 0.0;
   scene.transfer = m->transfers;
-  scene.dependent = m->c.options.dependent;
-  scene.mean_components = m->c.options.mean_components;
-  scene.gradient_distance = m->c.options.gradient_distance;
-  scene.shading = m->c.options.shade || m->c.options.materials ? &m->c.options.shading : NULL;
-  scene.materials = m->c.options.materials;
+  scene.dependent = m->c.options.optics.dependent;
+  scene.mean_components = m->c.options.optics.mean_components;
+  scene.gradient_distance = m->c.options.optics.gradient_distance;
+  scene.shading = m->c.options.light.shade || m->c.options.light.materials ? &m->c.options.light.shading : NULL;
+  scene.materials = m->c.options.light.materials;
   many_draw(context, m, &drawn);
   assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 62.0, reference, NULL, &reference_db), 0);
   const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);

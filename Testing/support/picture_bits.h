@@ -52,18 +52,18 @@ static inline uint64_t bits_of_image(stratus_context* context, const bits_of_rec
   case_create(context, &c, record->type, 23, 19, 21, 77);
   const double base = case_type_values[record->type].base, scale = case_type_values[record->type].scale;
   c.options.mode = record->mode;
-  c.options.sampling = record->sampling;
-  c.options.sample_distance = record->sampling == STRATUS_SAMPLING_AUTO || record->sampling == STRATUS_SAMPLING_CELLS ? 0.0 : 0.7;
-  c.options.shade = record->shade;
-  c.options.interpolation = record->nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-  c.options.jitter = record->jitter;
-  c.options.crop = record->crop;
+  c.options.sampling.rule = record->sampling;
+  c.options.sampling.distance = record->sampling == STRATUS_SAMPLING_AUTO || record->sampling == STRATUS_SAMPLING_CELLS ? 0.0 : 0.7;
+  c.options.light.shade = record->shade;
+  c.options.sampling.interpolation = record->nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+  c.options.sampling.jitter = record->jitter;
+  c.options.clipping.crop = record->crop;
   for (int side = 0; side < 6; ++side) {
-    c.options.crop_bounds[side] = side % 2 ? 15.25 : 3.5;
+    c.options.clipping.crop_bounds[side] = side % 2 ? 15.25 : 3.5;
   }
-  c.options.contour_count = 2;
-  c.options.contours[0] = base + 0.1 * scale;
-  c.options.contours[1] = base + 0.3 * scale;
+  c.options.optics.contour_count = 2;
+  c.options.optics.contours[0] = base + 0.1 * scale;
+  c.options.optics.contours[1] = base + 0.3 * scale;
   c.options.slice = (stratus_slice){ .center = { 11.0, 9.0, 10.0 }, .linear = { 0.2, 0.4, 1.0 } };
   case_render(context, &c, &drawn);
   assert_true(case_lit(&drawn) > CASE_PIXELS / 20);

@@ -160,9 +160,9 @@ static inline void case_create(
   c->transfer.color = c->color;
   c->transfer.color_count = 3;
   c->options = stratus_ray_cast_options_default();
-  c->options.sampling = STRATUS_SAMPLING_MIDPOINT;
-  c->options.sample_distance = 0.25;
-  c->options.termination = 1.0;
+  c->options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+  c->options.sampling.distance = 0.25;
+  c->options.sampling.termination = 1.0;
   case_camera(context, c, 0, 0);
 }
 
@@ -173,10 +173,10 @@ static inline void case_create_random(stratus_context* context, uint32_t seed, p
   const stratus_type type = (stratus_type)(case_random(&s) % 10);
   const int64_t nx = 1 + case_random(&s) % 40, ny = 1 + case_random(&s) % 40, nz = 2 + case_random(&s) % 40;
   case_create(context, c, type, nx, ny, nz, seed);
-  c->options.sampling = (stratus_sampling)(STRATUS_SAMPLING_MIDPOINT + case_random(&s) % 3); /* or pre-integrated, or cells */
-  c->options.interpolation = case_random(&s) % 3 ? STRATUS_INTERPOLATION_LINEAR : STRATUS_INTERPOLATION_NEAREST;
-  c->options.sample_distance = case_uniform(&s, 0.2, 1.9);
-  c->options.termination = case_random(&s) % 2 ? 0.999 : 0.9;
+  c->options.sampling.rule = (stratus_sampling)(STRATUS_SAMPLING_MIDPOINT + case_random(&s) % 3); /* or pre-integrated, or cells */
+  c->options.sampling.interpolation = case_random(&s) % 3 ? STRATUS_INTERPOLATION_LINEAR : STRATUS_INTERPOLATION_NEAREST;
+  c->options.sampling.distance = case_uniform(&s, 0.2, 1.9);
+  c->options.sampling.termination = case_random(&s) % 2 ? 0.999 : 0.9;
   c->volume.cell_centered = nx == 1 || ny == 1 || case_random(&s) % 3 == 0;
   if (case_random(&s) % 2) { /* a narrow peak: the volume is mostly empty */
     const double base = case_type_values[type].base, scale = case_type_values[type].scale;
@@ -196,18 +196,18 @@ static inline void case_create_random(stratus_context* context, uint32_t seed, p
     c->volume.cell_ghosts = c->cell_ghosts;
   }
   if (case_random(&s) % 4 == 0) {
-    c->options.crop = 1;
+    c->options.clipping.crop = 1;
     for (int a = 0; a < 3; ++a) {
-      c->options.crop_bounds[2 * a] = case_uniform(&s, -2, 10);
-      c->options.crop_bounds[2 * a + 1] = c->options.crop_bounds[2 * a] + case_uniform(&s, 1, 30);
+      c->options.clipping.crop_bounds[2 * a] = case_uniform(&s, -2, 10);
+      c->options.clipping.crop_bounds[2 * a + 1] = c->options.clipping.crop_bounds[2 * a] + case_uniform(&s, 1, 30);
     }
   }
   if (case_random(&s) % 4 == 0) {
-    c->options.clip_plane_count = 1;
+    c->options.clipping.clip_plane_count = 1;
     for (int a = 0; a < 3; ++a) {
-      c->options.clip_planes[0][a] = case_uniform(&s, -1, 1);
+      c->options.clipping.clip_planes[0][a] = case_uniform(&s, -1, 1);
     }
-    c->options.clip_planes[0][3] = case_uniform(&s, -5, 15);
+    c->options.clipping.clip_planes[0][3] = case_uniform(&s, -5, 15);
   }
   case_camera(context, c, (int)(case_random(&s) % 8), (int)(case_random(&s) % 2));
   if (case_random(&s) % 4 == 0) { /* from inside */
@@ -254,11 +254,11 @@ static inline void case_create_local(stratus_context* context, uint32_t seed, pi
     c->volume.cell_ghosts = c->cell_ghosts;
   }
   if (case_random(&s) % 3 == 0) {
-    c->options.crop = 1;
-    c->options.crop_regions = case_random(&s) % 2 ? STRATUS_CROP_INSIDE : 0x5a5a5a5u;
+    c->options.clipping.crop = 1;
+    c->options.clipping.crop_regions = case_random(&s) % 2 ? STRATUS_CROP_INSIDE : 0x5a5a5a5u;
     for (int a = 0; a < 3; ++a) {
-      c->options.crop_bounds[2 * a] = case_uniform(&s, -2, 20);
-      c->options.crop_bounds[2 * a + 1] = c->options.crop_bounds[2 * a] + case_uniform(&s, 1, 30);
+      c->options.clipping.crop_bounds[2 * a] = case_uniform(&s, -2, 20);
+      c->options.clipping.crop_bounds[2 * a + 1] = c->options.clipping.crop_bounds[2 * a] + case_uniform(&s, 1, 30);
     }
   }
   case_camera(context, c, (int)(case_random(&s) % 8), (int)(case_random(&s) % 2));
@@ -297,15 +297,15 @@ static inline reference_scene case_scene(const picture_case* c)
   reference_scene scene = { .volume = &c->volume,
     .transfer = &c->transfer,
     .camera = &c->camera,
-    .interpolation = c->options.interpolation,
+    .interpolation = c->options.sampling.interpolation,
     .opaque_depth = c->opaque_depth,
-    .crop = c->options.crop,
-    .clip_plane_count = c->options.clip_plane_count,
-    .transfer_2d = c->options.transfer_2d,
-    .clip_gradients = c->options.clip_gradients,
-    .clipped_value = c->options.clipped_value };
-  memcpy(scene.crop_bounds, c->options.crop_bounds, sizeof scene.crop_bounds);
-  memcpy(scene.clip_planes, c->options.clip_planes, sizeof scene.clip_planes);
+    .crop = c->options.clipping.crop,
+    .clip_plane_count = c->options.clipping.clip_plane_count,
+    .transfer_2d = c->options.optics.transfer_2d,
+    .clip_gradients = c->options.clipping.clip_gradients,
+    .clipped_value = c->options.clipping.clipped_value };
+  memcpy(scene.crop_bounds, c->options.clipping.crop_bounds, sizeof scene.crop_bounds);
+  memcpy(scene.clip_planes, c->options.clipping.clip_planes, sizeof scene.clip_planes);
   return scene;
 }
 

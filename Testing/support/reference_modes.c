@@ -44,16 +44,17 @@ static bool is_kept(const scene* s, const double p[3])
   const stratus_ray_cast_options* o = s->options;
   int region = 0;
   int64_t nearest[3];
-  if (!o->crop && !o->mask) {
+  if (!o->clipping.crop && !o->mask.bytes) {
     return true;
   }
   for (int a = 2; a >= 0; --a) {
-    const double low = reference_axis_crop(v, a, o->crop_bounds[2 * a]), high = reference_axis_crop(v, a, o->crop_bounds[2 * a + 1]);
+    const double low = reference_axis_crop(v, a, o->clipping.crop_bounds[2 * a]),
+                 high = reference_axis_crop(v, a, o->clipping.crop_bounds[2 * a + 1]);
     region = 3 * region + (p[a] < low ? 0 : p[a] > high ? 2 : 1);
     nearest[a] = reference_axis_find(v, a, p[a]).nearest;
   }
-  return (!o->crop || (o->crop_regions >> region & 1)) &&
-    (!o->mask || o->mask[(nearest[2] * v->dimensions[1] + nearest[1]) * v->dimensions[0] + nearest[0]]);
+  return (!o->clipping.crop || (o->clipping.crop_regions >> region & 1)) &&
+    (!o->mask.bytes || o->mask.bytes[(nearest[2] * v->dimensions[1] + nearest[1]) * v->dimensions[0] + nearest[0]]);
 }
 
 /* The values around the last position, which are read anew where a ray enters another cell. */
@@ -71,7 +72,7 @@ typedef struct kept_cell {
 static void read_cell(const scene* s, const int64_t at[3], kept_cell* cell)
 {
   const stratus_volume* v = s->volume;
-  const int corners = s->options->interpolation == STRATUS_INTERPOLATION_NEAREST ? 1 : 8;
+  const int corners = s->options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST ? 1 : 8;
   memcpy(cell->at, at, sizeof cell->at);
   cell->hidden = cell_is_hidden(v, at);
   for (int corner = 0; corner < corners; ++corner) {
@@ -93,7 +94,7 @@ static double mix(double a, double b, double t)
 /* Returns the field at p, or NAN where it is hidden. */
 static double field_at(const scene* s, const double p[3], kept_cell* cell)
 {
-  const bool is_nearest = s->options->interpolation == STRATUS_INTERPOLATION_NEAREST;
+  const bool is_nearest = s->options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST;
   int64_t at[3];
   double t[3];
   for (int a = 0; a < 3; ++a) {
@@ -224,9 +225,9 @@ static int cut_line(const scene* s, const line* l, double cut[CUTS])
 {
   int count = 0;
   cut[count++] = l->begin;
-  for (int side = 0; s->options->crop && side < 6; ++side) {
+  for (int side = 0; s->options->clipping.crop && side < 6; ++side) {
     const int a = side / 2;
-    const double place = reference_axis_crop(s->volume, a, s->options->crop_bounds[side]);
+    const double place = reference_axis_crop(s->volume, a, s->options->clipping.crop_bounds[side]);
     const double t = (place - l->origin[a]) / l->direction[a];
     int at = count;
     if (!(t > l->begin && t < l->end)) {
@@ -329,7 +330,7 @@ static void draw_sum(const scene* s, const line* l, double step, float rgba[4], 
     double p[3], color[4];
     point_on(l, all.t, p);
     const double value = field_at(s, p, &all.cell);
-    if (isnan(value) || (mean && !(value >= s->options->average_range[0] && value <= s->options->average_range[1]))) {
+    if (isnan(value) || (mean && !(value >= s->options->optics.average_range[0] && value <= s->options->optics.average_range[1]))) {
       continue;
     }
     color_at(s->transfer, value, color);
@@ -422,8 +423,8 @@ static void draw_surfaces(const scene* s, const line* l, float rgba[4], float* d
       ends.t[part] = from + (to - from) * part / PARTS;
       ends.value[part] = field_on(s, l, ends.t[part], &cell);
     }
-    for (int n = 0; n < s->options->contour_count && count < CROSSINGS - PARTS - 1; ++n) {
-      count += cross_cell(s, l, &ends, s->options->contours[n], before, &cell, found + count);
+    for (int n = 0; n < s->options->optics.contour_count && count < CROSSINGS - PARTS - 1; ++n) {
+      count += cross_cell(s, l, &ends, s->options->optics.contours[n], before, &cell, found + count);
     }
     before = ends.value[PARTS];
   }

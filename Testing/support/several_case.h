@@ -57,8 +57,8 @@ static inline void several_create(stratus_context* context, several_case* m, int
     several_color(c, n);
     c->transfer.unit_distance = case_uniform(&s, 1.5, 6.0);
     c->volume.cell_centered = case_random(&s) % 3 == 0;
-    c->options.sampling = case_random(&s) % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
-    c->options.sample_distance = 0.2;
+    c->options.sampling.rule = case_random(&s) % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+    c->options.sampling.distance = 0.2;
   }
   const double eye[3] = { case_uniform(&s, -60, 60), case_uniform(&s, 30, 70), case_uniform(&s, -60, 60) }, focal[3] = { 0, 0, 0 },
                up[3] = { 0.1, 0.2, 1 };
@@ -140,12 +140,12 @@ static inline double several_psnr(const char* what, stratus_context* context, co
     scenes[n] = case_scene(&m->of[n]);
     scenes[n].camera = &m->of[0].camera;
     scenes[n].opaque_depth = m->of[0].opaque_depth;
-    scenes[n].shading = m->of[n].options.shade || m->of[n].options.materials ? &m->of[n].options.shading : NULL;
-    scenes[n].materials = m->of[n].options.materials;
-    scenes[n].dependent = m->of[n].options.dependent;
-    scenes[n].mean_components = m->of[n].options.mean_components;
-    scenes[n].labels = m->of[n].options.mask;
-    scenes[n].label_count = m->of[n].options.label_count;
+    scenes[n].shading = m->of[n].options.light.shade || m->of[n].options.light.materials ? &m->of[n].options.light.shading : NULL;
+    scenes[n].materials = m->of[n].options.light.materials;
+    scenes[n].dependent = m->of[n].options.optics.dependent;
+    scenes[n].mean_components = m->of[n].options.optics.mean_components;
+    scenes[n].labels = m->of[n].options.mask.bytes;
+    scenes[n].label_count = m->of[n].options.mask.label_count;
     scenes[n].transfer = m->transfers[n] ? m->transfers[n] : scenes[n].transfer;
   }
   several_draw(context, m, p);

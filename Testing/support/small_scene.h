@@ -102,25 +102,25 @@ static inline stratus_ray_cast_options small_setting(int index)
   static const stratus_mode modes[] = { STRATUS_MODE_MAXIMUM, STRATUS_MODE_AVERAGE, STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE,
     STRATUS_MODE_COMPOSITE, STRATUS_MODE_SLICE, STRATUS_MODE_COMPOSITE };
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
-  options.structure = (stratus_structure)(index % 5);
-  options.sampling = index == 5 ? STRATUS_SAMPLING_AUTO : index % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
-  options.block_size = index == 3 ? 2 : 0;
-  options.interpolation = index == 7 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-  options.audit = index == 6;
+  options.skipping.structure = (stratus_structure)(index % 5);
+  options.sampling.rule = index == 5 ? STRATUS_SAMPLING_AUTO : index % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+  options.skipping.block_size = index == 3 ? 2 : 0;
+  options.sampling.interpolation = index == 7 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+  options.skipping.audit = index == 6;
   if (index >= 8) {
     options.mode = modes[index - 8];
-    options.contour_count = 1;
-    options.contours[0] = 1e6 + 0.5;
-    options.mask = index % 2 ? small_mask() : NULL;
-    options.crop = index == 12;
-    options.crop_regions = STRATUS_CROP_ALL - STRATUS_CROP_INSIDE; /* all regions but the middle one */
+    options.optics.contour_count = 1;
+    options.optics.contours[0] = 1e6 + 0.5;
+    options.mask.bytes = index % 2 ? small_mask() : NULL;
+    options.clipping.crop = index == 12;
+    options.clipping.crop_regions = STRATUS_CROP_ALL - STRATUS_CROP_INSIDE; /* all regions but the middle one */
     for (int side = 0; index == 12 && side < 6; ++side) {
-      options.crop_bounds[side] = side % 2 ? 3.0 : 2.0;
+      options.clipping.crop_bounds[side] = side % 2 ? 3.0 : 2.0;
     }
-    options.jitter = index == 12;
+    options.sampling.jitter = index == 12;
     options.slice = (stratus_slice){ .center = { 2.0, 2.0, 3.0 }, .linear = { 0.2, 0.4, 1.0 } };
-    options.transfer_2d = index == 14 ? small_transfer_2d(0) : NULL;
-    options.sampling = index == 14 ? STRATUS_SAMPLING_MIDPOINT : options.sampling;
+    options.optics.transfer_2d = index == 14 ? small_transfer_2d(0) : NULL;
+    options.sampling.rule = index == 14 ? STRATUS_SAMPLING_MIDPOINT : options.sampling.rule;
   }
   return options;
 }
@@ -129,8 +129,8 @@ static inline stratus_status small_render(stratus_ray_caster* caster, const smal
   int setting, small_picture* picture, stratus_ray_cast_report* report)
 {
   stratus_ray_cast_options options = small_setting(setting);
-  if (options.transfer_2d && transfer == &scene->edited) { /* it holds in place of the function of the value */
-    options.transfer_2d = small_transfer_2d(1);
+  if (options.optics.transfer_2d && transfer == &scene->edited) { /* it holds in place of the function of the value */
+    options.optics.transfer_2d = small_transfer_2d(1);
   }
   const stratus_image image = {
     .width = SMALL_WIDTH, .height = SMALL_HEIGHT, .rgba = picture->rgba, .depth = picture->depth, .samples = picture->samples

@@ -50,7 +50,7 @@ static inline void transfer_2d_case_set(picture_case* c, transfer_2d_case* f, ui
       entry[3] = (float)opacity;
     }
   }
-  c->options.transfer_2d = &f->of;
+  c->options.optics.transfer_2d = &f->of;
 }
 
 /* Gives a case's values a second component, a field of other waves of the same type. */

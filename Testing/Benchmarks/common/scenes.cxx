@@ -249,7 +249,7 @@ std::vector<stratus_transfer> transfers_of(const scene& s)
 
 stratus_shading shading_of(const stratus_camera& camera)
 {
-  stratus_shading shading = stratus_ray_cast_options_default().shading;
+  stratus_shading shading = stratus_ray_cast_options_default().light.shading;
   shading.ambient = 0.1;
   shading.diffuse = 0.7;
   shading.specular = 0.2;

@@ -73,7 +73,7 @@ static double draw(picture* p, int frame)
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
     stratus_ray_cast_report report;
     options.mode = looks[p->look].mode;
-    options.shade = looks[p->look].shade;
+    options.light.shade = looks[p->look].shade;
     check(p->context, stratus_ray_caster_render(p->caster, &p->scene->volume, p->scene->transfers, &camera, &options, &image, &report));
     p->where = strstr(report.why, "drawn on the host") ? "host" : stratus_context_device(p->context);
   } else {

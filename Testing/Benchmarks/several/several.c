@@ -171,8 +171,8 @@ static void measure(stratus_context* context, const char* const group[MEMBERS], 
     for (int n = 0; n < count; ++n) {
       stratus_ray_cast_options alike = m[n].options;
       if (reports[n].sampling != STRATUS_SAMPLING_LOCAL) { /* options cannot request rule local */
-        alike.sampling = reports[n].sampling;
-        alike.sample_distance = reports[n].sample_distance;
+        alike.sampling.rule = reports[n].sampling;
+        alike.sampling.distance = reports[n].sample_distance;
       }
       sums[0] += single(context, m[n].by_default, &m[n], &m[n].options, &camera, size, rgba, &samples[0]);
       sums[1] += single(context, m[n].alike, &m[n], &alike, &camera, size, rgba, &samples[1]);

@@ -111,8 +111,8 @@ static void draw(stratus_context* context, stratus_ray_caster* caster, const vie
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
   const stratus_image image = { .width = s->size, .height = s->size, .rgba = rgba };
   const stratus_camera camera = camera_at(v, frame, s->frames);
-  options.structure = ways[way].structure;
-  options.block_size = ways[way].block_size;
+  options.skipping.structure = ways[way].structure;
+  options.skipping.block_size = ways[way].block_size;
   const double wall = clock_ms(CLOCK_MONOTONIC), cpu = clock_ms(CLOCK_PROCESS_CPUTIME_ID);
   check(context, stratus_ray_caster_render(caster, v->volume, v->transfers, &camera, &options, &image, report));
   sum->cpu += clock_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu;

@@ -36,8 +36,8 @@ static void draw(stratus_context* context, const stratus_scene* scene, int shade
   stratus_ray_caster* caster = NULL;
   stratus_camera camera;
   double bounds[6];
-  options.shade = shade;
-  options.tolerance = tolerance;
+  options.light.shade = shade;
+  options.sampling.tolerance = tolerance;
   check(context, stratus_ray_caster_create(context, &caster));
   check(context, stratus_volume_bounds(context, &scene->volume, bounds));
   check(context, stratus_scene_camera(context, bounds, scene->up_axis, 0, 0, 1.0, &camera));

@@ -79,17 +79,17 @@ static double draw(stratus_context* context, stratus_type type, const double* op
   volume.type = type;
   volume.values = &values;
   volume.dimensions[0] = volume.dimensions[1] = volume.dimensions[2] = SIDE;
-  options.sampling = sampling;
-  options.interpolation = interpolation;
-  options.sample_distance = 0.25;
-  options.termination = 1.0;
-  options.audit = 1;
+  options.sampling.rule = sampling;
+  options.sampling.interpolation = interpolation;
+  options.sampling.distance = 0.25;
+  options.sampling.termination = 1.0;
+  options.skipping.audit = 1;
   assert_int_equal(stratus_camera_parallel(context, eye, focal, up, 0.6 * SIDE, 1.0, &camera), STRATUS_OK);
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   const int first = all ? STRATUS_STRUCTURE_NONE : STRATUS_STRUCTURE_OCTANT;
   for (int structure = first; structure <= (all ? STRATUS_STRUCTURE_HYBRID : STRATUS_STRUCTURE_OCTANT); ++structure) {
     stratus_ray_cast_report report;
-    options.structure = (stratus_structure)structure;
+    options.skipping.structure = (stratus_structure)structure;
     if (stratus_ray_caster_render(caster, &volume, &transfer, &camera, &options, &image, &report) != STRATUS_OK) {
       fail_msg("%s", stratus_context_message(context));
     }
@@ -204,15 +204,15 @@ static void each_of_several_functions_is_resolved(void** state)
     volume.components = 1 + components;
     volume.value_stride = 1 + components;
     volume.dimensions[0] = volume.dimensions[1] = volume.dimensions[2] = SIDE;
-    options.sample_distance = 0.25;
-    options.termination = 1.0;
-    options.audit = 1;
-    options.mask = components ? NULL : mask;
-    options.label_count = components ? 0 : 2;
+    options.sampling.distance = 0.25;
+    options.sampling.termination = 1.0;
+    options.skipping.audit = 1;
+    options.mask.bytes = components ? NULL : mask;
+    options.mask.label_count = components ? 0 : 2;
     assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
     for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
       stratus_ray_cast_report report;
-      options.structure = (stratus_structure)structure;
+      options.skipping.structure = (stratus_structure)structure;
       if (stratus_ray_caster_render(caster, &volume, transfer, &camera, &options, &image, &report) != STRATUS_OK) {
         fail_msg("%s", stratus_context_message(*state));
       }

@@ -66,8 +66,8 @@ static void oracle_ray(const oracle* o, int x, int y, double from[3], double alo
     from[a] = camera->eye[a] + (camera->parallel ? sideways : 0.0);
     along[a] = camera->forward[a] + (camera->parallel ? 0.0 : sideways);
   }
-  for (int p = 0; p < o->c->options.clip_plane_count; ++p) {
-    const double* plane = o->c->options.clip_planes[p];
+  for (int p = 0; p < o->c->options.clipping.clip_plane_count; ++p) {
+    const double* plane = o->c->options.clipping.clip_planes[p];
     const double height = plane[0] * from[0] + plane[1] * from[1] + plane[2] * from[2] + plane[3];
     const double slope = plane[0] * along[0] + plane[1] * along[1] + plane[2] * along[2];
     *begin = slope > 0.0 ? fmax(*begin, -height / slope) : *begin;
@@ -115,11 +115,11 @@ static double oracle_hit(const oracle* o, int x, int y, size_t* voxel, bool* dou
   stratus_matrix_point(o->world_to_local, world, from);
   stratus_matrix_vector(o->world_to_local, toward, along);
   *doubtful = false;
-  if (o->c->options.crop) {
+  if (o->c->options.clipping.crop) {
     double lo[3], hi[3];
     for (int a = 0; a < 3; ++a) {
-      lo[a] = o->c->options.crop_bounds[2 * a] - o->c->volume.origin[a];
-      hi[a] = o->c->options.crop_bounds[2 * a + 1] - o->c->volume.origin[a];
+      lo[a] = o->c->options.clipping.crop_bounds[2 * a] - o->c->volume.origin[a];
+      hi[a] = o->c->options.clipping.crop_bounds[2 * a + 1] - o->c->volume.origin[a];
     }
     if (!slabs(from, along, lo, hi, &begin, &end)) {
       return INFINITY;
@@ -186,18 +186,18 @@ static void create_case(stratus_context* context, uint32_t seed, picture_case* c
   for (int a = 0; a < 6; ++a) {
     const int axis = a / 2;
     const double wide = c->volume.spacing[axis] * (double)c->volume.dimensions[axis];
-    c->options.crop_bounds[a] = c->volume.origin[axis] + wide * (a % 2 ? case_uniform(&s, 0.5, 1.1) : case_uniform(&s, -0.1, 0.4));
+    c->options.clipping.crop_bounds[a] = c->volume.origin[axis] + wide * (a % 2 ? case_uniform(&s, 0.5, 1.1) : case_uniform(&s, -0.1, 0.4));
   }
-  if (c->options.clip_plane_count) { /* through the middle */
+  if (c->options.clipping.clip_plane_count) { /* through the middle */
     double bounds[6];
     assert_int_equal(stratus_volume_bounds(context, &c->volume, bounds), STRATUS_OK);
-    c->options.clip_planes[0][3] = 0.0;
+    c->options.clipping.clip_planes[0][3] = 0.0;
     for (int a = 0; a < 3; ++a) {
-      c->options.clip_planes[0][3] -= c->options.clip_planes[0][a] * 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
+      c->options.clipping.clip_planes[0][3] -= c->options.clipping.clip_planes[0][a] * 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
     }
   }
   c->options.mode = STRATUS_MODE_FIRST_HIT;
-  c->options.shading.on = 0;
+  c->options.light.shading.on = 0;
 }
 
 static void compare(const picture_case* c, const picture* p, uint32_t seed, int* hits, int* doubts)
@@ -241,7 +241,7 @@ static void pixels_show_the_first_voxel_of_brute_force(void** state)
   for (uint32_t seed = 1; seed <= 80; ++seed) {
     picture_case c;
     create_case(context, seed, &c);
-    c.options.structure = seed % 2 ? STRATUS_STRUCTURE_NONE : STRATUS_STRUCTURE_HYBRID;
+    c.options.skipping.structure = seed % 2 ? STRATUS_STRUCTURE_NONE : STRATUS_STRUCTURE_HYBRID;
     case_render(context, &c, &first);
     compare(&c, &first, seed, &hits, &doubts);
     case_destroy(&c);
@@ -265,12 +265,12 @@ static void voxels_of_stretched_grids_are_met_where_they_are(void** state)
     for (int a = 0; a < 3; ++a) {
       falling += c.volume.coordinates[a] && c.volume.coordinates[a][0] > c.volume.coordinates[a][1];
     }
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(contexts[0], &c, &first);
     compare(&c, &first, seed, &hits, &doubts);
-    c.options.audit = 1;
+    c.options.skipping.audit = 1;
     for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-      c.options.structure = (stratus_structure)structure;
+      c.options.skipping.structure = (stratus_structure)structure;
       case_render(contexts[structure % 2], &c, &second);
       assert_int_equal(second.report.differing_pixels, 0);
       assert_memory_equal(first.rgba, second.rgba, sizeof first.rgba);
@@ -296,8 +296,8 @@ static void equal_coordinates_draw_the_picture_of_the_image(void** state)
     case_create(context, &c, STRATUS_INT16, 12, 11, 10, 5);
     c.options.mode = STRATUS_MODE_FIRST_HIT;
     c.volume.cell_centered = kind & 1;
-    c.options.shading.on = kind >> 1 & 1;
-    c.options.normals = kind >> 2 ? STRATUS_NORMALS_GRADIENT : STRATUS_NORMALS_FACES;
+    c.options.light.shading.on = kind >> 1 & 1;
+    c.options.light.normals = kind >> 2 ? STRATUS_NORMALS_GRADIENT : STRATUS_NORMALS_FACES;
     for (int a = 0; a < 3; ++a) {
       c.volume.spacing[a] = 0.5;
     }
@@ -308,7 +308,7 @@ static void equal_coordinates_draw_the_picture_of_the_image(void** state)
     assert_true(case_lit(&first) > 300);
     assert_memory_equal(first.depth, second.depth, sizeof first.depth);
     for (int at = 0; at < 4 * CASE_PIXELS; ++at) {
-      assert_true(fabsf(first.rgba[at] - second.rgba[at]) <= (c.options.shading.on ? 1e-5f : 0.0f));
+      assert_true(fabsf(first.rgba[at] - second.rgba[at]) <= (c.options.light.shading.on ? 1e-5f : 0.0f));
     }
     case_destroy(&c);
   }
@@ -334,9 +334,9 @@ static void gradients_are_those_of_the_field(void** state)
     c.volume.cell_centered = cells;
     c.volume.values = values;
     c.options.mode = STRATUS_MODE_FIRST_HIT;
-    c.options.normals = STRATUS_NORMALS_GRADIENT;
-    c.options.shading = (stratus_shading){ .on = 1, .diffuse = 1.0, .specular_power = 1.0, .light_count = 1 };
-    c.options.shading.lights[0] = (stratus_light){ .vector = { 0.48, 0.64, 0.6 }, .color = { 1.0, 1.0, 1.0 } };
+    c.options.light.normals = STRATUS_NORMALS_GRADIENT;
+    c.options.light.shading = (stratus_shading){ .on = 1, .diffuse = 1.0, .specular_power = 1.0, .light_count = 1 };
+    c.options.light.shading.lights[0] = (stratus_light){ .vector = { 0.48, 0.64, 0.6 }, .color = { 1.0, 1.0, 1.0 } };
     c.transfer.opacity = opacity;
     c.transfer.opacity_count = 2;
     c.transfer.color = color;
@@ -369,7 +369,7 @@ static void gradients_are_those_of_the_field(void** state)
       for (int a = 0; a < 3; ++a) {
         length += slope[a] * slope[a];
         facing += slope[a] * toward[a];
-        cosine += slope[a] * c.options.shading.lights[0].vector[a];
+        cosine += slope[a] * c.options.light.shading.lights[0].vector[a];
       }
       const double expected = fmax(0.0, (facing > 0.0 ? -cosine : cosine) / sqrt(length));
       assert_true(fabs((double)first.rgba[4 * pixel] - expected) < 2e-6); /* values are read as floats */

@@ -11,7 +11,7 @@ static void first_hit_case(stratus_context* context, uint32_t seed, picture_case
 {
   case_create_random(context, seed, c);
   c->options.mode = STRATUS_MODE_FIRST_HIT;
-  c->options.normals = (stratus_normals)(seed % 2);
+  c->options.light.normals = (stratus_normals)(seed % 2);
 }
 
 static void assert_same(const picture* a, const picture* b)
@@ -31,12 +31,12 @@ static void structures_and_threads_change_no_bit(void** state)
   for (uint32_t seed = 1; seed <= 60; ++seed) {
     picture_case c;
     first_hit_case(contexts[0], seed, &c);
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(contexts[0], &c, &first);
     lit += case_lit(&first) > 0;
-    c.options.audit = 1;
+    c.options.skipping.audit = 1;
     for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-      c.options.structure = (stratus_structure)structure;
+      c.options.skipping.structure = (stratus_structure)structure;
       case_render(contexts[structure % 2], &c, &second);
       assert_same(&first, &second);
       assert_int_equal(second.report.differing_pixels, 0);
@@ -111,18 +111,18 @@ static void only_what_changed_is_built_anew(void** state)
   color[1] = 1.0;
   c.transfer.color = color;
   c.transfer.unit_distance = 3.0;
-  c.options.normals = STRATUS_NORMALS_GRADIENT;
+  c.options.light.normals = STRATUS_NORMALS_GRADIENT;
   case_render_with(context, caster, &c, &first);
   expect_builds(&first, 1, 1);
   assert_true(memcmp(first.rgba, second.rgba, sizeof first.rgba) != 0);
 
-  c.options.structure = STRATUS_STRUCTURE_OCTANT;
+  c.options.skipping.structure = STRATUS_STRUCTURE_OCTANT;
   case_render_with(context, caster, &c, &first);
   expect_builds(&first, 1, 2);
-  c.options.structure = STRATUS_STRUCTURE_NONE;
+  c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
   case_render_with(context, caster, &c, &first);
   expect_builds(&first, 1, 2);
-  c.options.structure = STRATUS_STRUCTURE_HYBRID;
+  c.options.skipping.structure = STRATUS_STRUCTURE_HYBRID;
   memcpy(opacity, c.opacity, sizeof opacity);
   opacity[2] += 0.5;
   opacity[4] += 0.5;
@@ -209,14 +209,14 @@ static void a_tree_that_comes_with_the_data_is_used(void** state)
   case_camera(o.context, &o.c, 2, 0);
   expect_offered(&o, 1);
   expect_builds(&first, 0, 0);
-  o.c.options.audit = 1;
+  o.c.options.skipping.audit = 1;
   expect_offered(&o, 1);
   assert_int_equal(first.report.differing_pixels, 0);
   expect_builds(&first, 1, 0); /* the audit walks from voxel to voxel */
-  o.c.options.audit = 0;
-  o.c.options.structure = STRATUS_STRUCTURE_DISTANCE; /* the options request another structure */
+  o.c.options.skipping.audit = 0;
+  o.c.options.skipping.structure = STRATUS_STRUCTURE_DISTANCE; /* the options request another structure */
   expect_offered(&o, 0);
-  o.c.options.structure = STRATUS_STRUCTURE_HYBRID;
+  o.c.options.skipping.structure = STRATUS_STRUCTURE_HYBRID;
   expect_offered(&o, 1);
   stratus_ray_caster_release(o.caster);
   expect_offered(&o, 1);
@@ -294,16 +294,17 @@ static void what_makes_no_sense_is_refused(void** state)
   refuse(context, &c, word)
   REFUSE(c.options.mode = (stratus_mode)(STRATUS_MODE_SLICE + 1), "mode");
   REFUSE(c.options.mode = (stratus_mode)-1, "mode");
-  REFUSE(c.options.normals = (stratus_normals)2, "normals");
-  REFUSE(c.options.shading.ambient = -0.1, "ambient");
-  REFUSE(c.options.shading.diffuse = (double)NAN, "diffuse");
-  REFUSE(c.options.shading.specular = (double)INFINITY, "specular");
-  REFUSE(c.options.shading.specular_power = -1.0, "power");
-  REFUSE(c.options.shading.light_count = 9, "0..8");
-  REFUSE(c.options.shading.light_count = -2, "0..8");
-  REFUSE(c.options.shading.light_count = 1, "direction");
-  REFUSE((c.options.shading.light_count = 1, c.options.shading.lights[0].vector[1] = (double)NAN), "light 0");
-  REFUSE((c.options.shading.light_count = 1, c.options.shading.lights[0].positional = 1, c.options.shading.lights[0].color[2] = -1.0),
+  REFUSE(c.options.light.normals = (stratus_normals)2, "normals");
+  REFUSE(c.options.light.shading.ambient = -0.1, "ambient");
+  REFUSE(c.options.light.shading.diffuse = (double)NAN, "diffuse");
+  REFUSE(c.options.light.shading.specular = (double)INFINITY, "specular");
+  REFUSE(c.options.light.shading.specular_power = -1.0, "power");
+  REFUSE(c.options.light.shading.light_count = 9, "0..8");
+  REFUSE(c.options.light.shading.light_count = -2, "0..8");
+  REFUSE(c.options.light.shading.light_count = 1, "direction");
+  REFUSE((c.options.light.shading.light_count = 1, c.options.light.shading.lights[0].vector[1] = (double)NAN), "light 0");
+  REFUSE((c.options.light.shading.light_count = 1, c.options.light.shading.lights[0].positional = 1,
+           c.options.light.shading.lights[0].color[2] = -1.0),
     "light 0");
   c.options = fine;
   c.camera.far_k = -1.0;
@@ -326,7 +327,7 @@ static void nothing_to_hit_is_an_empty_picture(void** state)
   c.transfer.opacity = nothing;
   c.transfer.opacity_count = 1;
   for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-    c.options.structure = (stratus_structure)structure;
+    c.options.skipping.structure = (stratus_structure)structure;
     memset(&first, 0xff, sizeof first);
     case_render(context, &c, &first);
     assert_int_equal(case_lit(&first), 0);
@@ -349,7 +350,7 @@ static void memory_that_runs_out_is_an_error_and_no_more(void** state)
   picture_case c;
   case_create(context, &c, STRATUS_FLOAT64, 9, 8, 7, 3);
   c.options.mode = STRATUS_MODE_FIRST_HIT;
-  c.options.audit = 1;
+  c.options.skipping.audit = 1;
   c.camera.right[0] *= 3.0;
   case_render(context, &c, &first);
   size_t size = 0;

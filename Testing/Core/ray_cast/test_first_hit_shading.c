@@ -9,7 +9,7 @@ static picture first;
 /* White surfaces, lit by a red light from +x, a green one from +y, a blue one from +z: the colour is the normal where that is positive. */
 static void light_normals(picture_case* c)
 {
-  stratus_shading* shading = &c->options.shading;
+  stratus_shading* shading = &c->options.light.shading;
   static const double white[4] = { 0, 1, 1, 1 };
   c->transfer.color = white;
   c->transfer.color_count = 1;
@@ -108,22 +108,22 @@ static void cuts_have_the_normal_of_what_cuts(void** state)
   look_from(context, &c, from, middle, 1.2);
   case_render(context, &c, &first);
   assert_true(center[2] > 0.999999f && center[0] == 0.0f && center[1] == 0.0f);
-  c.options.clip_plane_count = 1; /* keeps x + 2 y + 2 z <= 5, through the middle: normal (1, 2, 2)/3 */
+  c.options.clipping.clip_plane_count = 1; /* keeps x + 2 y + 2 z <= 5, through the middle: normal (1, 2, 2)/3 */
   const double plane[4] = { -1, -2, -2, 5 };
-  memcpy(c.options.clip_planes[0], plane, sizeof plane);
+  memcpy(c.options.clipping.clip_planes[0], plane, sizeof plane);
   for (int normals = 0; normals < 2; ++normals) {
-    c.options.normals = (stratus_normals)normals;
+    c.options.light.normals = (stratus_normals)normals;
     case_render(context, &c, &first);
     assert_true(fabs(center[0] - 1.0 / 3) < 1e-6 && fabs(center[1] - 2.0 / 3) < 1e-6 && fabs(center[2] - 2.0 / 3) < 1e-6);
   }
-  c.options.clip_plane_count = 0;
-  c.options.crop = 1; /* the crop's upper z */
+  c.options.clipping.clip_plane_count = 0;
+  c.options.clipping.crop = 1; /* the crop's upper z */
   const double crop[6] = { 0, 2, 0, 2, 0, 1.1 };
-  memcpy(c.options.crop_bounds, crop, sizeof crop);
+  memcpy(c.options.clipping.crop_bounds, crop, sizeof crop);
   case_render(context, &c, &first);
   assert_true(center[2] > 0.999999f && center[0] == 0.0f);
   assert_true(fabs((double)first.depth[CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2] - 9.9) < 1e-5);
-  c.options.crop = 0;
+  c.options.clipping.crop = 0;
   const double slanted[3] = { 3, 0, 4 };
   look_from(context, &c, slanted, middle, 0.1);
   c.camera.near_k = 5.0; /* begins in the middle: against the ray, which has length 1 */
@@ -150,7 +150,7 @@ static void gradients_are_the_fields(void** state)
   c.transfer.opacity = opacity;
   c.transfer.opacity_count = 2;
   c.options.mode = STRATUS_MODE_FIRST_HIT;
-  c.options.normals = STRATUS_NORMALS_GRADIENT;
+  c.options.light.normals = STRATUS_NORMALS_GRADIENT;
   light_normals(&c);
   const double from[3] = { 50, 50, 50 }, middle[3] = { 2, 4, 13 };
   look_from(context, &c, from, middle, 14.0);
@@ -177,10 +177,10 @@ static void light_adds_up_as_phong_says(void** state)
   c.transfer.color = color;
   const double from[3] = { 0, 0, 10 }, middle[3] = { 1, 1, 1 };
   look_from(context, &c, from, middle, 0.001); /* all rays meet (1, 1, 1.5) */
-  c.options.shading = stratus_ray_cast_options_default().shading;
+  c.options.light.shading = stratus_ray_cast_options_default().light.shading;
   case_render(context, &c, &first); /* the light at the eye */
   assert_true(fabs(center[0] - 0.5) < 1e-6 && fabs(center[1] - 0.25) < 1e-6 && fabs(center[2] - 0.125) < 1e-6);
-  stratus_shading* shading = &c.options.shading;
+  stratus_shading* shading = &c.options.light.shading;
   shading->light_count = 0;
   case_render(context, &c, &first);
   assert_true(fabs(center[0] - 0.05) < 1e-6);

@@ -86,14 +86,14 @@ static const struct {
 static void expect_opaque(
   stratus_context* context, double spacing, const stratus_transfer* transfer, stratus_ray_cast_options* options, int function, int kind)
 {
-  options->structure = STRATUS_STRUCTURE_NONE;
+  options->skipping.structure = STRATUS_STRUCTURE_NONE;
   draw(context, spacing, transfer, options, drawn);
   if (drawn[4 * CENTRE + 3] != 1.0f || fabsf(drawn[4 * CENTRE] - 1.0f) > 1e-6f) {
     fail_msg("function %d, spacing %g, kind %d: alpha %.9g, red %.9g", function, spacing, kind, (double)drawn[4 * CENTRE + 3],
       (double)drawn[4 * CENTRE]);
   }
   for (int structure = STRATUS_STRUCTURE_BLOCK; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-    options->structure = (stratus_structure)structure;
+    options->skipping.structure = (stratus_structure)structure;
     draw(context, spacing, transfer, options, other);
     assert_memory_equal(drawn, other, sizeof drawn);
   }
@@ -107,13 +107,13 @@ static void a_slab_of_opacity_1_is_opaque_at_any_spacing(void** state)
       stratus_transfer transfer = function_of(functions[f].points, functions[f].count);
       for (int kind = 0; kind < 6; ++kind) {
         stratus_ray_cast_options options = stratus_ray_cast_options_default();
-        options.sampling = kind % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
-        options.termination = 1.0;
+        options.sampling.rule = kind % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+        options.sampling.termination = 1.0;
         transfer.gradient = gradient; /* half of an infinite depth is no less */
         transfer.gradient_count = kind / 2 == 1;
-        options.clip_plane_count = kind / 2 == 2; /* the first segment is a part of one */
-        options.clip_planes[0][2] = -1.0;
-        options.clip_planes[0][3] = 12.03 * spacings[s];
+        options.clipping.clip_plane_count = kind / 2 == 2; /* the first segment is a part of one */
+        options.clipping.clip_planes[0][2] = -1.0;
+        options.clipping.clip_planes[0][3] = 12.03 * spacings[s];
         fill_slab(1.0f, 0.0f);
         expect_opaque(*state, spacings[s], &transfer, &options, f, kind);
       }
@@ -141,9 +141,9 @@ static void opacity_1_at_the_value_itself_is_opaque(void** state)
     for (size_t s = 0; f != 2 && s < sizeof spacings / sizeof *spacings; s += few_run() ? 3 : 1) { /* at `top` the last point's .2 counts */
       for (int kind = 0; kind < 3; ++kind) {
         stratus_ray_cast_options options = stratus_ray_cast_options_default();
-        options.sampling = kind == 1 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
-        options.interpolation = kind == 2 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-        options.termination = 1.0;
+        options.sampling.rule = kind == 1 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+        options.sampling.interpolation = kind == 2 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+        options.sampling.termination = 1.0;
         fill_slab(inside, 0.0f);
         values[0] = 255.0f;
         expect_opaque(*state, spacings[s], &transfer, &options, f, kind);
@@ -158,12 +158,12 @@ static void a_narrow_band_of_opacity_1_is_met_on_the_way(void** state)
   static const double bands[] = { 100, 0, 100, 1, 101, 1, 101, 0, 60000, 0, 60000, 1, 60001, 1, 60001, 0 };
   const stratus_transfer transfer = function_of(bands, 8);
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
-  options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
-  options.termination = 1.0;
+  options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
+  options.sampling.termination = 1.0;
   fill_slab(200.0f, 0.0f);
   values[0] = 60001.0f;
   for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-    options.structure = (stratus_structure)structure;
+    options.skipping.structure = (stratus_structure)structure;
     draw(*state, 1e-3, &transfer, &options, drawn);
     if (drawn[4 * CENTRE + 3] != 1.0f) {
       fail_msg("structure %d: alpha %.9g", structure, (double)drawn[4 * CENTRE + 3]);
@@ -187,9 +187,9 @@ static void what_is_nearly_opaque_is_as_translucent_as_it_should_be(void** state
       for (size_t s = 0; s < sizeof spacings / sizeof *spacings; ++s) {
         for (int sampling = STRATUS_SAMPLING_MIDPOINT; sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
           stratus_ray_cast_options options = stratus_ray_cast_options_default();
-          options.sampling = (stratus_sampling)sampling;
-          options.sample_distance = spacings[s]; /* by hand: a tolerance would allow all of an alpha this small */
-          options.termination = 1.0;
+          options.sampling.rule = (stratus_sampling)sampling;
+          options.sampling.distance = spacings[s]; /* by hand: a tolerance would allow all of an alpha this small */
+          options.sampling.termination = 1.0;
           fill_slab(0.25f, 0.25f);
           values[0] = with ? 1.0f : 0.0f; /* in a corner, for the table to span it */
           draw(*state, spacings[s], &transfer, &options, drawn);
@@ -211,8 +211,8 @@ static void a_peak_that_touches_1_is_no_wall(void** state)
   static const double peak[] = { 0, 0, 0.5, 1, 1, 0 };
   const stratus_transfer transfer = function_of(peak, 3);
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
-  options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
-  options.termination = 1.0;
+  options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
+  options.sampling.termination = 1.0;
   for (int i = 0; i < SIDE * SIDE * SIDE; ++i) {
     values[i] = (float)(i / SIDE / SIDE) / (SIDE - 1);
   }
@@ -231,7 +231,7 @@ static void several_media_are_opaque_where_one_is(void** state)
   const stratus_transfer both[2] = { function_of(all, 1), function_of((const double[]){ 0, 0.1 }, 1) };
   stratus_ray_cast_options options = stratus_ray_cast_options_default();
   stratus_volume volume = stratus_volume_default();
-  options.termination = 1.0;
+  options.sampling.termination = 1.0;
   for (size_t s = 0; s < sizeof spacings / sizeof *spacings; ++s) {
     const stratus_camera camera = look_along_z(*state, spacings[s]);
     const stratus_image image = { .width = WIDTH, .height = WIDTH, .rgba = drawn };

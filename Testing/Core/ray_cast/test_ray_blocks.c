@@ -227,8 +227,8 @@ static void blocks_draw_the_whole(void** state)
     for (int i = 0; i < 4; ++i) { /* and mirrored */
       c.volume.matrix[4 * (i / 2) + i % 2] = turn[i] * (i % 2 && seed % 2 ? -1.0 : 1.0);
     }
-    c.options.sampling = (stratus_sampling)(STRATUS_SAMPLING_MIDPOINT + (int)(seed % 3));
-    c.options.cell_error = 1e-4; /* so that the tolerance, which differs, has no say */
+    c.options.sampling.rule = (stratus_sampling)(STRATUS_SAMPLING_MIDPOINT + (int)(seed % 3));
+    c.options.sampling.cell_error = 1e-4; /* so that the tolerance, which differs, has no say */
     case_camera(*state, &c, (int)(seed % 8), (int)(seed / 8 % 2));
     if (seed % 6 == 5) { /* from inside */
       for (int axis = 0; axis < 3; ++axis) {
@@ -243,10 +243,10 @@ static void blocks_draw_the_whole(void** state)
     case_render(*state, &c, &whole);
     assert_int_equal(draw_blocks(&c, &b, &drawn, NULL), STRATUS_OK);
     const float d = largest_difference();
-    worst[c.options.sampling] = fmaxf(worst[c.options.sampling], d);
+    worst[c.options.sampling.rule] = fmaxf(worst[c.options.sampling.rule], d);
     assert_true(case_lit(&whole) > CASE_PIXELS / 20);
-    if (!(d <= most[c.options.sampling])) {
-      fail_msg("seed %u, %s, %d blocks: %g", seed, stratus_sampling_name(c.options.sampling), b.count, (double)d);
+    if (!(d <= most[c.options.sampling.rule])) {
+      fail_msg("seed %u, %s, %d blocks: %g", seed, stratus_sampling_name(c.options.sampling.rule), b.count, (double)d);
     }
     for (int i = 0; i < CASE_PIXELS; ++i) {
       assert_true(isfinite(whole.depth[i]) == isfinite(drawn.depth[i]) || fabsf(whole.rgba[4 * i + 3] - drawn.rgba[4 * i + 3]) < 1e-5f);
@@ -269,9 +269,9 @@ static void blocks_with_layers_of_others_draw_the_whole_lit(void** state)
     cut b = { .layers = 2 };
     case_create(*state, &c, STRATUS_FLOAT32, 30, 26, 34, seed);
     c.volume.cell_centered = (int)(seed % 2);
-    c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
-    c.options.shade = 1;
-    c.options.shading.specular = 0.4;
+    c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+    c.options.light.shade = 1;
+    c.options.light.shading.specular = 0.4;
     case_camera(*state, &c, (int)(seed % 8), 0);
     cut_at_random(*state, &c, 12, seed, &b);
     case_render(*state, &c, &whole);
@@ -301,8 +301,8 @@ static void other_modes_draw_the_whole(void** state)
     case_create(*state, &c, STRATUS_FLOAT32, 28, 31, 25, seed);
     c.options.mode = modes[seed % 3];
     c.options.slice = (stratus_slice){ .center = { 12.2, 13.1, 11.4 }, .linear = { 0.3, 0.5, -0.7 } };
-    c.options.contour_count = 1;
-    c.options.contours[0] = -19.5;
+    c.options.optics.contour_count = 1;
+    c.options.optics.contours[0] = -19.5;
     case_camera(*state, &c, (int)(seed % 8), (int)(seed % 2));
     cut_at_random(*state, &c, 30, seed, &b);
     case_render(*state, &c, &whole);
@@ -350,7 +350,7 @@ static void what_is_hidden_is_not_drawn(void** state)
   const double solid[8] = { -100, 1, -20, 1, -18, 1, 0, 1 };
   uint64_t samples = 0, hidden = 0;
   memcpy(c.opacity, solid, sizeof solid);
-  c.options.termination = 0.0;
+  c.options.sampling.termination = 0.0;
   c.transfer.color_count = 1; /* a sample that a cut moves has the same colour */
   case_render(*state, &c, &whole);
   assert_int_equal(draw_blocks(&c, &b, &drawn, reports), STRATUS_OK);

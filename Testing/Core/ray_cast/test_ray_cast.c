@@ -38,7 +38,7 @@ static void every_type_is_drawn_nearest(void** state)
   for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; ++type) {
     picture_case c;
     case_create(*state, &c, (stratus_type)type, 29, 24, 32, 70u + (uint32_t)type);
-    c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+    c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
     expect(*state, case_type_names[type], &c, JUMP_DB);
     case_destroy(&c);
   }
@@ -50,7 +50,7 @@ static void values_in_cells_reach_half_a_voxel_further(void** state)
   case_create(*state, &c, STRATUS_FLOAT32, 24, 25, 26, 3);
   c.volume.cell_centered = 1;
   expect(*state, "cell-centred", &c, SMOOTH_DB);
-  c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+  c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
   expect(*state, "cell-centred, nearest", &c, JUMP_DB);
   case_destroy(&c);
 }
@@ -80,7 +80,7 @@ static void cells_with_a_corner_that_is_not_finite_are_transparent(void** state)
       case_store(c.values, c.volume.type, case_random(&seed) % (24 * 24 * 24), bad[i % 3]);
     }
     expect(*state, "not finite", &c, JUMP_DB);
-    c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+    c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
     expect(*state, "not finite, nearest", &c, JUMP_DB);
     case_destroy(&c);
   }
@@ -102,11 +102,11 @@ static void hidden_points_and_cells_are_transparent(void** state)
   c.volume.cell_ghosts = c.cell_ghosts;
   expect(*state, "hidden points and cells", &c, JUMP_DB);
   c.volume.point_ghosts = NULL;
-  c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+  c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
   expect(*state, "hidden cells, nearest", &c, JUMP_DB);
   c.volume.cell_centered = 1;
   expect(*state, "hidden values in cells, nearest", &c, JUMP_DB);
-  c.options.interpolation = STRATUS_INTERPOLATION_LINEAR;
+  c.options.sampling.interpolation = STRATUS_INTERPOLATION_LINEAR;
   expect(*state, "hidden values in cells", &c, JUMP_DB);
   case_destroy(&c);
 }
@@ -158,7 +158,7 @@ static void far_origins_and_tiny_spacings_lose_nothing(void** state)
   for (int a = 0; a < 3; ++a) {
     c.volume.spacing[a] = 1e-6;
   }
-  c.options.sample_distance = 0.25e-6;
+  c.options.sampling.distance = 0.25e-6;
   c.transfer.unit_distance = 1e-6;
   case_camera(*state, &c, 2, 0);
   expect(*state, "spacing of a millionth", &c, SMOOTH_DB);
@@ -177,7 +177,7 @@ static void tiny_units_of_length_stay_finite(void** state)
     static picture p;
     int opaque = 0;
     c.transfer.unit_distance = units[i / 3];
-    c.options.sampling = rules[i % 3];
+    c.options.sampling.rule = rules[i % 3];
     case_render(*state, &c, &p);
     for (size_t at = 0; at < 4 * CASE_PIXELS; ++at) {
       assert_true(p.rgba[at] >= 0.0f && p.rgba[at] <= 1.0f);
@@ -212,15 +212,15 @@ static void crop_planes_and_opaque_geometry_end_rays(void** state)
   case_create(*state, &c, STRATUS_FLOAT32, 30, 30, 30, 12);
   const double crop[6] = { 3.3, 22.1, -5, 25.6, 4.2, 90 };
   const double planes[2][4] = { { 0.7, 0.2, -0.4, -4.0 }, { 0, -1, -0.3, 24.0 } };
-  c.options.crop = 1;
-  memcpy(c.options.crop_bounds, crop, sizeof crop);
+  c.options.clipping.crop = 1;
+  memcpy(c.options.clipping.crop_bounds, crop, sizeof crop);
   expect(*state, "crop", &c, SMOOTH_DB);
-  c.options.clip_plane_count = 2;
-  memcpy(c.options.clip_planes, planes, sizeof planes);
+  c.options.clipping.clip_plane_count = 2;
+  memcpy(c.options.clipping.clip_planes, planes, sizeof planes);
   expect(*state, "crop and planes", &c, SMOOTH_DB);
-  c.options.crop = 0;
+  c.options.clipping.crop = 0;
   expect(*state, "planes", &c, SMOOTH_DB);
-  c.options.clip_plane_count = 0;
+  c.options.clipping.clip_plane_count = 0;
   for (int parallel = 0; parallel < 2; ++parallel) {
     case_camera(*state, &c, 4, parallel);
     c.camera.near_k = 50.0;
@@ -257,11 +257,11 @@ static void preintegration_keeps_narrow_peaks(void** state)
   case_create(*state, &c, STRATUS_FLOAT32, 30, 30, 30, 14);
   const double peak[8] = { -20.4, 0, -20.1, 0.9, -19.8, 0, -10, 0 };
   memcpy(c.opacity, peak, sizeof peak);
-  c.options.sample_distance = 0.5;
-  c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+  c.options.sampling.distance = 0.5;
+  c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
   expect(*state, "peak, pre-integrated", &c, 40.0);
   const double preintegrated = case_psnr("peak, pre-integrated", *state, &c, &drawn);
-  c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
+  c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
   const double midpoint = case_psnr("peak, midpoint", *state, &c, &drawn);
   assert_true(preintegrated > midpoint);
   case_destroy(&c);
@@ -301,13 +301,13 @@ static void indices_beyond_32_bits_do_not_overflow(void** state)
     c.volume.dimensions[a] = n;
   }
   c.volume.values = values;
-  c.options.block_size = 32;
+  c.options.skipping.block_size = 32;
   for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-    c.options.structure = (stratus_structure)structure;
+    c.options.skipping.structure = (stratus_structure)structure;
     case_render(*state, &c, &drawn);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
     db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
-    print_message("             2048^3, %s: %.1f dB\n", stratus_structure_name(c.options.structure), db);
+    print_message("             2048^3, %s: %.1f dB\n", stratus_structure_name(c.options.skipping.structure), db);
     assert_true(db >= SMOOTH_DB - 10.0); /* the cube's own faces are steep */
   }
   munmap(values, (size_t)(n * n * n));

@@ -49,7 +49,7 @@ static void expect_bytes(const char* device, uint32_t seeds)
   for (uint32_t seed = 1; seed <= seeds; ++seed) {
     picture_case c;
     case_create_random(context, seed, &c);
-    c.options.audit = seed % 3 == 0; /* draws again, but not into the caller's bytes */
+    c.options.skipping.audit = seed % 3 == 0; /* draws again, but not into the caller's bytes */
     render_bytes(context, &c);
     const int beyond = expect_rounded(seed);
     lit += case_lit(&shown) > 0;

@@ -50,9 +50,9 @@ static void every_instruction_set_mixes_several_volumes_alike(void** state)
   for (uint32_t seed = 0; seed < 20; ++seed) {
     several_case m;
     several_create(context, &m, 2 + (int)(seed % 4), 500 + seed);
-    m.of[1].options.sample_distance = 0.9;
-    m.of[0].options.jitter = seed % 3 == 0;
-    m.of[1].options.shade = seed % 2 == 0;
+    m.of[1].options.sampling.distance = 0.9;
+    m.of[0].options.sampling.jitter = seed % 3 == 0;
+    m.of[1].options.light.shade = seed % 2 == 0;
     context->isa = best_isa;
     several_draw(context, &m, &best);
     assert_true(case_lit(&best) > 100);

@@ -29,17 +29,17 @@ static void structures_change_no_bit(void** state)
     picture_case c;
     char what[128];
     case_create_random(context, seed, &c);
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(context, &c, &first);
     lit += case_lit(&first) > 0;
     assert_int_equal(first.report.skipped, 0);
-    c.options.audit = 1;
+    c.options.skipping.audit = 1;
     for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-      c.options.structure = (stratus_structure)structure;
-      c.options.block_size = 2 << (seed + (uint32_t)structure) % 5;
+      c.options.skipping.structure = (stratus_structure)structure;
+      c.options.skipping.block_size = 2 << (seed + (uint32_t)structure) % 5;
       case_render(context, &c, &second);
-      snprintf(what, sizeof what, "seed %u, %s, blocks of %d, %s", seed, stratus_structure_name(c.options.structure), c.options.block_size,
-        case_type_names[c.volume.type]);
+      snprintf(what, sizeof what, "seed %u, %s, blocks of %d, %s", seed, stratus_structure_name(c.options.skipping.structure),
+        c.options.skipping.block_size, case_type_names[c.volume.type]);
       expect_same(what, &first, &second);
       assert_int_equal(second.report.differing_pixels, 0);
       skipped += second.report.skipped;
@@ -74,11 +74,11 @@ static void trees_that_come_with_the_data_change_no_bit(void** state)
     char what[128];
     stratus_ray_caster* caster = NULL;
     case_create_random(context, seed, &c);
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(context, &c, &first);
     assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
     offer_tree(context, caster, &c, methods[seed % 4], 1 + (int)(seed % 5));
-    c.options.structure = STRATUS_STRUCTURE_HYBRID;
+    c.options.skipping.structure = STRATUS_STRUCTURE_HYBRID;
     case_render_with(context, caster, &c, &second);
     snprintf(what, sizeof what, "seed %u, %s tree, %s", seed, stratus_tree_method_name(methods[seed % 4]), case_type_names[c.volume.type]);
     expect_same(what, &first, &second);
@@ -99,7 +99,7 @@ static void threads_change_no_bit(void** state)
     picture_case c;
     char what[64];
     case_create_random(contexts[0], seed, &c);
-    c.options.structure = STRATUS_STRUCTURE_DISTANCE; /* an automatic one follows from times, and counts follow from it */
+    c.options.skipping.structure = STRATUS_STRUCTURE_DISTANCE; /* an automatic one follows from times, and counts follow from it */
     case_render(contexts[0], &c, &first);
     for (int t = 1; t < 3; ++t) {
       case_render(contexts[t], &c, &second);
@@ -163,12 +163,12 @@ static void rules_that_take_turns_keep_their_tables(void** state)
     stratus_ray_caster* used = NULL;
     picture_case c;
     case_create_random(context, seed, &c);
-    c.options.interpolation = STRATUS_INTERPOLATION_LINEAR;
-    c.options.sample_distance = 0.7;
-    c.options.shade = seed % 2;
+    c.options.sampling.interpolation = STRATUS_INTERPOLATION_LINEAR;
+    c.options.sampling.distance = 0.7;
+    c.options.light.shade = seed % 2;
     assert_int_equal(stratus_ray_caster_create(context, &used), STRATUS_OK);
     for (int turn = 0; turn < 4; ++turn) {
-      c.options.sampling = rules[turn % 2];
+      c.options.sampling.rule = rules[turn % 2];
       case_render(context, &c, &first);
       case_render_with(context, used, &c, &second);
       expect_same("a rule that returns", &first, &second);

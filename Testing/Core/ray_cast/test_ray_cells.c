@@ -53,7 +53,7 @@ static void the_error_falls_with_the_option(void** state)
     picture_case c;
     double db[3];
     case_create(*state, &c, STRATUS_FLOAT32, 24, 22, 26, 300u + (uint32_t)kind);
-    c.options.sampling = STRATUS_SAMPLING_CELLS;
+    c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
     set_function(&c, kind % KINDS);
     if (kind >= KINDS) {
       roughen(&c, 0.5, 17u + (uint32_t)kind);
@@ -61,7 +61,7 @@ static void the_error_falls_with_the_option(void** state)
     const reference_scene scene = case_scene(&c);
     assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, PIECE, reference, NULL), 0);
     for (int i = 0; i < 3; ++i) {
-      c.options.cell_error = errors[i];
+      c.options.sampling.cell_error = errors[i];
       db[i] = psnr_of(*state, &c, reference);
     }
     print_message("             %s, %s: %.1f %.1f %.1f dB\n", kind < KINDS ? "smooth" : "rough", kinds[kind % KINDS], db[0], db[1], db[2]);
@@ -93,8 +93,8 @@ static void nearest_is_exact(void** state)
       c.transfer.opacity_count = 10;
       c.transfer.color = color;
       c.transfer.color_count = 5;
-      c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
-      c.options.sampling = STRATUS_SAMPLING_CELLS;
+      c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
+      c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
       case_camera(*state, &c, view, view / 3);
       case_render(*state, &c, &drawn);
       assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_CELLS);
@@ -159,9 +159,9 @@ static void a_linear_field_has_the_integral_of_its_function(void** state)
   const double color[4] = { 0, 1, 0.5, 0.25 };
   const double eye[3] = { 5.5, 5.5, -30 }, focal[3] = { 5.5, 5.5, 10 }, up[3] = { 0, 1, 0 };
   assert_int_equal(stratus_camera_parallel(*state, eye, focal, up, 4.0, 1.0, &c.camera), STRATUS_OK);
-  c.options.crop = 1;
+  c.options.clipping.crop = 1;
   for (int side = 0; side < 6; ++side) {
-    c.options.crop_bounds[side] = side == 5 ? 30.0 : side % 2 ? 1e9 : -1e9;
+    c.options.clipping.crop_bounds[side] = side == 5 ? 30.0 : side % 2 ? 1e9 : -1e9;
   }
   for (int window = 0; window < 3; ++window) {
     const double end = last[window], o = opaque[window],
@@ -170,7 +170,7 @@ static void a_linear_field_has_the_integral_of_its_function(void** state)
     c.transfer.opacity_count = 7;
     c.transfer.color = color;
     c.transfer.color_count = 1;
-    c.options.sampling = STRATUS_SAMPLING_CELLS;
+    c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
     case_render(*state, &c, &drawn);
     const double alpha = -expm1(log1p(-o) * (end - 7.25));
     double worst = 0.0;
@@ -194,10 +194,10 @@ static void step_and_jitter_change_no_bit(void** state)
 {
   picture_case c;
   case_create(*state, &c, STRATUS_FLOAT32, 24, 25, 26, 12u);
-  c.options.sampling = STRATUS_SAMPLING_CELLS;
+  c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
   case_render(*state, &c, &drawn);
-  c.options.sample_distance = 3.0;
-  c.options.jitter = 1;
+  c.options.sampling.distance = 3.0;
+  c.options.sampling.jitter = 1;
   case_render(*state, &c, &other);
   assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
   assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
@@ -212,17 +212,17 @@ static void planes_and_regions_cut_cells(void** state)
     picture_case c;
     char name[32];
     case_create(*state, &c, STRATUS_FLOAT32, 24, 25, 26, 13u);
-    c.options.sampling = STRATUS_SAMPLING_CELLS;
-    c.options.cell_error = 1.0 / 16384;
+    c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
+    c.options.sampling.cell_error = 1.0 / 16384;
     c.volume.cell_centered = what == 2;
     if (what == 0) {
       const double bounds[6] = { 3.3, 17.7, 2.2, 19.1, 5.5, 21.9 };
-      c.options.crop = 1;
-      memcpy(c.options.crop_bounds, bounds, sizeof bounds);
+      c.options.clipping.crop = 1;
+      memcpy(c.options.clipping.crop_bounds, bounds, sizeof bounds);
     } else {
       const double plane[4] = { 0.5, 0.3, -0.4, -1.3 };
-      c.options.clip_plane_count = 1;
-      memcpy(c.options.clip_planes[0], plane, sizeof plane);
+      c.options.clipping.clip_plane_count = 1;
+      memcpy(c.options.clipping.clip_planes[0], plane, sizeof plane);
     }
     const reference_scene scene = case_scene(&c);
     assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, PIECE, reference, NULL), 0);
@@ -242,12 +242,12 @@ static void what_it_does_not_know_is_refused(void** state)
   for (int what = 0; what < 7; ++what) {
     picture_case c;
     case_create(context, &c, STRATUS_UINT8, 8, 8, 8, 14u);
-    c.options.sampling = STRATUS_SAMPLING_CELLS;
-    c.options.mask = what == 1 ? mask : NULL;
-    c.options.shade = what == 2;
+    c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
+    c.options.mask.bytes = what == 1 ? mask : NULL;
+    c.options.light.shade = what == 2;
     c.transfer.gradient = gradient;
     c.transfer.gradient_count = what == 3;
-    c.options.cell_error = what == 4 ? -0.1 : what == 5 ? (double)NAN : what == 6 ? (double)INFINITY : 0.0;
+    c.options.sampling.cell_error = what == 4 ? -0.1 : what == 5 ? (double)NAN : what == 6 ? (double)INFINITY : 0.0;
     const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
     const stratus_status status = stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL);
     assert_int_equal(status, what == 0 ? STRATUS_OK : what < 4 ? STRATUS_UNSUPPORTED : STRATUS_INVALID_ARGUMENT);

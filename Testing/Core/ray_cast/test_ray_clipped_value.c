@@ -14,33 +14,33 @@ static transfer_2d_case function;
 static void make(stratus_context* context, picture_case* c, stratus_type type, uint32_t seed)
 {
   case_create(context, c, type, 22, 24, 20, seed);
-  c->options.sample_distance = STEP;
-  c->options.clip_plane_count = 2;
+  c->options.sampling.distance = STEP;
+  c->options.clipping.clip_plane_count = 2;
   const double planes[2][4] = { { 1, 0.4, 0.2, -13 }, { -0.3, 1, -0.2, -4 } };
-  memcpy(c->options.clip_planes, planes, sizeof planes);
-  c->options.clip_gradients = 1;
-  c->options.clipped_value = case_type_values[type].base - 2.0 * case_type_values[type].scale;
+  memcpy(c->options.clipping.clip_planes, planes, sizeof planes);
+  c->options.clipping.clip_gradients = 1;
+  c->options.clipping.clipped_value = case_type_values[type].base - 2.0 * case_type_values[type].scale;
 }
 
 static void shine(picture_case* c)
 {
-  c->options.shade = 1;
-  c->options.shading.ambient = 0.1;
-  c->options.shading.diffuse = 0.8;
-  c->options.shading.light_count = 1;
-  c->options.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 1, 1, 1 } };
+  c->options.light.shade = 1;
+  c->options.light.shading.ambient = 0.1;
+  c->options.light.shading.diffuse = 0.8;
+  c->options.light.shading.light_count = 1;
+  c->options.light.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 1, 1, 1 } };
 }
 
 /* Also expects that the value beyond the planes changes the picture. */
 static void expect_reference(stratus_context* context, picture_case* c, const char* what)
 {
   static float reference[4 * CASE_PIXELS];
-  c->options.clip_gradients = 0;
+  c->options.clipping.clip_gradients = 0;
   case_render(context, c, &other);
-  c->options.clip_gradients = 1;
+  c->options.clipping.clip_gradients = 1;
   case_render(context, c, &drawn);
   reference_scene scene = case_scene(c);
-  scene.shading = c->options.shade ? &c->options.shading : NULL;
+  scene.shading = c->options.light.shade ? &c->options.light.shading : NULL;
   assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, 1.0 / 128.0, reference, NULL), 0);
   const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS), whole = reference_psnr(other.rgba, reference, CASE_PIXELS);
   print_message("             %s: %.1f dB, by the whole field %.1f dB, %d pixels\n", what, db, whole, case_lit(&drawn));
@@ -55,7 +55,7 @@ static void light_and_gradient_opacity_as_the_reference_says(void** state)
   make(*state, &c, STRATUS_FLOAT32, 5);
   shine(&c);
   expect_reference(*state, &c, "lit");
-  c.options.shade = 0;
+  c.options.light.shade = 0;
   c.transfer.gradient = steep;
   c.transfer.gradient_count = 3;
   expect_reference(*state, &c, "gradient opacity");
@@ -76,15 +76,15 @@ static void cells_nearest_values_and_turned_volumes(void** state)
   const double turned[16] = { 0.8, -0.6, 0, 3, 0.6, 0.8, 0.1, -7, 0, 0, -1.2, 9, 0, 0, 0, 1 };
   memcpy(c.volume.matrix, turned, sizeof turned);
   const double planes[2][4] = { { 1, 0.4, 0.2, 2 }, { -0.3, 1, -0.2, -4 } };
-  memcpy(c.options.clip_planes, planes, sizeof planes);
+  memcpy(c.options.clipping.clip_planes, planes, sizeof planes);
   case_camera(*state, &c, 3, 1);
   expect_reference(*state, &c, "cells, uneven, turned, mirrored and sheared; parallel");
   case_destroy(&c);
   make(*state, &c, STRATUS_INT32, 7); /* relative to a bias */
   shine(&c);
   expect_reference(*state, &c, "int32");
-  c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
-  c.options.sample_distance = 0.01;
+  c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
+  c.options.sampling.distance = 0.01;
   expect_reference(*state, &c, "nearest");
   case_destroy(&c);
 }
@@ -98,24 +98,24 @@ static void no_structure_or_instruction_set_changes_a_bit(void** state)
     picture_case c;
     case_create_random(contexts[0], seed, &c);
     shine(&c);
-    c.options.sampling = seed % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
-    c.options.clip_plane_count = 1;
+    c.options.sampling.rule = seed % 2 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
+    c.options.clipping.clip_plane_count = 1;
     const double plane[4] = { 1, 0.5, -0.3, -0.5 * (double)c.volume.dimensions[0] };
-    memcpy(c.options.clip_planes[0], plane, sizeof plane);
-    c.options.clip_gradients = 1;
-    c.options.clipped_value = -1e299; /* VTK's default */
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    memcpy(c.options.clipping.clip_planes[0], plane, sizeof plane);
+    c.options.clipping.clip_gradients = 1;
+    c.options.clipping.clipped_value = -1e299; /* VTK's default */
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(contexts[0], &c, &drawn);
     lit += case_lit(&drawn) > 0;
     for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
       assert_true(isfinite(drawn.rgba[i]));
     }
     for (int s = STRATUS_STRUCTURE_BLOCK; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
-      c.options.structure = (stratus_structure)s;
+      c.options.skipping.structure = (stratus_structure)s;
       contexts[1]->isa = s % 3;
       case_render(contexts[1], &c, &other);
       if (memcmp(drawn.rgba, other.rgba, sizeof drawn.rgba) != 0 || memcmp(drawn.depth, other.depth, sizeof drawn.depth) != 0) {
-        fail_msg("seed %u, %s: another picture", seed, stratus_structure_name(c.options.structure));
+        fail_msg("seed %u, %s: another picture", seed, stratus_structure_name(c.options.skipping.structure));
       }
     }
     case_destroy(&c);
@@ -142,9 +142,9 @@ static void what_has_no_such_gradients_is_refused(void** state)
   double coordinates[22];
   picture_case c;
   make(*state, &c, STRATUS_FLOAT32, 5);
-  c.options.clipped_value = (double)NAN;
+  c.options.clipping.clipped_value = (double)NAN;
   expect_refusal(*state, &c, STRATUS_INVALID_ARGUMENT, "clipped value nan");
-  c.options.clipped_value = 0.0;
+  c.options.clipping.clipped_value = 0.0;
   for (int i = 0; i < 22; ++i) {
     coordinates[i] = i * i;
   }

@@ -22,11 +22,11 @@ static void components_that_count_by_their_share_mix_as_the_reference_mixes_them
     m.transfers[1].weight = 0.4;
     m.transfers[count - 1].gradient = steep;
     m.transfers[count - 1].gradient_count = count == 3 ? 2 : 0;
-    m.c.options.shade = count == 2;
+    m.c.options.light.shade = count == 2;
     case_camera(context, &m.c, count, 0);
     many_draw(context, &m, &other);
-    m.c.options.mean_components = 1;
-    snprintf(what, sizeof what, "mean of %d%s", count, m.c.options.shade ? ", lit" : "");
+    m.c.options.optics.mean_components = 1;
+    snprintf(what, sizeof what, "mean of %d%s", count, m.c.options.light.shade ? ", lit" : "");
     many_check(what, context, &m, MIDPOINT_DB);
     for (int pixel = 0; pixel < CASE_PIXELS; ++pixel) {
       sum += (double)other.rgba[4 * pixel + 3];
@@ -52,9 +52,9 @@ static void independent_components_mix_as_the_reference_mixes_them(void** state)
       m.transfers[1].weight = 0.4;
       m.transfers[count - 1].gradient = types[t] == STRATUS_UINT8 ? steep : NULL;
       m.transfers[count - 1].gradient_count = types[t] == STRATUS_UINT8 ? 2 : 0;
-      m.c.options.shade = t % 2;
+      m.c.options.light.shade = t % 2;
       case_camera(context, &m.c, count + t, t == 1);
-      snprintf(what, sizeof what, "%d of %s%s", count, case_type_names[types[t]], m.c.options.shade ? ", lit" : "");
+      snprintf(what, sizeof what, "%d of %s%s", count, case_type_names[types[t]], m.c.options.light.shade ? ", lit" : "");
       many_check(what, context, &m, MIDPOINT_DB);
       many_destroy(&m);
     }
@@ -73,7 +73,7 @@ static void each_component_has_its_own_units(void** state)
     double opacity[8], gradient[4] = { 0.0, 0.1, 0.3, 1.0 };
     many_create(context, &m, STRATUS_FLOAT32, 2, 26, 24, 28, 71);
     memcpy(opacity, m.c.opacity, sizeof opacity);
-    m.c.options.shade = 1;
+    m.c.options.light.shade = 1;
     m.transfers[1].opacity = opacity;
     m.transfers[1].gradient = gradient;
     m.transfers[1].gradient_count = 2;
@@ -102,16 +102,16 @@ static void dependent_components_are_colour_and_opacity(void** state)
   stratus_context* context = case_context("host", 2);
   many m;
   many_create(context, &m, STRATUS_FLOAT32, 2, 22, 20, 18, 17);
-  m.c.options.dependent = 1;
+  m.c.options.optics.dependent = 1;
   many_check("2 of float32", context, &m, MIDPOINT_DB);
-  m.c.options.shade = 1;
+  m.c.options.light.shade = 1;
   many_check("2 of float32, lit", context, &m, MIDPOINT_DB);
   many_destroy(&m);
   many_create(context, &m, STRATUS_UINT8, 4, 22, 20, 18, 18);
-  m.c.options.dependent = 1;
+  m.c.options.optics.dependent = 1;
   many_check("4 of uint8", context, &m, MIDPOINT_DB);
-  m.c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
-  m.c.options.sample_distance = 0.02;
+  m.c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
+  m.c.options.sampling.distance = 0.02;
   many_check("4 of uint8, nearest", context, &m, MIDPOINT_DB);
   many_destroy(&m);
   stratus_context_destroy(context);
@@ -134,16 +134,16 @@ static void no_structure_changes_a_bit(void** state)
     memcpy(m.c.opacity, narrow, sizeof narrow); /* of all components: mostly empty */
     m.transfers[0].gradient = steep;
     m.transfers[0].gradient_count = 2;
-    m.c.options.gradient_distance = seed % 5 == 0 ? 1.5 : 0.0;
-    m.c.options.mean_components = seed % 6 == 0;
-    m.c.options.dependent = seed > 8 && (count == 2 || (count == 4 && m.c.volume.type == STRATUS_UINT8));
-    m.c.options.shade = seed % 3 == 0;
-    m.c.options.sample_distance = 0.7;
-    m.c.options.structure = STRATUS_STRUCTURE_NONE;
+    m.c.options.optics.gradient_distance = seed % 5 == 0 ? 1.5 : 0.0;
+    m.c.options.optics.mean_components = seed % 6 == 0;
+    m.c.options.optics.dependent = seed > 8 && (count == 2 || (count == 4 && m.c.volume.type == STRATUS_UINT8));
+    m.c.options.light.shade = seed % 3 == 0;
+    m.c.options.sampling.distance = 0.7;
+    m.c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     many_draw(contexts[0], &m, &drawn);
     lit += case_lit(&drawn) > 0;
     for (int s = STRATUS_STRUCTURE_BLOCK; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
-      m.c.options.structure = (stratus_structure)s;
+      m.c.options.skipping.structure = (stratus_structure)s;
       many_draw(contexts[s % 2], &m, &other);
       assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
       assert_memory_equal(drawn.depth, other.depth, sizeof drawn.depth);
@@ -164,28 +164,28 @@ static void each_component_has_a_material_of_its_own(void** state)
   stratus_material materials[COMPONENTS] = { { 1, 0.1, 0.5, 0.6, 9.0 }, { 0, NAN, NAN, NAN, NAN }, { 1, 0.3, 0.9, 0.0, 1.0 } };
   many m;
   many_create(context, &m, STRATUS_FLOAT32, 3, 20, 17, 19, 55);
-  m.c.options.materials = materials;
+  m.c.options.light.materials = materials;
   many_check("three materials", context, &m, MIDPOINT_DB);
   many_draw(context, &m, &other);
-  m.c.options.shade = 1; /* says nothing where there are materials */
+  m.c.options.light.shade = 1; /* says nothing where there are materials */
   many_draw(context, &m, &drawn);
   assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
   for (int c = 0; c < COMPONENTS; ++c) { /* all alike is as without */
-    const stratus_shading* s = &m.c.options.shading;
+    const stratus_shading* s = &m.c.options.light.shading;
     materials[c] = (stratus_material){ 1, s->ambient, s->diffuse, s->specular, s->specular_power };
   }
   many_draw(context, &m, &drawn);
   assert_memory_not_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
-  m.c.options.materials = NULL;
+  m.c.options.light.materials = NULL;
   many_draw(context, &m, &other);
   assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
-  m.c.options.shade = 0;
-  m.c.options.materials = materials;
+  m.c.options.light.shade = 0;
+  m.c.options.light.materials = materials;
   materials[2].diffuse = -0.5;
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "-0.5"));
   materials[2].diffuse = 0.5;
-  m.c.options.shading.light_count = 9;
+  m.c.options.light.shading.light_count = 9;
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
   materials[0].shade = materials[1].shade = materials[2].shade = 0; /* no light is read */
   many_draw(context, &m, &drawn);
@@ -205,7 +205,7 @@ static void one_value_a_ray_is_found_in_each_component(void** state)
     const int count = 2 + m % 3;
     many_create(context, &many, m == 1 ? STRATUS_UINT8 : STRATUS_FLOAT32, count, 20, 17, 19, 15u + (uint32_t)m);
     many.c.options.mode = modes[m];
-    many.c.options.sample_distance = 0.1;
+    many.c.options.sampling.distance = 0.1;
     memset(sum, 0, sizeof sum);
     for (int i = 0; i < CASE_PIXELS; ++i) {
       depth[i] = INFINITY;
@@ -232,8 +232,8 @@ static void one_value_a_ray_is_found_in_each_component(void** state)
     assert_in_range(grazes, 0, 2);
     assert_true(drawn.report.samples > 0 && drawn.report.range_builds == (uint64_t)count);
     for (int s = STRATUS_STRUCTURE_NONE; s <= STRATUS_STRUCTURE_OCTANT; ++s) {
-      many.c.options.structure = (stratus_structure)s;
-      many.c.options.audit = s != STRATUS_STRUCTURE_NONE;
+      many.c.options.skipping.structure = (stratus_structure)s;
+      many.c.options.skipping.audit = s != STRATUS_STRUCTURE_NONE;
       many_draw(context, &many, &other);
       assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
       assert_int_equal(other.report.differing_pixels, 0);
@@ -277,7 +277,7 @@ static void a_function_or_weight_edited_is_seen(void** state)
     m.transfers[1].unit_distance = edit == 2 ? 5.0 : m.transfers[1].unit_distance;
     m.transfers[1].gradient = edit == 3 ? flat : m.transfers[1].gradient;
     m.transfers[1].gradient_count = edit >= 3 ? 2 : 0;
-    m.c.options.dependent = edit == 4;
+    m.c.options.optics.dependent = edit == 4;
     assert_int_equal(stratus_ray_caster_render(caster, &m.c.volume, m.transfers, &m.c.camera, &m.c.options, &after, NULL), STRATUS_OK);
     assert_memory_not_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
     picture fresh;
@@ -296,9 +296,9 @@ static void what_it_cannot_show_is_refused(void** state)
   stratus_context* context = case_context("host", 1);
   many m;
   many_create(context, &m, STRATUS_FLOAT32, 4, 6, 6, 6, 3);
-  m.c.options.dependent = 1;
+  m.c.options.optics.dependent = 1;
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_UNSUPPORTED); /* 4 of floats */
-  m.c.options.dependent = 0;
+  m.c.options.optics.dependent = 0;
   m.transfers[2].weight = 1.5;
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "1.5"));
@@ -311,20 +311,20 @@ static void what_it_cannot_show_is_refused(void** state)
   for (int mode = STRATUS_MODE_FIRST_HIT; mode <= STRATUS_MODE_SLICE; ++mode) {
     const bool surfaces = mode == STRATUS_MODE_FIRST_HIT || mode >= STRATUS_MODE_ISOSURFACE;
     m.c.options.mode = (stratus_mode)mode;
-    m.c.options.dependent = !surfaces;
-    m.c.options.contour_count = 1;
+    m.c.options.optics.dependent = !surfaces;
+    m.c.options.optics.contour_count = 1;
     assert_int_equal(many_status(context, &m, &drawn), STRATUS_UNSUPPORTED);
     assert_non_null(strstr(stratus_context_message(context), surfaces ? "surfaces" : "dependent"));
   }
-  m.c.options.dependent = 0;
+  m.c.options.optics.dependent = 0;
   m.c.options.mode = STRATUS_MODE_COMPOSITE;
-  m.c.options.gradient_distance = -2.5;
+  m.c.options.optics.gradient_distance = -2.5;
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "-2.5"));
-  m.c.options.gradient_distance = 0.0;
-  m.c.options.label_count = 2;
+  m.c.options.optics.gradient_distance = 0.0;
+  m.c.options.mask.label_count = 2;
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT); /* without a mask */
-  m.c.options.label_count = 0;
+  m.c.options.mask.label_count = 0;
   m.c.volume.components = 5;
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
   m.c.volume.components = 4;

@@ -21,9 +21,9 @@ enum { MODES = sizeof modes / sizeof *modes };
 static void set_contours(picture_case* c)
 {
   const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
-  c->options.contour_count = 2;
-  c->options.contours[0] = base + 0.1 * scale;
-  c->options.contours[1] = base + 0.3 * scale;
+  c->options.optics.contour_count = 2;
+  c->options.optics.contours[0] = base + 0.1 * scale;
+  c->options.optics.contours[1] = base + 0.3 * scale;
 }
 
 static double compare(stratus_context* context, const picture_case* c, const char* what)
@@ -50,11 +50,11 @@ static void expect_same(const char* what)
 
 static void crop_between(picture_case* c, uint32_t regions)
 {
-  c->options.crop = 1;
-  c->options.crop_regions = regions;
+  c->options.clipping.crop = 1;
+  c->options.clipping.crop_regions = regions;
   for (int a = 0; a < 3; ++a) {
-    c->options.crop_bounds[2 * a] = 0.31 * (double)c->volume.dimensions[a];
-    c->options.crop_bounds[2 * a + 1] = 0.63 * (double)c->volume.dimensions[a];
+    c->options.clipping.crop_bounds[2 * a] = 0.31 * (double)c->volume.dimensions[a];
+    c->options.clipping.crop_bounds[2 * a + 1] = 0.63 * (double)c->volume.dimensions[a];
   }
 }
 
@@ -67,7 +67,7 @@ static void each_region_is_where_it_should_be(void** state)
   case_create(*state, &c, STRATUS_FLOAT32, 23, 29, 21, 61u);
   set_contours(&c);
   c.opacity[1] = c.opacity[3] = 0.03; /* every value shows, or some region would be empty */
-  c.options.sample_distance = 0.1;
+  c.options.sampling.distance = 0.1;
   for (int i = 0; i < 27 + 6; ++i) {
     char what[64];
     const uint32_t regions = i < 27 ? 1u << i : named[i - 27];
@@ -89,7 +89,7 @@ static void regions_in_every_mode(void** state)
     case_create(*state, &c, STRATUS_UINT16, 23, 29, 21, 71u + (uint32_t)mode);
     set_contours(&c);
     crop_between(&c, 0x5140145u);
-    c.options.sample_distance = 0.1;
+    c.options.sampling.distance = 0.1;
     c.options.mode = modes[mode];
     c.volume.cell_centered = mode % 2;
     case_camera(*state, &c, mode, 0);
@@ -107,11 +107,11 @@ static void regions_side_by_side_are_one(void** state)
   picture_case c;
   case_create(*state, &c, STRATUS_FLOAT32, 23, 29, 21, 61u);
   crop_between(&c, STRATUS_CROP_INSIDE);
-  c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
-  c.options.crop_bounds[0] = -1.0;
+  c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
+  c.options.clipping.crop_bounds[0] = -1.0;
   case_render(*state, &c, &other);
-  c.options.crop_bounds[0] = 2.0;
-  c.options.crop_regions = STRATUS_CROP_INSIDE | STRATUS_CROP_INSIDE >> 1;
+  c.options.clipping.crop_bounds[0] = 2.0;
+  c.options.clipping.crop_regions = STRATUS_CROP_INSIDE | STRATUS_CROP_INSIDE >> 1;
   case_render(*state, &c, &drawn);
   assert_true(case_lit(&drawn) > CASE_PIXELS / 50);
   assert_true(reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS) > 90.0);
@@ -138,13 +138,13 @@ static void masks_take_values_out(void** state)
     case_create(*state, &c, mode % 2 ? STRATUS_FLOAT32 : STRATUS_INT16, 23, 29, 21, 81u + (uint32_t)mode);
     set_contours(&c);
     uint8_t* mask = make_mask(&c.volume, (uint32_t)mode);
-    c.options.mask = mask;
+    c.options.mask.bytes = mask;
     c.options.mode = modes[mode % MODES];
-    c.options.sample_distance = 0.1;
-    c.options.interpolation =
+    c.options.sampling.distance = 0.1;
+    c.options.sampling.interpolation =
       mode >= MODES && modes[mode % MODES] != STRATUS_MODE_ISOSURFACE ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
     c.volume.cell_centered = mode == 3;
-    const double db = compare(*state, &c, c.options.interpolation == STRATUS_INTERPOLATION_NEAREST ? "masked, nearest" : "masked");
+    const double db = compare(*state, &c, c.options.sampling.interpolation == STRATUS_INTERPOLATION_NEAREST ? "masked, nearest" : "masked");
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
     assert_true(db >= MASK_DB);
     free(mask);
@@ -161,18 +161,18 @@ static void a_mask_that_changes_is_read_again(void** state)
   assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
   case_render_with(*state, caster, &c, &drawn);
   const int whole = case_lit(&drawn);
-  c.options.mask = mask;
+  c.options.mask.bytes = mask;
   case_render_with(*state, caster, &c, &drawn);
   const int masked = case_lit(&drawn);
   assert_true(masked > 0 && masked < whole);
   memset(mask, 0, 23 * 29 * 21);
   case_render_with(*state, caster, &c, &drawn);
   assert_int_equal(case_lit(&drawn), masked); /* the mask's revision is the old one */
-  c.options.mask_revision = 1;
+  c.options.mask.revision = 1;
   case_render_with(*state, caster, &c, &drawn);
   assert_int_equal(case_lit(&drawn), 0);
   assert_int_equal(drawn.report.range_builds, 1); /* nor did the data */
-  c.options.mask = NULL;
+  c.options.mask.bytes = NULL;
   case_render_with(*state, caster, &c, &drawn);
   assert_int_equal(case_lit(&drawn), whole);
   stratus_ray_caster_destroy(caster);
@@ -193,29 +193,30 @@ static void structures_and_threads_change_no_bit(void** state)
     c.options.mode = modes[seed % MODES];
     set_contours(&c);
     if (c.options.mode == STRATUS_MODE_ISOSURFACE) {
-      c.options.interpolation = STRATUS_INTERPOLATION_LINEAR;
+      c.options.sampling.interpolation = STRATUS_INTERPOLATION_LINEAR;
     }
     if (seed % 2) {
       crop_between(&c, (case_random(&random) * 8u + case_random(&random)) & STRATUS_CROP_ALL);
     }
     if (seed % 3 == 0) {
       mask = make_mask(&c.volume, seed);
-      c.options.mask = mask;
+      c.options.mask.bytes = mask;
     }
-    if (mask && c.options.sampling == STRATUS_SAMPLING_CELLS) { /* which takes no mask */
-      c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
+    if (mask && c.options.sampling.rule == STRATUS_SAMPLING_CELLS) { /* which takes no mask */
+      c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
     }
-    c.options.jitter = seed % 5 < 2;
-    c.options.jitter_seed = seed;
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.sampling.jitter = seed % 5 < 2;
+    c.options.sampling.jitter_seed = seed;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(*state, &c, &drawn);
     case_render(one, &c, &other);
     expect_same("threads");
-    c.options.audit = 1;
+    c.options.skipping.audit = 1;
     for (int structure = STRATUS_STRUCTURE_BLOCK; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-      c.options.structure = (stratus_structure)structure;
+      c.options.skipping.structure = (stratus_structure)structure;
       case_render(*state, &c, &other);
-      snprintf(what, sizeof what, "seed %u, %s, %s", seed, stratus_mode_name(c.options.mode), stratus_structure_name(c.options.structure));
+      snprintf(what, sizeof what, "seed %u, %s, %s", seed, stratus_mode_name(c.options.mode),
+        stratus_structure_name(c.options.skipping.structure));
       expect_same(what);
       assert_int_equal(other.report.differing_pixels, 0);
       skipped += other.report.skipped;
@@ -232,9 +233,9 @@ static void jitter_moves_samples_and_nothing_else(void** state)
 {
   picture_case c;
   case_create(*state, &c, STRATUS_FLOAT32, 31, 29, 27, 61u);
-  c.options.sample_distance = 1.7;
+  c.options.sampling.distance = 1.7;
   case_render(*state, &c, &other);
-  c.options.jitter = 1;
+  c.options.sampling.jitter = 1;
   case_render(*state, &c, &drawn);
   double sum[2] = { 0.0, 0.0 };
   int differing = 0, both = 0;
@@ -248,12 +249,12 @@ static void jitter_moves_samples_and_nothing_else(void** state)
   assert_true(fabs(sum[0] / sum[1] - 1.0) < 0.02);
   case_render(*state, &c, &other);
   expect_same("the same seed");
-  c.options.jitter_seed = 1;
+  c.options.sampling.jitter_seed = 1;
   case_render(*state, &c, &other);
   assert_true(memcmp(drawn.rgba, other.rgba, sizeof drawn.rgba) != 0);
-  c.options.sample_distance = 0.05; /* short steps: where they begin does not matter */
+  c.options.sampling.distance = 0.05; /* short steps: where they begin does not matter */
   case_render(*state, &c, &drawn);
-  c.options.jitter = 0;
+  c.options.sampling.jitter = 0;
   case_render(*state, &c, &other);
   assert_true(reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS) > 65.0);
   int near = 0, far = 0;
@@ -277,15 +278,15 @@ static void first_hits_and_bad_regions_are_refused(void** state)
   uint8_t* mask = make_mask(&c.volume, 3);
   assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
   const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
-  c.options.crop_regions = STRATUS_CROP_ALL + 1;
+  c.options.clipping.crop_regions = STRATUS_CROP_ALL + 1;
   assert_int_equal(
     stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(*state), "crop regions 0x8000000"));
   c.options.mode = STRATUS_MODE_FIRST_HIT;
   crop_between(&c, 1);
   assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_UNSUPPORTED);
-  c.options.crop = 0;
-  c.options.mask = mask;
+  c.options.clipping.crop = 0;
+  c.options.mask.bytes = mask;
   assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_UNSUPPORTED);
   assert_non_null(strstr(stratus_context_message(*state), "mask"));
   stratus_ray_caster_destroy(caster);

@@ -24,11 +24,11 @@ static void gradient_opacity_thins_as_the_reference_says(void** state)
     assert_true(drawn.rgba[4 * i + 3] <= other.rgba[4 * i + 3] + 1e-5f);
   }
   assert_true(after < 0.9 * before && after > 0.02 * before);
-  m.c.options.shade = 1;
+  m.c.options.light.shade = 1;
   m.c.volume.spacing[1] = 1.5; /* magnitudes are per mean spacing */
   case_camera(context, &m.c, 2, 0);
   many_check("lit, uneven", context, &m, MIDPOINT_DB);
-  m.c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+  m.c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
   many_check("pre-integrated", context, &m, MIDPOINT_DB);
   many_destroy(&m);
   stratus_context_destroy(context);
@@ -55,9 +55,9 @@ static void gradient_opacity_of_opacities_thins_as_the_reference_says(void** sta
     for (int i = 0; i < 4; ++i) {
       char what[64];
       double alpha = 0.0;
-      m.c.options.gradient_distance = lengths[i];
-      m.c.options.shade = i == 2;
-      m.c.options.sample_distance = opaque ? 0.02 : m.c.options.sample_distance; /* opacity 1 begins like a step */
+      m.c.options.optics.gradient_distance = lengths[i];
+      m.c.options.light.shade = i == 2;
+      m.c.options.sampling.distance = opaque ? 0.02 : m.c.options.sampling.distance; /* opacity 1 begins like a step */
       snprintf(what, sizeof what, "over %g%s%s", lengths[i], opaque ? ", opacity 1" : "", i == 2 ? ", lit" : "");
       many_check(what, context, &m, opaque ? 58.0 : MIDPOINT_DB);
       for (int pixel = 0; pixel < CASE_PIXELS; ++pixel) {
@@ -69,7 +69,7 @@ static void gradient_opacity_of_opacities_thins_as_the_reference_says(void** sta
         assert_true(reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS) > 55.0);
       }
     }
-    m.c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+    m.c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
     many_draw(context, &m, &drawn);
     assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_MIDPOINT);
     many_destroy(&m);
@@ -100,12 +100,12 @@ static void a_slab_of_opacity_one_shows_its_gradient_opacity(void** state)
     .up = { 0.0, 5.0, 0.0 },
     .far_k = INFINITY,
     .parallel = 1 };
-  c.options.sample_distance = 0.1;
+  c.options.sampling.distance = 0.1;
   for (int times = 0; times < 4; ++times) { /* the slab is 4 long */
     const double length = times == 0 ? 0.0 : 4.0 / times, wanted = times == 0 ? 1.0 : 1.0 - pow(0.8, times);
     stratus_ray_caster* caster = NULL;
     const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
-    c.options.gradient_distance = length;
+    c.options.optics.gradient_distance = length;
     assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
     assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_OK);
     const double alpha = (double)drawn.rgba[4 * (CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2) + 3];

@@ -24,21 +24,21 @@ static void ask_for(picture_case* c, stratus_mode mode)
 {
   const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
   c->options.mode = mode;
-  c->options.average_range[0] = base - 2.0 * scale;
-  c->options.average_range[1] = base + 2.0 * scale;
-  c->options.contour_count = mode == STRATUS_MODE_ISOSURFACE ? 3 : 0;
-  c->options.contours[0] = base + 0.4 * scale;
-  c->options.contours[1] = base + 0.11 * scale;
-  c->options.contours[2] = base + 0.2 * scale;
+  c->options.optics.average_range[0] = base - 2.0 * scale;
+  c->options.optics.average_range[1] = base + 2.0 * scale;
+  c->options.optics.contour_count = mode == STRATUS_MODE_ISOSURFACE ? 3 : 0;
+  c->options.optics.contours[0] = base + 0.4 * scale;
+  c->options.optics.contours[1] = base + 0.11 * scale;
+  c->options.optics.contours[2] = base + 0.2 * scale;
 }
 
 static void shine(picture_case* c)
 {
-  c->options.shade = 1;
-  c->options.shading.ambient = 0.15;
-  c->options.shading.diffuse = 0.7;
-  c->options.shading.specular = 0.35;
-  c->options.shading.specular_power = 12.5;
+  c->options.light.shade = 1;
+  c->options.light.shading.ambient = 0.15;
+  c->options.light.shading.diffuse = 0.7;
+  c->options.light.shading.specular = 0.35;
+  c->options.light.shading.specular_power = 12.5;
 }
 
 static float largest_difference(void)
@@ -73,13 +73,13 @@ static void equal_spacing_draws_the_picture_of_the_image(void** state)
     c.volume.cell_centered = centered;
     case_camera(*state, &c, 2, 0);
     for (int rule = STRATUS_SAMPLING_AUTO; rule <= STRATUS_SAMPLING_CELLS; ++rule) {
-      c.options.sampling = (stratus_sampling)rule;
+      c.options.sampling.rule = (stratus_sampling)rule;
       expect_image(*state, &c, &grid, rules[rule]);
     }
-    c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
+    c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
     shine(&c);
     expect_image(*state, &c, &grid, "lit");
-    c.options.shade = 0;
+    c.options.light.shade = 0;
     for (size_t m = 0; m < sizeof modes / sizeof *modes; ++m) {
       ask_for(&c, modes[m]);
       expect_image(*state, &c, &grid, stratus_mode_name(modes[m]));
@@ -92,7 +92,7 @@ static void expect_reference(stratus_context* context, const picture_case* c, co
 {
   reference_scene scene = case_scene(c);
   double reference_db = 0.0, db;
-  scene.shading = c->options.shade ? &c->options.shading : NULL;
+  scene.shading = c->options.light.shade ? &c->options.light.shading : NULL;
   case_render(context, c, &drawn);
   if (c->options.mode == STRATUS_MODE_COMPOSITE) {
     assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, GRID_DB, expected, NULL, &reference_db), 0);
@@ -112,7 +112,7 @@ static void make_stretched(stratus_context* context, picture_case* c, grid_case*
   uint32_t none = 0;
   case_create(context, c, STRATUS_FLOAT32, 23, 29, 21, 5u + (uint32_t)axes);
   c->volume.cell_centered = centered;
-  c->options.sample_distance = GRID_STEP;
+  c->options.sampling.distance = GRID_STEP;
   grid_case_set(c, grid, GRID_GEOMETRIC, axes, -4.0, 1.0, 100.0, &none);
   case_camera(context, c, axes, axes % 2);
 }
@@ -124,11 +124,11 @@ static void grids_stretched_a_hundredfold_draw_the_picture_of_the_reference(void
     grid_case grid;
     make_stretched(*state, &c, &grid, axes, axes % 2);
     expect_reference(*state, &c, "midpoint", axes);
-    c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+    c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
     expect_reference(*state, &c, "pre-integrated", axes);
-    c.options.sampling = STRATUS_SAMPLING_CELLS;
+    c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
     expect_reference(*state, &c, "cells", axes);
-    c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+    c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
     expect_reference(*state, &c, "cells, nearest", axes);
     case_destroy(&c);
   }
@@ -143,10 +143,10 @@ static void they_are_lit_and_thinned_as_the_reference_does(void** state)
     make_stretched(*state, &c, &grid, axes, axes == 4);
     shine(&c);
     expect_reference(*state, &c, "lit", axes);
-    c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+    c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
     expect_reference(*state, &c, "lit, nearest", axes);
-    c.options.interpolation = STRATUS_INTERPOLATION_LINEAR;
-    c.options.shade = 0;
+    c.options.sampling.interpolation = STRATUS_INTERPOLATION_LINEAR;
+    c.options.light.shade = 0;
     c.transfer.gradient = gradient;
     c.transfer.gradient_count = 2;
     expect_reference(*state, &c, "thinned by the gradient", axes);
@@ -187,7 +187,7 @@ static void the_tolerance_is_kept(void** state)
     reference_error(drawn.rgba, expected, CASE_PIXELS, &squares, &count, &largest);
     const double error = count > 0.0 ? sqrt(squares / count) : 0.0;
     print_message("             %u: error %.2g, at most %.2g; %s\n", seed, error, largest, drawn.report.why);
-    assert_true(!drawn.report.tolerance_met || error <= c.options.tolerance);
+    assert_true(!drawn.report.tolerance_met || error <= c.options.sampling.tolerance);
     judged += drawn.report.tolerance_met && case_lit(&drawn) > CASE_PIXELS / 20;
     case_destroy(&c);
   }
@@ -214,7 +214,8 @@ static void no_structure_block_size_or_instruction_set_changes_a_bit(void** stat
     grid_case_set_random(context, seed, &c, &grid);
     if (seed % 4 == 1) {
       ask_for(&c, modes[seed / 4 % 5]);
-      c.options.interpolation = c.options.mode == STRATUS_MODE_ISOSURFACE ? STRATUS_INTERPOLATION_LINEAR : c.options.interpolation;
+      c.options.sampling.interpolation =
+        c.options.mode == STRATUS_MODE_ISOSURFACE ? STRATUS_INTERPOLATION_LINEAR : c.options.sampling.interpolation;
     } else if (seed % 8 == 2) {
       shine(&c);
     } else if (seed % 8 == 6) {
@@ -224,26 +225,26 @@ static void no_structure_block_size_or_instruction_set_changes_a_bit(void** stat
       for (size_t i = 0; i < values; ++i) {
         mask[i] = i % 7 != 0;
       }
-      c.options.mask = mask;
+      c.options.mask.bytes = mask;
     }
-    if (c.options.shade || mask) { /* rule cells knows neither */
-      c.options.sampling = c.options.sampling == STRATUS_SAMPLING_CELLS ? STRATUS_SAMPLING_MIDPOINT : c.options.sampling;
+    if (c.options.light.shade || mask) { /* rule cells knows neither */
+      c.options.sampling.rule = c.options.sampling.rule == STRATUS_SAMPLING_CELLS ? STRATUS_SAMPLING_MIDPOINT : c.options.sampling.rule;
     }
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(context, &c, &drawn);
     lit += case_lit(&drawn) > 0;
     for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-      c.options.structure = (stratus_structure)structure;
-      c.options.audit = 1;
+      c.options.skipping.structure = (stratus_structure)structure;
+      c.options.skipping.audit = 1;
       case_render(context, &c, &other);
       expect_same("structure", seed, structure);
       assert_int_equal(other.report.differing_pixels, 0);
-      c.options.audit = 0;
+      c.options.skipping.audit = 0;
     }
-    c.options.structure = STRATUS_STRUCTURE_DISTANCE;
-    c.options.block_size = 2 << seed % 5;
+    c.options.skipping.structure = STRATUS_STRUCTURE_DISTANCE;
+    c.options.skipping.block_size = 2 << seed % 5;
     case_render(context, &c, &other);
-    expect_same("block size", seed, c.options.block_size);
+    expect_same("block size", seed, c.options.skipping.block_size);
     for (context->isa = 0; context->isa < best; ++context->isa) {
       case_render(context, &c, &other);
       expect_same("instruction set", seed, context->isa);
@@ -264,11 +265,11 @@ static void rule_local_keeps_its_bits_too(void** state)
     grid_case grid;
     case_create_local(context, seed, &c);
     grid_case_set(&c, &grid, GRID_RANDOM, 7, 0.0, 1.0, 8.0, &random);
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(context, &c, &drawn);
     local += drawn.report.sampling == STRATUS_SAMPLING_LOCAL;
     for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-      c.options.structure = (stratus_structure)structure;
+      c.options.skipping.structure = (stratus_structure)structure;
       case_render(context, &c, &other);
       expect_same("structure", seed, structure);
     }
@@ -285,7 +286,7 @@ static void far_and_falling_coordinates_draw_the_same(void** state)
   picture_case c;
   grid_case grid;
   case_create(*state, &c, STRATUS_FLOAT32, 24, 20, 26, 12);
-  c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED; /* a table of samples has steps, at which a rounding may show */
+  c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED; /* a table of samples has steps, at which a rounding may show */
   grid_case_set(&c, &grid, GRID_GEOMETRIC, 7, 0.0, 1.0, 100.0, &none);
   case_camera(*state, &c, 1, 0);
   case_render(*state, &c, &drawn);
@@ -315,10 +316,10 @@ static void far_and_falling_coordinates_draw_the_same(void** state)
     }
   }
   c.volume.values = turned;
-  c.options.crop = 1;
-  c.options.crop_regions = 0x5a5a5a5u;
+  c.options.clipping.crop = 1;
+  c.options.clipping.crop_regions = 0x5a5a5a5u;
   for (int side = 0; side < 6; ++side) {
-    c.options.crop_bounds[side] = 6e6 + (side % 2 ? 16.0 : 5.0) + side / 2;
+    c.options.clipping.crop_bounds[side] = 6e6 + (side % 2 ? 16.0 : 5.0) + side / 2;
   }
   case_render(*state, &c, &drawn);
   c.volume.values = c.values;
@@ -351,8 +352,8 @@ static void the_least_grids_are_drawn(void** state)
     grid_case_set(&c, &grid, GRID_RANDOM, 7, 1.0, 3.0, 100.0, &random);
     case_camera(*state, &c, 3, 0);
     for (int rule = STRATUS_SAMPLING_MIDPOINT; rule <= STRATUS_SAMPLING_CELLS; ++rule) {
-      c.options.sampling = (stratus_sampling)rule;
-      c.options.sample_distance = GRID_STEP;
+      c.options.sampling.rule = (stratus_sampling)rule;
+      c.options.sampling.distance = GRID_STEP;
       expect_reference(*state, &c, "least", 7);
     }
     case_destroy(&c);
@@ -425,7 +426,7 @@ static void other_coordinates_under_the_same_pointers_are_seen(void** state)
   grid_case grid;
   stratus_ray_caster* caster = NULL;
   case_create(*state, &c, STRATUS_FLOAT32, 20, 20, 20, 7);
-  c.options.sampling = STRATUS_SAMPLING_AUTO;
+  c.options.sampling.rule = STRATUS_SAMPLING_AUTO;
   assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
   for (int turn = 0; turn < 4; ++turn) {
     grid_case_set(&c, &grid, GRID_GEOMETRIC, turn == 2 ? 0 : 7, 0.0, 1.0, turn == 1 ? 30.0 : 3.0, &none);

@@ -22,8 +22,8 @@ static void set_labels(many* m, uint8_t* labels)
   m->transfers[2].color = colors[1];
   m->transfers[1].color_count = m->transfers[2].color_count = 1;
   m->transfers[2].unit_distance = 0.4;
-  m->c.options.mask = labels;
-  m->c.options.label_count = 2;
+  m->c.options.mask.bytes = labels;
+  m->c.options.mask.label_count = 2;
 }
 
 static void labels_have_colours_and_opacities_of_their_own(void** state)
@@ -38,21 +38,21 @@ static void labels_have_colours_and_opacities_of_their_own(void** state)
     many_draw(context, &m, &other);
     set_labels(&m, labels);
     m.c.volume.cell_centered = type == STRATUS_UINT32;
-    m.c.options.shade = type == STRATUS_FLOAT64;
+    m.c.options.light.shade = type == STRATUS_FLOAT64;
     const double scale = case_type_values[type].scale;
     const double thin[2][4] = { { 0.0, 0.3, 0.3 * scale, 1.0 }, { 0.02 * scale, 1.0, 0.2 * scale, 0.1 } };
     for (int l = 0; l < 2; ++l) { /* label 1 has its own gradient opacity; label 2 uses the one of no label, if there is one */
       m.transfers[l].gradient = thin[l];
       m.transfers[l].gradient_count = type == STRATUS_FLOAT64 || (type == STRATUS_UINT32 && l == 1) ? 2 : 0;
     }
-    m.c.options.gradient_distance = type == STRATUS_FLOAT64 ? 2.0 : 0.0;
-    m.c.options.sample_distance = 0.02; /* labels are steps, where the samples' error is of first order */
+    m.c.options.optics.gradient_distance = type == STRATUS_FLOAT64 ? 2.0 : 0.0;
+    m.c.options.sampling.distance = 0.02; /* labels are steps, where the samples' error is of first order */
     reference_scene scene = case_scene(&m.c);
     scene.transfer = m.transfers;
     scene.labels = labels;
     scene.label_count = 2;
-    scene.gradient_distance = m.c.options.gradient_distance;
-    scene.shading = m.c.options.shade ? &m.c.options.shading : NULL;
+    scene.gradient_distance = m.c.options.optics.gradient_distance;
+    scene.shading = m.c.options.light.shade ? &m.c.options.light.shading : NULL;
     many_draw(context, &m, &drawn);
     assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, 1.0 / 64, reference, NULL), 0);
     const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
@@ -60,11 +60,11 @@ static void labels_have_colours_and_opacities_of_their_own(void** state)
     assert_true(case_lit(&drawn) > 200);
     assert_true(db >= 60.0);
     for (int s = STRATUS_STRUCTURE_NONE; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
-      m.c.options.structure = (stratus_structure)s;
+      m.c.options.skipping.structure = (stratus_structure)s;
       many_draw(context, &m, &other);
       assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
     }
-    m.c.options.label_count = 0; /* the same bytes as a mask, then none */
+    m.c.options.mask.label_count = 0; /* the same bytes as a mask, then none */
     many_draw(context, &m, &other);
     assert_memory_not_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
     many_destroy(&m);
@@ -83,9 +83,9 @@ static void components_and_labels_take_the_entries_of_the_tolerance(void** state
     const int components = kind < 2 ? 2 : 1;
     many m;
     many_create(context, &m, STRATUS_FLOAT32, components, 9, 8, 7, 67);
-    m.c.options.dependent = kind == 1;
-    m.c.options.sample_distance = 0.5;
-    m.c.options.sampling = STRATUS_SAMPLING_AUTO; /* by hand, there is no tolerance */
+    m.c.options.optics.dependent = kind == 1;
+    m.c.options.sampling.distance = 0.5;
+    m.c.options.sampling.rule = STRATUS_SAMPLING_AUTO; /* by hand, there is no tolerance */
     stratus_transfer transfers[256];
     if (kind >= 2) {
       set_labels(&m, labels);
@@ -93,11 +93,11 @@ static void components_and_labels_take_the_entries_of_the_tolerance(void** state
     for (int t = 0; t < 256; ++t) {
       transfers[t] = m.transfers[t < 2 ? t : kind < 2 ? 0 : 2];
     }
-    m.c.options.label_count = kind == 3 ? 255 : m.c.options.label_count;
+    m.c.options.mask.label_count = kind == 3 ? 255 : m.c.options.mask.label_count;
     for (size_t t = kind == 3 ? 3 : 0; t < sizeof tolerances / sizeof *tolerances; ++t) {
       const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
       stratus_ray_caster* caster = NULL;
-      m.c.options.tolerance = tolerances[t];
+      m.c.options.sampling.tolerance = tolerances[t];
       assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
       assert_int_equal(stratus_ray_caster_render(caster, &m.c.volume, transfers, &m.c.camera, &m.c.options, &image, NULL), STRATUS_OK);
       const stratus_ray_shading_tables* tables = &caster->shading_tables;
@@ -132,17 +132,17 @@ static void a_count_of_lights_beyond_any_changes_nothing_where_nothing_is_lit(vo
     }
     if (kind == 3) {
       m.c.options.mode = STRATUS_MODE_FIRST_HIT;
-      m.c.options.shading.on = 0;
+      m.c.options.light.shading.on = 0;
     }
     many_draw(context, &m, &other);
     assert_true(case_lit(&other) > 50);
     for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
-      m.c.options.shading.light_count = counts[i];
+      m.c.options.light.shading.light_count = counts[i];
       many_draw(context, &m, &drawn);
       assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
     }
-    m.c.options.shading.on = m.c.options.shade = 1;
-    m.c.options.shading.light_count = 9;
+    m.c.options.light.shading.on = m.c.options.light.shade = 1;
+    m.c.options.light.shading.light_count = 9;
     assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
     assert_non_null(strstr(stratus_context_message(context), "9 lights"));
     many_destroy(&m);

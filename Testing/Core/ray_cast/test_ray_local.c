@@ -24,7 +24,7 @@ static void it_keeps_the_tolerance(void** state)
   for (uint32_t seed = 0; seed < seeds(); ++seed) {
     picture_case c;
     case_create_local(*state, seed, &c);
-    if (c.options.crop && c.options.crop_regions != STRATUS_CROP_INSIDE) { /* the reference knows one region */
+    if (c.options.clipping.crop && c.options.clipping.crop_regions != STRATUS_CROP_INSIDE) { /* the reference knows one region */
       case_destroy(&c);
       continue;
     }
@@ -37,7 +37,7 @@ static void it_keeps_the_tolerance(void** state)
     print_message(
       "             %u, %s: error %.2g, at most %.2g; %s\n", seed, case_type_names[c.volume.type], error, largest, drawn.report.why);
     assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_LOCAL);
-    assert_true(error <= c.options.tolerance);
+    assert_true(error <= c.options.sampling.tolerance);
     judged += case_lit(&drawn) > CASE_PIXELS / 20;
     case_destroy(&c);
   }
@@ -49,10 +49,10 @@ static void it_takes_fewer_samples_than_cells(void** state)
   for (uint32_t seed = 0; seed < 4; ++seed) {
     picture_case c;
     case_create_local(*state, seed, &c);
-    c.options.crop = 0;
+    c.options.clipping.crop = 0;
     case_render(*state, &c, &drawn);
     assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_LOCAL);
-    c.options.sampling = STRATUS_SAMPLING_CELLS;
+    c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
     case_render(*state, &c, &other);
     print_message("             %u: %llu samples and cells, %llu cells\n", seed, (unsigned long long)drawn.report.samples,
       (unsigned long long)other.report.samples);
@@ -78,18 +78,18 @@ static void nothing_but_the_tolerance_changes_it(void** state)
   for (uint32_t seed = 0; seed < seeds(); ++seed) {
     picture_case c;
     case_create_local(context, seed, &c);
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(context, &c, &drawn);
     assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_LOCAL);
     lit += case_lit(&drawn) > 0;
     for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-      c.options.structure = (stratus_structure)structure;
+      c.options.skipping.structure = (stratus_structure)structure;
       case_render(context, &c, &other);
       expect_same("structure", seed, structure);
     }
-    c.options.structure = STRATUS_STRUCTURE_DISTANCE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_DISTANCE;
     for (int size = 2; size <= 32; size *= 2) {
-      c.options.block_size = size;
+      c.options.skipping.block_size = size;
       case_render(context, &c, &other);
       expect_same("block size", seed, size);
     }
@@ -112,14 +112,14 @@ static void a_changed_function_has_a_map_of_its_own(void** state)
   const double opacity = c.opacity[5];
   for (int step = 0; step < 6; ++step) {
     c.opacity[5] = step == 1 ? 0.004 : step == 3 ? 0.9 : opacity; /* at first nothing is rough, then more is */
-    c.options.tolerance = step == 4 ? 0.01 : 0.001;
-    c.options.sampling = step == 5 ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_AUTO;
+    c.options.sampling.tolerance = step == 4 ? 0.01 : 0.001;
+    c.options.sampling.rule = step == 5 ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_AUTO;
     case_render_with(*state, caster, &c, &drawn);
     case_render(*state, &c, &other);
     expect_same("step", 1, step);
     assert_true(step == 1 || step > 3 || drawn.report.sampling == STRATUS_SAMPLING_LOCAL);
   }
-  c.options.sampling = STRATUS_SAMPLING_AUTO;
+  c.options.sampling.rule = STRATUS_SAMPLING_AUTO;
   case_render_with(*state, caster, &c, &drawn); /* as measured before the picture of samples */
   case_render(*state, &c, &other);
   expect_same("after samples", 1, 0);
@@ -133,7 +133,7 @@ static void it_cannot_be_asked_for(void** state)
   stratus_ray_caster* caster = NULL;
   assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
   case_create_local(*state, 2, &c);
-  c.options.sampling = STRATUS_SAMPLING_LOCAL;
+  c.options.sampling.rule = STRATUS_SAMPLING_LOCAL;
   const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
   assert_int_equal(
     stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);

@@ -29,15 +29,15 @@ static void ask_for(picture_case* c, stratus_mode mode)
   const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
   c->options.mode = mode;
   if (mode == STRATUS_MODE_AVERAGE) {
-    c->options.average_range[0] = base - 0.2 * scale;
-    c->options.average_range[1] = base + 0.6 * scale;
+    c->options.optics.average_range[0] = base - 0.2 * scale;
+    c->options.optics.average_range[1] = base + 0.6 * scale;
   } else if (mode == STRATUS_MODE_ISOSURFACE) {
-    c->options.interpolation = STRATUS_INTERPOLATION_LINEAR;
-    c->options.contour_count = 4;
-    c->options.contours[0] = base + 0.4 * scale; /* not in order, and one transparent */
-    c->options.contours[1] = base + 0.11 * scale;
-    c->options.contours[2] = base - 0.5 * scale;
-    c->options.contours[3] = base + 0.2 * scale;
+    c->options.sampling.interpolation = STRATUS_INTERPOLATION_LINEAR;
+    c->options.optics.contour_count = 4;
+    c->options.optics.contours[0] = base + 0.4 * scale; /* not in order, and one transparent */
+    c->options.optics.contours[1] = base + 0.11 * scale;
+    c->options.optics.contours[2] = base - 0.5 * scale;
+    c->options.optics.contours[3] = base + 0.2 * scale;
   }
 }
 
@@ -78,7 +78,7 @@ static void extremes_and_sums_of_every_type(void** state)
   for (int type = STRATUS_INT8; type <= STRATUS_FLOAT64; ++type) {
     picture_case c;
     case_create(*state, &c, (stratus_type)type, 23, 29, 21, 5u + (uint32_t)type);
-    c.options.sample_distance = 0.1;
+    c.options.sampling.distance = 0.1;
     c.options.mode = modes[type % 4];
     ask_for(&c, modes[type % 4]);
     expect_samples(*state, &c, case_type_names[type]);
@@ -91,7 +91,7 @@ static void extremes_and_sums_from_everywhere(void** state)
   for (int mode = 0; mode < 4; ++mode) {
     picture_case c;
     case_create(*state, &c, STRATUS_FLOAT32, 23, 29, 21, 40u + (uint32_t)mode);
-    c.options.sample_distance = 0.1;
+    c.options.sampling.distance = 0.1;
     ask_for(&c, modes[mode]);
     c.volume.matrix[1] = 0.3; /* sheared and mirrored */
     c.volume.matrix[10] = -1.0;
@@ -119,7 +119,7 @@ static void the_depth_of_a_maximum_is_where_it_is(void** state)
   picture_case c;
   case_create(*state, &c, STRATUS_FLOAT32, 23, 29, 21, 11u);
   ask_for(&c, STRATUS_MODE_MAXIMUM);
-  c.options.sample_distance = 0.1;
+  c.options.sampling.distance = 0.1;
   case_render(*state, &c, &drawn);
   draw_expected(&c);
   int near = 0, shown = 0;
@@ -140,7 +140,7 @@ static void a_sum_is_grey_and_covers_the_volume(void** state)
   ask_for(&c, STRATUS_MODE_ADDITIVE);
   memset(c.values, 0, 23 * 29 * 21); /* transparent throughout: black, but there */
   for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-    c.options.structure = (stratus_structure)structure;
+    c.options.skipping.structure = (stratus_structure)structure;
     case_render(*state, &c, &drawn);
     draw_expected(&c);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 10);
@@ -220,8 +220,8 @@ static void no_ray_slips_between_cells(void** state)
   memcpy(c.opacity, opacity, sizeof opacity);
   c.transfer.opacity_count = 2;
   c.options.mode = STRATUS_MODE_ISOSURFACE;
-  c.options.contour_count = 1;
-  c.options.contours[0] = 0.0;
+  c.options.optics.contour_count = 1;
+  c.options.optics.contours[0] = 0.0;
   for (int view = 0; view < 8; ++view) {
     case_camera(*state, &c, view, view % 2);
     case_render(*state, &c, &drawn);
@@ -252,9 +252,9 @@ static void surfaces_are_lit_by_the_gradient(void** state)
   c.transfer.opacity_count = 2;
   c.transfer.color_count = 1;
   c.options.mode = STRATUS_MODE_ISOSURFACE;
-  c.options.contour_count = 1;
-  c.options.contours[0] = 8.0;
-  c.options.shade = 1;
+  c.options.optics.contour_count = 1;
+  c.options.optics.contours[0] = 8.0;
+  c.options.light.shade = 1;
   case_camera(*state, &c, 2, 0);
   case_render(*state, &c, &drawn);
   int lit = 0;
@@ -273,14 +273,14 @@ static void surfaces_are_lit_by_the_gradient(void** state)
       const double place = c.camera.eye[a] + (double)drawn.depth[i] * along[a] / sqrt(length);
       cosine -= along[a] / sqrt(length) * (place - 11.5) / 8.0;
     }
-    const double expected_red = c.color[1] * (c.options.shading.ambient + c.options.shading.diffuse * cosine);
+    const double expected_red = c.color[1] * (c.options.light.shading.ambient + c.options.light.shading.diffuse * cosine);
     worst = fmax(worst, fabs((double)drawn.rgba[4 * i] - expected_red) / c.color[1]);
     ++lit;
   }
   print_message("             %d pixels, off by %.4f of their colour at most\n", lit, worst);
   assert_true(lit > CASE_PIXELS / 10);
   assert_true(worst < 0.02);
-  c.options.shade = 0;
+  c.options.light.shade = 0;
   case_render(*state, &c, &other);
   assert_true(memcmp(drawn.depth, other.depth, sizeof drawn.depth) == 0);
   assert_true(memcmp(drawn.rgba, other.rgba, sizeof drawn.rgba) != 0);
@@ -309,17 +309,17 @@ static void structures_change_no_bit(void** state)
     char what[128];
     case_create_random(*state, seed, &c);
     ask_for(&c, modes[mode]);
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(*state, &c, &drawn);
     assert_int_equal(drawn.report.skipped, 0);
     lit[mode] += case_lit(&drawn) > 0;
-    c.options.audit = 1;
+    c.options.skipping.audit = 1;
     for (int structure = STRATUS_STRUCTURE_AUTO; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-      c.options.structure = (stratus_structure)structure;
-      c.options.block_size = 2 << (seed + (uint32_t)structure) % 5;
+      c.options.skipping.structure = (stratus_structure)structure;
+      c.options.skipping.block_size = 2 << (seed + (uint32_t)structure) % 5;
       case_render(*state, &c, &other);
       snprintf(what, sizeof what, "seed %u, %s, %s, blocks of %d, %s", seed, stratus_mode_name(c.options.mode),
-        stratus_structure_name(c.options.structure), c.options.block_size, case_type_names[c.volume.type]);
+        stratus_structure_name(c.options.skipping.structure), c.options.skipping.block_size, case_type_names[c.volume.type]);
       expect_same(what, &drawn, &other);
       assert_int_equal(other.report.differing_pixels, 0);
       skipped[mode] += other.report.skipped;
@@ -342,10 +342,10 @@ static void extremes_pass_blocks_that_hold_nothing_better(void** state)
     memcpy(c.opacity, opacity, sizeof opacity);
     c.transfer.opacity_count = 2;
     c.options.mode = modes[mode];
-    c.options.sample_distance = 0.5;
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.sampling.distance = 0.5;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(*state, &c, &drawn);
-    c.options.structure = STRATUS_STRUCTURE_BLOCK;
+    c.options.skipping.structure = STRATUS_STRUCTURE_BLOCK;
     case_render(*state, &c, &other);
     expect_same("block", &drawn, &other);
     print_message("             %s: %llu samples of %llu\n", stratus_mode_name(modes[mode]), (unsigned long long)other.report.samples,
@@ -392,8 +392,8 @@ static void a_caster_changes_its_mode(void** state)
       ask_for(&c, modes[turn / 2 % MODES]);
     }
     if (turn >= 10) {
-      c.options.contours[0] = 0.7;
-      c.options.average_range[1] = 32100.0;
+      c.options.optics.contours[0] = 0.7;
+      c.options.optics.average_range[1] = 32100.0;
     }
     case_render_with(*state, caster, &c, &drawn);
     case_render(*state, &c, &other);
@@ -418,11 +418,11 @@ static void what_no_mode_can_draw_is_refused(void** state)
       "average range" };
     c.options = plain;
     ask_for(&c, STRATUS_MODE_ISOSURFACE);
-    c.options.contour_count = wrong == 0 ? 0 : wrong == 1 ? 17 : 4;
-    c.options.contours[1] = wrong == 2 ? (double)NAN : 0.0;
-    c.options.interpolation = wrong == 3 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-    c.options.average_range[0] = wrong == 4 ? 2.0 : wrong == 6 ? (double)NAN : -1.0;
-    c.options.average_range[1] = 1.0;
+    c.options.optics.contour_count = wrong == 0 ? 0 : wrong == 1 ? 17 : 4;
+    c.options.optics.contours[1] = wrong == 2 ? (double)NAN : 0.0;
+    c.options.sampling.interpolation = wrong == 3 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+    c.options.optics.average_range[0] = wrong == 4 ? 2.0 : wrong == 6 ? (double)NAN : -1.0;
+    c.options.optics.average_range[1] = 1.0;
     c.options.mode = wrong == 5 ? (stratus_mode)99 : wrong == 4 || wrong == 6 ? STRATUS_MODE_AVERAGE : STRATUS_MODE_ISOSURFACE;
     const stratus_status status = stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL);
     assert_int_equal(status, wrong == 3 ? STRATUS_UNSUPPORTED : STRATUS_INVALID_ARGUMENT);

@@ -67,15 +67,15 @@ static void stretched_grids_mix_as_the_reference_does(void** state)
     for (int n = 0; n < 2; ++n) {
       uint32_t random = seed;
       grid_case_set(&m.of[n], &grids[n], n ? GRID_RANDOM : GRID_GEOMETRIC, 7 - (int)(seed % 4), 0.0, 1.0, 20.0, &random);
-      m.of[n].options.sample_distance = 0.05;
+      m.of[n].options.sampling.distance = 0.05;
     }
-    m.of[0].options.shade = (int)(seed % 2);
+    m.of[0].options.light.shade = (int)(seed % 2);
     snprintf(what, sizeof what, "stretched, seed %u", seed);
     assert_true(several_psnr(what, *state, &m, &drawn) >= SEVERAL_DB);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
     for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
       for (int n = 0; n < m.count; ++n) {
-        m.of[n].options.structure = (stratus_structure)structure;
+        m.of[n].options.skipping.structure = (stratus_structure)structure;
       }
       several_draw(*state, &m, &other);
       expect_same(&drawn, &other);
@@ -92,7 +92,7 @@ static void halves_of_a_volume_draw_the_whole(void** state)
       case_create(*state, &m.of[n], STRATUS_FLOAT32, 25, 28, 30, 12);
       const double opacity[8] = { -22, 0, -19.95, 0, -19.95, 1.0 - sqrt(1.0 - 0.3), -17, 1.0 - sqrt(1.0 - 0.3) };
       memcpy(m.of[n].opacity, opacity, sizeof opacity);
-      m.of[n].options.sampling = (stratus_sampling)sampling;
+      m.of[n].options.sampling.rule = (stratus_sampling)sampling;
     }
     several_draw(*state, &m, &drawn);
     const double whole[8] = { -22, 0, -19.95, 0, -19.95, 0.3, -17, 0.3 };
@@ -123,15 +123,15 @@ static void an_empty_volume_changes_nothing(void** state)
     several_case m = { .count = 2 };
     case_create(*state, &m.of[0], STRATUS_UINT8, 25, 28, 30, 5);
     case_create(*state, &m.of[1], STRATUS_FLOAT32, 17, 20, 23, 6);
-    m.of[0].options.sampling = (stratus_sampling)sampling;
+    m.of[0].options.sampling.rule = (stratus_sampling)sampling;
     memset(m.of[1].opacity, 0, sizeof m.of[1].opacity);
     m.of[1].transfer.opacity_count = 1;
     several_draw(*state, &m, &drawn);
     case_render(*state, &m.of[0], &other);
     print_message("             with an empty one: %g\n", (double)largest_difference(&drawn, &other));
     assert_true(largest_difference(&drawn, &other) < 2e-6f);
-    m.of[0].options.structure = STRATUS_STRUCTURE_NONE;
-    m.of[1].options.structure = STRATUS_STRUCTURE_NONE;
+    m.of[0].options.skipping.structure = STRATUS_STRUCTURE_NONE;
+    m.of[1].options.skipping.structure = STRATUS_STRUCTURE_NONE;
     several_draw(*state, &m, &other);
     expect_same(&drawn, &other);
     m.of[0].transfer.opacity_count = 1;
@@ -149,7 +149,7 @@ static void boxes_apart_lie_over_each_other(void** state)
     for (int n = 0; n < 2; ++n) {
       case_create(*state, &m.of[n], n ? STRATUS_INT16 : STRATUS_FLOAT32, 25 + 4 * n, 28, 30, 12u + (uint32_t)n);
       several_color(&m.of[n], n);
-      m.of[n].options.sampling = n ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED;
+      m.of[n].options.sampling.rule = n ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED;
     }
     m.of[1].volume.origin[2] = view == 2 ? 3000.0 : 31.0; /* far apart or close */
     const double eye[3] = { 15, 12, view == 1 ? 120 : -70 }, focal[3] = { 14, 14, 20 }, up[3] = { 0, 1, 0.1 };
@@ -191,14 +191,14 @@ static void what_bounds_a_ray_bounds_it_in_each_volume(void** state)
   m.of[0].opaque_depth = opaque;
   assert_true(several_psnr("opaque, near and far", *state, &m, &drawn) >= SEVERAL_DB);
   m.of[0].opaque_depth = NULL;
-  m.of[0].options.crop = 1;
+  m.of[0].options.clipping.crop = 1;
   for (int a = 0; a < 3; ++a) {
-    m.of[0].options.crop_bounds[2 * a] = 4.0;
-    m.of[0].options.crop_bounds[2 * a + 1] = 12.0;
+    m.of[0].options.clipping.crop_bounds[2 * a] = 4.0;
+    m.of[0].options.clipping.crop_bounds[2 * a + 1] = 12.0;
   }
-  m.of[2].options.clip_plane_count = 1;
+  m.of[2].options.clipping.clip_plane_count = 1;
   const double plane[4] = { 0.3, 0.5, -0.2, 1.0 };
-  memcpy(m.of[2].options.clip_planes[0], plane, sizeof plane);
+  memcpy(m.of[2].options.clipping.clip_planes[0], plane, sizeof plane);
   assert_true(several_psnr("crop and clip planes", *state, &m, &drawn) >= SEVERAL_DB);
   const double inside[3] = { 1.3, 0.7, 1.1 };
   assert_int_equal(stratus_camera_perspective(*state, inside, eye, up, 80.0, 1.2, &m.of[0].camera), STRATUS_OK);
@@ -211,8 +211,8 @@ static void light_and_gradient_opacity_are_each_volumes_own(void** state)
   const double gradient[4] = { 0.0, 0.2, 1e9, 1.0 };
   several_case m;
   several_create(*state, &m, 3, 83);
-  m.of[0].options.shade = 1;
-  m.of[0].options.shading.specular = 0.3;
+  m.of[0].options.light.shade = 1;
+  m.of[0].options.light.shading.specular = 0.3;
   m.of[1].transfer.gradient = gradient;
   m.of[1].transfer.gradient_count = 2;
   double steep[4] = { 0.0, 0.1, 0.05 * case_type_values[m.of[1].volume.type].scale, 1.0 };
@@ -230,9 +230,9 @@ static void longer_steps_are_whole_numbers_of_the_lattices(void** state)
   several_casters casters;
   several_casters_create(*state, &casters);
   for (int sampling = STRATUS_SAMPLING_MIDPOINT; sampling <= STRATUS_SAMPLING_PREINTEGRATED; ++sampling) {
-    m.of[0].options.sampling = m.of[1].options.sampling = (stratus_sampling)sampling;
-    m.of[0].options.sample_distance = 0.1;
-    m.of[1].options.sample_distance = 0.39;
+    m.of[0].options.sampling.rule = m.of[1].options.sampling.rule = (stratus_sampling)sampling;
+    m.of[0].options.sampling.distance = 0.1;
+    m.of[1].options.sampling.distance = 0.39;
     assert_true(several_psnr("strides", *state, &m, &drawn) >= SEVERAL_DB);
     assert_int_equal(several_draw_with(&casters, &m, &other, reports), STRATUS_OK);
     expect_same(&drawn, &other);
@@ -248,8 +248,8 @@ static void deep_media_are_cut_into_pieces(void** state)
   several_case m;
   several_create(*state, &m, 2, 87);
   for (int n = 0; n < 2; ++n) {
-    m.of[n].options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
-    m.of[n].options.sample_distance = 0.3;
+    m.of[n].options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
+    m.of[n].options.sampling.distance = 0.3;
     m.of[n].transfer.unit_distance = 0.1;
   }
   assert_true(several_psnr("deep", *state, &m, &drawn) >= 65.0); /* measured: 74 */
@@ -266,8 +266,8 @@ static void a_wall_in_one_volume_hides_what_is_behind(void** state)
     const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
     const double opacity[8] = { base - scale, 0, base + 0.2 * scale, 0.1, base + 0.2 * scale, 1.0, base + scale, 1.0 };
     memcpy(c->opacity, opacity, sizeof opacity);
-    m.of[0].options.sampling = m.of[1].options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
-    m.of[0].options.sample_distance = m.of[1].options.sample_distance = 0.02;
+    m.of[0].options.sampling.rule = m.of[1].options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
+    m.of[0].options.sampling.distance = m.of[1].options.sampling.distance = 0.02;
     assert_true(several_psnr("wall", *state, &m, &drawn) >= 42.0); /* the silhouette of a wall jumps from pixel to pixel */
     int opaque = 0;
     for (int i = 0; i < CASE_PIXELS; ++i) {
@@ -289,14 +289,14 @@ static void no_structure_changes_a_bit(void** state)
     several_case m = { .count = 2 + (int)(seed % 3) };
     for (int n = 0; n < m.count; ++n) {
       case_create_random(*state, 9000 + 7 * seed + (uint32_t)n, &m.of[n]);
-      m.of[n].options.structure = (stratus_structure)(STRATUS_STRUCTURE_AUTO + (seed + (uint32_t)n) % 6);
+      m.of[n].options.skipping.structure = (stratus_structure)(STRATUS_STRUCTURE_AUTO + (seed + (uint32_t)n) % 6);
       several_place(&m.of[n], 5 * seed + (uint32_t)n);
       if (m.of[n].volume.dimensions[0] == 1 || m.of[n].volume.dimensions[1] == 1) {
         m.of[n].volume.matrix[0] = m.of[n].volume.matrix[5] = m.of[n].volume.matrix[10] = 1.0;
       }
     }
-    m.of[0].options.audit = 1;
-    m.of[0].options.jitter = seed % 4 == 0;
+    m.of[0].options.skipping.audit = 1;
+    m.of[0].options.sampling.jitter = seed % 4 == 0;
     const double eye[3] = { 40.0 - 3.0 * seed, 30, -20.0 + seed }, focal[3] = { 1, 2, 0 }, up[3] = { 0, 0, 1 };
     assert_int_equal(stratus_camera_perspective(*state, eye, focal, up, 40.0, 1.2, &m.of[0].camera), STRATUS_OK);
     several_draw(*state, &m, &drawn);
@@ -366,24 +366,24 @@ static void what_does_not_mix_is_refused(void** state)
   m.of[1].options = good
   m.of[1].options.mode = STRATUS_MODE_MAXIMUM;
   REFUSED(STRATUS_UNSUPPORTED, "volume 1 of several has mode maximum");
-  m.of[1].options.sampling = STRATUS_SAMPLING_CELLS;
-  m.of[1].options.shade = 1;
+  m.of[1].options.sampling.rule = STRATUS_SAMPLING_CELLS;
+  m.of[1].options.light.shade = 1;
   REFUSED(STRATUS_UNSUPPORTED, "by cells of a volume with light");
-  m.of[1].options.crop = 1;
-  m.of[1].options.crop_regions = 5;
+  m.of[1].options.clipping.crop = 1;
+  m.of[1].options.clipping.crop_regions = 5;
   REFUSED(STRATUS_UNSUPPORTED, "crop regions");
-  m.of[1].options.tolerance = -1.0;
+  m.of[1].options.sampling.tolerance = -1.0;
   REFUSED(STRATUS_INVALID_ARGUMENT, "tolerance");
-  m.of[1].options.label_count = 3;
+  m.of[1].options.mask.label_count = 3;
   REFUSED(STRATUS_INVALID_ARGUMENT, "3 labels without a mask");
   const stratus_transfer_2d empty = { .columns = 0, .rows = 1, .rgba = NULL };
-  m.of[1].options.transfer_2d = &empty;
+  m.of[1].options.optics.transfer_2d = &empty;
   REFUSED(STRATUS_INVALID_ARGUMENT, "0 x 1 entries");
   m.of[1].volume.spacing[0] = 0.0;
   REFUSED(STRATUS_INVALID_ARGUMENT, "spacing");
   m.of[1].volume.spacing[0] = 1.0;
   m.of[1].volume.origin[0] = 1e9;
-  m.of[1].options.sample_distance = 0.1;
+  m.of[1].options.sampling.distance = 0.1;
   REFUSED(STRATUS_INVALID_ARGUMENT, "wide");
   m.of[1].volume.origin[0] = 0.0;
   const stratus_ray_caster* kept = casters.of[1];
@@ -413,7 +413,7 @@ static void each_allocation_may_fail(void** state)
   several_casters casters;
   int failures = 0;
   several_create(*state, &m, 2, 400);
-  m.of[0].options.audit = 1;
+  m.of[0].options.skipping.audit = 1;
   assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
   several_draw(context, &m, &drawn);
   const int64_t live = allocator.live;

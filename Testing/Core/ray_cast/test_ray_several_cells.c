@@ -30,8 +30,8 @@ static void sharpen(picture_case* c, int kind)
     { base - scale, 0.005, base + 0.15 * scale, 0.01, base + 0.15 * scale, 0.5, base + scale, 0.02 },
   };
   memcpy(c->opacity, functions[kind], sizeof c->opacity);
-  c->options.sampling = STRATUS_SAMPLING_CELLS;
-  c->options.cell_error = 1e-5;
+  c->options.sampling.rule = STRATUS_SAMPLING_CELLS;
+  c->options.sampling.cell_error = 1e-5;
 }
 
 static void sharp_functions_mix_as_the_reference_does(void** state)
@@ -59,9 +59,9 @@ static void boxes_about_values_mix_as_the_reference_does(void** state)
     several_case m;
     several_create(*state, &m, 2, 520 + seed);
     for (int n = 0; n < 2; ++n) {
-      m.of[n].options.interpolation = n == 0 || seed % 2 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
-      m.of[n].options.sampling = STRATUS_SAMPLING_CELLS;
-      m.of[n].options.cell_error = 1e-5;
+      m.of[n].options.sampling.interpolation = n == 0 || seed % 2 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+      m.of[n].options.sampling.rule = STRATUS_SAMPLING_CELLS;
+      m.of[n].options.sampling.cell_error = 1e-5;
     }
     assert_true(several_psnr("nearest", *state, &m, &drawn) >= CELLS_DB);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
@@ -79,10 +79,10 @@ static void halves_of_a_sharp_volume_draw_the_whole(void** state)
       case_create(*state, &m.of[n], STRATUS_FLOAT32, 25, 28, 30, 12);
       const double opacity[8] = { -19.95, 0, -19.95, half, -19.6, half, -19.6, 0 };
       memcpy(m.of[n].opacity, opacity, sizeof opacity);
-      m.of[n].options.sampling = n && kind == 1 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_CELLS;
-      m.of[n].options.sample_distance = 0.02;
-      m.of[n].options.cell_error = 1e-4;
-      m.of[n].options.interpolation = kind == 2 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+      m.of[n].options.sampling.rule = n && kind == 1 ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_CELLS;
+      m.of[n].options.sampling.distance = 0.02;
+      m.of[n].options.sampling.cell_error = 1e-4;
+      m.of[n].options.sampling.interpolation = kind == 2 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
     }
     several_draw(*state, &m, &drawn);
     const double whole[8] = { -19.95, 0, -19.95, 0.3, -19.6, 0.3, -19.6, 0 };
@@ -106,15 +106,15 @@ static void an_empty_volume_changes_nothing(void** state)
       sharpen(&m.of[0], (int)seed);
     } else {
       case_create_local(*state, 40 + seed, &m.of[0]);
-      m.of[0].options.crop = 0;
-      m.of[0].options.tolerance = 0.001 * sqrt(2.0);
+      m.of[0].options.clipping.crop = 0;
+      m.of[0].options.sampling.tolerance = 0.001 * sqrt(2.0);
     }
     case_create(*state, &m.of[1], STRATUS_FLOAT32, 17, 20, 23, 6);
     memset(m.of[1].opacity, 0, sizeof m.of[1].opacity);
     m.of[1].transfer.opacity_count = 1;
-    m.of[1].options.sample_distance = 100.0;
+    m.of[1].options.sampling.distance = 100.0;
     several_draw(*state, &m, &drawn);
-    m.of[0].options.tolerance = 0.001;
+    m.of[0].options.sampling.tolerance = 0.001;
     case_render(*state, &m.of[0], &other);
     print_message("             with an empty one: %g; %s\n", (double)largest_difference(&drawn, &other), drawn.report.why);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
@@ -140,8 +140,8 @@ static void a_wall_by_cells_hides_what_is_behind(void** state)
     const double opacity[8] = { base - scale, 0, base + 0.2 * scale, 0.1, base + 0.2 * scale, 1.0, base + scale, 1.0 };
     memcpy(c->opacity, opacity, sizeof opacity);
     for (int i = 0; i < 2; ++i) {
-      m.of[i].options.sampling = STRATUS_SAMPLING_CELLS;
-      m.of[i].options.cell_error = 1e-5;
+      m.of[i].options.sampling.rule = STRATUS_SAMPLING_CELLS;
+      m.of[i].options.sampling.cell_error = 1e-5;
       scenes[i] = case_scene(&m.of[i]);
       scenes[i].camera = &m.of[0].camera;
     }
@@ -173,7 +173,7 @@ static void no_structure_changes_a_bit_of_rule_local(void** state)
     for (int n = 0; n < m.count; ++n) {
       if (n < 2) {
         case_create_local(*state, 70 + 3 * seed + (uint32_t)n, &m.of[n]);
-        m.of[n].options.crop_regions = STRATUS_CROP_INSIDE;
+        m.of[n].options.clipping.crop_regions = STRATUS_CROP_INSIDE;
       } else {
         case_create(*state, &m.of[n], STRATUS_UINT16, 30, 26, 22, seed);
         sharpen(&m.of[n], (int)(seed / 2 % 3));
@@ -181,11 +181,11 @@ static void no_structure_changes_a_bit_of_rule_local(void** state)
       if (seed % 3 == 2) { /* fewer blocks show anything */
         m.of[n].opacity[1] = m.of[n].opacity[3] = 0.0;
       }
-      m.of[n].options.structure = (stratus_structure)(STRATUS_STRUCTURE_AUTO + (seed + (uint32_t)n) % 6);
+      m.of[n].options.skipping.structure = (stratus_structure)(STRATUS_STRUCTURE_AUTO + (seed + (uint32_t)n) % 6);
       several_place(&m.of[n], 5 * seed + (uint32_t)n);
     }
-    m.of[0].options.audit = 1;
-    m.of[0].options.jitter = seed % 4 == 0;
+    m.of[0].options.skipping.audit = 1;
+    m.of[0].options.sampling.jitter = seed % 4 == 0;
     const double eye[3] = { 40.0 - 3.0 * seed, 40, -30.0 + seed }, focal[3] = { 1, 2, 0 }, up[3] = { 0, 0, 1 };
     assert_int_equal(stratus_camera_perspective(*state, eye, focal, up, 40.0, 1.2, &m.of[0].camera), STRATUS_OK);
     several_draw(*state, &m, &drawn);

@@ -22,8 +22,8 @@ static void take_many(stratus_context* context, several_case* m, int n, many* of
   case_destroy(&m->of[n]);
   m->of[n] = of->c;
   m->of[n].options = options;
-  m->of[n].options.sampling = STRATUS_SAMPLING_MIDPOINT;
-  m->of[n].options.sample_distance = 0.2;
+  m->of[n].options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+  m->of[n].options.sampling.distance = 0.2;
   m->of[n].camera = camera;
   several_place(&m->of[n], seed + 17u * (uint32_t)n);
   for (int c = 0; c < COMPONENTS; ++c) { /* the first component uses the moved case's points */
@@ -44,10 +44,10 @@ static void destroy(several_case* m, many* of)
 /* Structures and threads. */
 static void expect_no_bit_changed(stratus_context* context, several_case* m)
 {
-  m->of[0].options.audit = 1;
+  m->of[0].options.skipping.audit = 1;
   for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
     for (int n = 0; n < m->count; ++n) {
-      m->of[n].options.structure = (stratus_structure)structure;
+      m->of[n].options.skipping.structure = (stratus_structure)structure;
     }
     several_draw(context, m, &other);
     assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
@@ -68,10 +68,10 @@ static void components_mix_as_the_reference_does(void** state)
     take_many(*state, &m, i % 2, &of, types[i], counts[i], 41u + (uint32_t)i);
     picture_case* c = &m.of[i % 2];
     stratus_material materials[4] = { { 0 }, { 1, 0.2, 0.7, 0.3, 8.0 }, { 1, 0.5, 0.5, 0.0, 1.0 }, { 0 } };
-    c->options.dependent = dependent[i];
-    c->options.materials = i == 2 ? materials : NULL;
-    c->options.mean_components = i == 3;
-    c->options.shade = i == 0;
+    c->options.optics.dependent = dependent[i];
+    c->options.light.materials = i == 2 ? materials : NULL;
+    c->options.optics.mean_components = i == 3;
+    c->options.light.shade = i == 0;
     snprintf(what, sizeof what, "%d %s components%s", counts[i], dependent[i] ? "dependent" : "independent", i == 3 ? ", their mean" : "");
     assert_true(several_psnr(what, *state, &m, &drawn) >= MEDIA_DB);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
@@ -100,11 +100,11 @@ static void labels_mix_as_the_reference_does(void** state)
     const double steep = 0.3 * case_type_values[c->volume.type].scale, thin[4] = { 0.0, 0.3, steep, 1.0 };
     of.transfers[1].gradient = thin;
     of.transfers[1].gradient_count = i == 2 ? 2 : 0;
-    c->options.mask = labels;
-    c->options.label_count = 2;
-    c->options.shade = i == 1;
+    c->options.mask.bytes = labels;
+    c->options.mask.label_count = 2;
+    c->options.light.shade = i == 1;
     for (int n = 0; n < 2; ++n) {
-      m.of[n].options.sample_distance = 0.02; /* labels are steps, where the samples' error is of first order */
+      m.of[n].options.sampling.distance = 0.02; /* labels are steps, where the samples' error is of first order */
     }
     assert_true(several_psnr("labels", *state, &m, &drawn) >= 54.0);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
@@ -125,9 +125,9 @@ static void functions_of_two_variables_mix_as_the_reference_does(void** state)
     }
     transfer_2d_case_set(&m.of[n], &function, 12u + (uint32_t)i, 0.25);
     function.of.unit_distance = 3.0;
-    m.of[n].options.sampling = STRATUS_SAMPLING_MIDPOINT;
-    m.of[n].options.sample_distance = 0.1;
-    m.of[n].options.shade = i % 3 == 0;
+    m.of[n].options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+    m.of[n].options.sampling.distance = 0.1;
+    m.of[n].options.light.shade = i % 3 == 0;
     assert_true(several_psnr(i < 2 ? "value and gradient" : "two values", *state, &m, &drawn) >= 56.0);
     assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
     expect_no_bit_changed(*state, &m);
@@ -148,14 +148,14 @@ static void an_empty_volume_changes_nothing(void** state)
     of.c = m.of[0];
     of.transfers[1].opacity = of.transfers[0].opacity;
     if (i == 1) {
-      m.of[0].options.mask = of.c.options.mask = labels;
-      m.of[0].options.label_count = of.c.options.label_count = 2;
+      m.of[0].options.mask.bytes = of.c.options.mask.bytes = labels;
+      m.of[0].options.mask.label_count = of.c.options.mask.label_count = 2;
       of.transfers[1] = of.transfers[2] = of.transfers[0];
       of.transfers[2].unit_distance = 0.4;
     }
     if (i == 2) {
       transfer_2d_case_set(&m.of[0], &function, 3, 0.25);
-      of.c.options.transfer_2d = &function.of;
+      of.c.options.optics.transfer_2d = &function.of;
     }
     m.of[1].transfer.opacity_count = 1;
     m.of[1].opacity[1] = 0.0;

@@ -127,7 +127,7 @@ static double mixed_psnr(void** state, const char* what, double step)
   reference_mesh meshes[3];
   for (int n = 0; n < m.volumes.count; ++n) {
     scenes[n] = case_scene(&m.volumes.of[n]);
-    scenes[n].shading = m.volumes.of[n].options.shade ? &m.volumes.of[n].options.shading : NULL;
+    scenes[n].shading = m.volumes.of[n].options.light.shade ? &m.volumes.of[n].options.light.shading : NULL;
   }
   for (int n = 0; n < m.mesh_count; ++n) {
     meshes[n] = (reference_mesh){ &m.meshes[n].mesh, &m.meshes[n].transfer, m.meshes[n].options.clip_plane_count,
@@ -267,7 +267,7 @@ static void what_bounds_a_ray_bounds_it_in_meshes(void** state)
   const double inside[3] = { 1.3, 0.7, 1.1 }, focal[3] = { 30, 40, 35 }, up[3] = { 0, 1, 0 };
   assert_int_equal(stratus_camera_perspective(*state, inside, focal, up, 80.0, 1.2, &m.volumes.of[0].camera), STRATUS_OK);
   assert_true(mixed_psnr(state, "camera inside", 0.04) >= MIXED_DB);
-  m.volumes.of[0].options.jitter = 1;
+  m.volumes.of[0].options.sampling.jitter = 1;
   assert_true(mixed_psnr(state, "jitter", 0.04) >= MIXED_DB);
   mixed_destroy();
 }
@@ -282,8 +282,8 @@ static void a_wall_in_a_mesh_hides_what_is_behind(void** state)
     const double wall[8] = { base - scale, 0, base + 0.2 * scale, 0.1, base + 0.2 * scale, 1.0, base + scale, 1.0 };
     const double in_mesh[8] = { 0.0, 0.0, 0.6, 0.1, 0.6, 1.0, 1.0, 1.0 };
     memcpy(of_mesh ? m.meshes[0].opacity : c->opacity, of_mesh ? in_mesh : wall, sizeof wall);
-    c->options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
-    c->options.sample_distance = 0.02;
+    c->options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
+    c->options.sampling.distance = 0.02;
     assert_true(mixed_psnr(state, of_mesh ? "wall in the mesh" : "wall in the volume", 0.01) >= 42.0);
     int opaque = 0;
     for (int i = 0; i < CASE_PIXELS; ++i) {
@@ -319,10 +319,10 @@ static void no_structure_changes_a_bit(void** state)
   for (uint32_t seed = 0; seed < 6; seed += few_run() ? 5 : 1) {
     mixed_create(*state, 2, 1 + (int)(seed % 2), 570 + seed);
     for (int n = 0; n < 2; ++n) {
-      m.volumes.of[n].options.structure = (stratus_structure)(STRATUS_STRUCTURE_AUTO + (seed + (uint32_t)n) % 6);
+      m.volumes.of[n].options.skipping.structure = (stratus_structure)(STRATUS_STRUCTURE_AUTO + (seed + (uint32_t)n) % 6);
     }
-    m.volumes.of[0].options.audit = 1;
-    m.volumes.of[0].options.jitter = seed % 3 == 0;
+    m.volumes.of[0].options.skipping.audit = 1;
+    m.volumes.of[0].options.sampling.jitter = seed % 3 == 0;
     expect_drawn(state, &drawn);
     assert_int_equal(drawn.report.differing_pixels, 0);
     expect_drawn(state, &other);

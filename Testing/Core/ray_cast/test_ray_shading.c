@@ -17,7 +17,7 @@ static double lit_psnr(const char* what, stratus_context* context, const picture
   static float reference[4 * CASE_PIXELS];
   reference_scene scene = case_scene(c);
   double reference_db = 0.0;
-  scene.shading = &c->options.shading;
+  scene.shading = &c->options.light.shading;
   case_render(context, c, &drawn);
   assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 62.0, reference, NULL, &reference_db), 0);
   const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
@@ -29,11 +29,11 @@ static double lit_psnr(const char* what, stratus_context* context, const picture
 
 static void shine(picture_case* c)
 {
-  c->options.shade = 1;
-  c->options.shading.ambient = 0.15;
-  c->options.shading.diffuse = 0.7;
-  c->options.shading.specular = 0.35;
-  c->options.shading.specular_power = 12.5;
+  c->options.light.shade = 1;
+  c->options.light.shading.ambient = 0.15;
+  c->options.light.shading.diffuse = 0.7;
+  c->options.light.shading.specular = 0.35;
+  c->options.light.shading.specular_power = 12.5;
 }
 
 static void pictures_are_lit_as_the_reference_lights_them(void** state)
@@ -45,16 +45,16 @@ static void pictures_are_lit_as_the_reference_lights_them(void** state)
   shine(&c);
   lit_psnr("light at the eye", context, &c, MIDPOINT_DB);
 
-  c.options.shading.light_count = 2;
-  c.options.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 1, 0.4, 0.2 } };
-  c.options.shading.lights[1] = (stratus_light){ .vector = { 40, 50, -10 }, .color = { 0.2, 0.5, 1.5 }, .positional = 1 };
+  c.options.light.shading.light_count = 2;
+  c.options.light.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 1, 0.4, 0.2 } };
+  c.options.light.shading.lights[1] = (stratus_light){ .vector = { 40, 50, -10 }, .color = { 0.2, 0.5, 1.5 }, .positional = 1 };
   lit_psnr("two lights, two-sided", context, &c, MIDPOINT_DB);
-  c.options.shading.one_sided = 1;
+  c.options.light.shading.one_sided = 1;
   lit_psnr("two lights, one-sided", context, &c, MIDPOINT_DB);
-  c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+  c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
   lit_psnr("pre-integrated", context, &c, MIDPOINT_DB);
-  c.options.shading.lights[0].separate_specular = 1; /* the other light's highlights keep its colour */
-  c.options.shading.lights[0].specular_color[1] = 3.0;
+  c.options.light.shading.lights[0].separate_specular = 1; /* the other light's highlights keep its colour */
+  c.options.light.shading.lights[0].specular_color[1] = 3.0;
   lit_psnr("highlights of a colour of their own", context, &c, MIDPOINT_DB);
   case_destroy(&c);
 
@@ -78,15 +78,15 @@ static void lights_are_dimmed_and_have_cones_as_the_reference_says(void** state)
   picture_case c;
   case_create(context, &c, STRATUS_FLOAT32, 30, 26, 28, 5);
   shine(&c);
-  c.options.shading.light_count = 2;
-  stratus_light* lamps = c.options.shading.lights;
+  c.options.light.shading.light_count = 2;
+  stratus_light* lamps = c.options.light.shading.lights;
   lamps[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 0.2, 0.4, 0.9 } };
   lamps[1] = (stratus_light){ .vector = { 40, 50, -10 }, .color = { 20, 50, 15 }, .positional = 1, .attenuation = { 0.5, 0.02, 0.03 } };
   lit_psnr("dimmed", context, &c, MIDPOINT_DB);
   lamps[1] = (stratus_light){
     .vector = { 40, 40, -10 }, .color = { 4, 5, 2 }, .positional = 1, .cone_angle = 12.0, .axis = { -2.5, -2.7, 2.4 }, .cone_exponent = 8.0
   };
-  c.options.sample_distance = 0.02; /* the cone's border is a step */
+  c.options.sampling.distance = 0.02; /* the cone's border is a step */
   lit_psnr("a cone", context, &c, 55.0);
   const float before = drawn.rgba[4 * (CASE_HEIGHT / 2 * CASE_WIDTH + CASE_WIDTH / 2)];
   lamps[1].cone_angle = 90.0; /* is none */
@@ -101,7 +101,7 @@ static void lights_are_dimmed_and_have_cones_as_the_reference_says(void** state)
   const double turned[16] = { 0.8, -0.6, 0, 30, 0.6, 0.8, 0.1, -7, 0, 0, -1.2, 900, 0, 0, 0, 1 };
   memcpy(c.volume.matrix, turned, sizeof turned);
   case_camera(context, &c, 3, 1);
-  c.options.sample_distance = 0.2;
+  c.options.sampling.distance = 0.2;
   lamps[1] = (stratus_light){ .vector = { 60, 40, 930 }, .color = { 30, 50, 15 }, .positional = 1, .attenuation = { 0.1, 0.2, 0.02 } };
   lit_psnr("dimmed; uneven, turned, mirrored and sheared", context, &c, MIDPOINT_DB);
   case_destroy(&c);
@@ -120,13 +120,13 @@ static void what_is_wrong_with_a_lamp_is_said(void** state)
   picture_case c;
   case_create(context, &c, STRATUS_FLOAT32, 5, 6, 7, 5);
   shine(&c);
-  c.options.shading.light_count = 1;
+  c.options.light.shading.light_count = 1;
   stratus_ray_caster* caster = NULL;
   const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
     for (int positional = 0; positional < 2; ++positional) { /* fields that a directional light does not read are not checked */
-      c.options.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 },
+      c.options.light.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 },
         .color = { 1, 1, 1 },
         .positional = positional,
         .attenuation = { wrong[i].attenuation },
@@ -166,8 +166,8 @@ static void border_voxels_and_every_type_are_lit(void** state)
   case_destroy(&c);
   case_create(context, &c, STRATUS_UINT16, 20, 20, 20, 4);
   shine(&c);
-  c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
-  c.options.sample_distance = 0.02;
+  c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
+  c.options.sampling.distance = 0.02;
   lit_psnr("nearest", context, &c, MIDPOINT_DB);
   case_destroy(&c);
   stratus_context_destroy(context);
@@ -193,25 +193,25 @@ static void no_structure_thread_or_instruction_set_changes_a_bit(void** state)
     char what[64];
     case_create_random(contexts[0], seed, &c);
     shine(&c);
-    if (c.options.sampling == STRATUS_SAMPLING_CELLS) { /* which takes no light */
-      c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+    if (c.options.sampling.rule == STRATUS_SAMPLING_CELLS) { /* which takes no light */
+      c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
     }
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(contexts[0], &c, &drawn);
     lit += case_lit(&drawn) > 0;
     for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
       assert_true(isfinite(drawn.rgba[i]));
     }
     for (int s = STRATUS_STRUCTURE_BLOCK; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
-      c.options.structure = (stratus_structure)s;
+      c.options.skipping.structure = (stratus_structure)s;
       case_render(contexts[s % 3], &c, &other);
-      snprintf(what, sizeof what, "seed %u, %s", seed, stratus_structure_name(c.options.structure));
+      snprintf(what, sizeof what, "seed %u, %s", seed, stratus_structure_name(c.options.skipping.structure));
       if (memcmp(drawn.rgba, other.rgba, sizeof drawn.rgba) != 0 || memcmp(drawn.depth, other.depth, sizeof drawn.depth) != 0) {
         print_error("%s: another picture\n", what);
         fail();
       }
     }
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     contexts[2]->isa = 0;
     case_render(contexts[2], &c, &other);
     contexts[2]->isa = 1;
@@ -243,34 +243,34 @@ static void each_number_of_the_shading_has_its_effect(void** state)
   case_create(context, &c, STRATUS_FLOAT32, 24, 24, 24, 8);
   const double plain = light_of(context, &c);
   memcpy(&drawn, &other, sizeof drawn);
-  c.options.shade = 1;
-  c.options.shading.ambient = 1.0;
-  c.options.shading.diffuse = 0.0;
+  c.options.light.shade = 1;
+  c.options.light.shading.ambient = 1.0;
+  c.options.light.shading.diffuse = 0.0;
   assert_true(fabs(light_of(context, &c) - plain) < 1e-5 * plain); /* ambient light without any other shows the colours as they are */
   for (int i = 0; i < CASE_PIXELS; ++i) {                          /* light changes no opacity, no depth and no count */
     assert_true(drawn.rgba[4 * i + 3] == other.rgba[4 * i + 3]);
     assert_true(drawn.depth[i] == other.depth[i] && drawn.samples[i] == other.samples[i]);
   }
-  c.options.shading.ambient = 0.25;
+  c.options.light.shading.ambient = 0.25;
   assert_true(fabs(light_of(context, &c) - 0.25 * plain) < 1e-5 * plain);
-  c.options.shading.ambient = 0.0;
+  c.options.light.shading.ambient = 0.0;
   assert_true(light_of(context, &c) == 0.0);
-  c.options.shading.diffuse = 0.5;
+  c.options.light.shading.diffuse = 0.5;
   const double diffuse = light_of(context, &c);
   assert_true(diffuse > 0.05 * plain && diffuse < 0.5 * plain);
-  c.options.shading.one_sided = 1;
+  c.options.light.shading.one_sided = 1;
   assert_true(light_of(context, &c) < 0.9 * diffuse);
-  c.options.shading.one_sided = 0;
-  c.options.shading.specular = 0.5;
+  c.options.light.shading.one_sided = 0;
+  c.options.light.shading.specular = 0.5;
   const double broad = light_of(context, &c);
   assert_true(broad > 1.05 * diffuse);
-  c.options.shading.specular_power = 80.0;
+  c.options.light.shading.specular_power = 80.0;
   const double narrow = light_of(context, &c);
   assert_true(narrow > diffuse && narrow < 0.8 * broad);
-  c.options.shading.light_count = 0;
+  c.options.light.shading.light_count = 0;
   assert_true(light_of(context, &c) == 0.0);
-  c.options.shading.light_count = 1;
-  c.options.shading.lights[0] = (stratus_light){ .vector = { 1, 1, 1 }, .color = { 0, 1, 0 } };
+  c.options.light.shading.light_count = 1;
+  c.options.light.shading.lights[0] = (stratus_light){ .vector = { 1, 1, 1 }, .color = { 0, 1, 0 } };
   assert_true(light_of(context, &c) > 0.0);
   for (int i = 0; i < CASE_PIXELS; ++i) {
     assert_true(other.rgba[4 * i] == 0.0f && other.rgba[4 * i + 2] == 0.0f);
@@ -288,10 +288,10 @@ static void one_voxel_of_1e35_changes_neither_light_nor_gradient_opacity(void** 
   picture_case c;
   case_create(context, &c, STRATUS_FLOAT32, 26, 24, 28, 71);
   shine(&c);
-  c.options.crop = 1;
+  c.options.clipping.crop = 1;
   for (int a = 0; a < 3; ++a) {
-    c.options.crop_bounds[2 * a] = 3.0;
-    c.options.crop_bounds[2 * a + 1] = 40.0;
+    c.options.clipping.crop_bounds[2 * a] = 3.0;
+    c.options.clipping.crop_bounds[2 * a + 1] = 40.0;
   }
   for (int thinned = 0; thinned < 2; ++thinned) {
     c.transfer.gradient = steep;
@@ -320,14 +320,14 @@ static void lights_however_far_light(void** state)
   stratus_context* context = case_context("host", 1);
   picture_case c;
   case_create(context, &c, STRATUS_UINT8, 16, 16, 16, 1);
-  c.options.shade = 1;
-  c.options.shading.light_count = 1;
-  c.options.shading.lights[0] = (stratus_light){ .vector = { 0.3, -0.5, 0.7 }, .color = { 1.0, 1.0, 1.0 } };
+  c.options.light.shade = 1;
+  c.options.light.shading.light_count = 1;
+  c.options.light.shading.lights[0] = (stratus_light){ .vector = { 0.3, -0.5, 0.7 }, .color = { 1.0, 1.0, 1.0 } };
   const double by_direction = light_of(context, &c);
-  c.options.shading.lights[0].positional = 1;
+  c.options.light.shading.lights[0].positional = 1;
   for (size_t d = 0; d < sizeof distances / sizeof *distances; ++d) {
     const double vector[3] = { 0.3 * distances[d], -0.5 * distances[d], 0.7 * distances[d] };
-    memcpy(c.options.shading.lights[0].vector, vector, sizeof vector);
+    memcpy(c.options.light.shading.lights[0].vector, vector, sizeof vector);
     assert_true(fabs(light_of(context, &c) - by_direction) < 1e-5 * by_direction);
   }
   case_destroy(&c);
@@ -343,9 +343,9 @@ static void bad_shading_is_refused_where_it_would_be_used(void** state)
   case_create(context, &c, STRATUS_UINT8, 8, 8, 8, 1);
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
-  c.options.shading.diffuse = (double)NAN;
+  c.options.light.shading.diffuse = (double)NAN;
   assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_OK);
-  c.options.shade = 1;
+  c.options.light.shade = 1;
   assert_int_equal(
     stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "diffuse"));

@@ -105,27 +105,27 @@ static void matrices_cells_crops_planes_and_masks(void** state)
     c.options.slice = surface(kind, middle);
     expect_reference(*state, &c, "sheared and mirrored", kind);
   }
-  c.options.crop = 1;
-  c.options.crop_regions = STRATUS_CROP_ALL - STRATUS_CROP_INSIDE;
+  c.options.clipping.crop = 1;
+  c.options.clipping.crop_regions = STRATUS_CROP_ALL - STRATUS_CROP_INSIDE;
   for (int a = 0; a < 3; ++a) {
-    c.options.crop_bounds[2 * a] = 1.0;
-    c.options.crop_bounds[2 * a + 1] = 13.0;
+    c.options.clipping.crop_bounds[2 * a] = 1.0;
+    c.options.clipping.crop_bounds[2 * a + 1] = 13.0;
   }
   memcpy(&other, &drawn, sizeof other);
   expect_reference(*state, &c, "all regions but the middle one", 6);
   assert_true(reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS) < 40.0);
-  c.options.crop = 0;
-  c.options.mask = mask;
-  c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
+  c.options.clipping.crop = 0;
+  c.options.mask.bytes = mask;
+  c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
   case_render(*state, &c, &drawn);
   const int masked = case_lit(&drawn);
-  c.options.mask = NULL;
+  c.options.mask.bytes = NULL;
   case_render(*state, &c, &drawn);
   assert_true(masked > 100 && masked < case_lit(&drawn));
-  c.options.interpolation = STRATUS_INTERPOLATION_LINEAR;
-  c.options.clip_plane_count = 1;
-  c.options.clip_planes[0][0] = 1.0;
-  c.options.clip_planes[0][3] = -middle[0];
+  c.options.sampling.interpolation = STRATUS_INTERPOLATION_LINEAR;
+  c.options.clipping.clip_plane_count = 1;
+  c.options.clipping.clip_planes[0][0] = 1.0;
+  c.options.clipping.clip_planes[0][3] = -middle[0];
   case_render(*state, &c, &other);
   assert_true(case_lit(&other) > 100 && case_lit(&other) < case_lit(&drawn));
   case_destroy(&c);
@@ -187,19 +187,19 @@ static void no_structure_thread_or_instruction_set_changes_a_bit(void** state)
       grid_case_set_random(contexts[0], seed, &c, &grid);
     }
     c.options.mode = STRATUS_MODE_SLICE;
-    c.options.jitter = seed % 3 == 0; /* moves no surface */
+    c.options.sampling.jitter = seed % 3 == 0; /* moves no surface */
     middle_of(contexts[0], &c, middle);
     c.options.slice = surface((int)(seed % KINDS), middle);
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(contexts[0], &c, &drawn);
-    c.options.jitter = 0;
+    c.options.sampling.jitter = 0;
     lit += case_lit(&drawn) > 0;
     for (int s = STRATUS_STRUCTURE_AUTO; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
-      c.options.structure = (stratus_structure)s;
+      c.options.skipping.structure = (stratus_structure)s;
       contexts[2]->isa = (int)(seed % 2);
       case_render(contexts[s % 3], &c, &other);
       if (memcmp(drawn.rgba, other.rgba, sizeof drawn.rgba) != 0 || memcmp(drawn.depth, other.depth, sizeof drawn.depth) != 0) {
-        fail_msg("seed %u, %s: another picture", seed, stratus_structure_name(c.options.structure));
+        fail_msg("seed %u, %s: another picture", seed, stratus_structure_name(c.options.skipping.structure));
       }
     }
     case_destroy(&c);

@@ -34,8 +34,8 @@ static void set_mode(picture_case* c, stratus_mode mode)
 {
   c->options = stratus_ray_cast_options_default();
   c->options.mode = mode;
-  c->options.contour_count = 1;
-  c->options.contours[0] = case_type_values[c->volume.type].base + 0.1 * case_type_values[c->volume.type].scale;
+  c->options.optics.contour_count = 1;
+  c->options.optics.contours[0] = case_type_values[c->volume.type].base + 0.1 * case_type_values[c->volume.type].scale;
 }
 
 static void expect_alike(stratus_context* context, const picture_case* even, const picture_case* uneven, const char* what)
@@ -48,7 +48,7 @@ static void expect_alike(stratus_context* context, const picture_case* even, con
   assert_true(case_lit(&cubes) > 100);
   assert_true(thin.report.follows_voxels && !cubes.report.follows_voxels);
   assert_true(db >= THIN_DB);
-  if (thin.report.sampling == cubes.report.sampling && !uneven->options.shade) {
+  if (thin.report.sampling == cubes.report.sampling && !uneven->options.light.shade) {
     assert_true(more <= SAMPLES_MORE);
   }
 }
@@ -82,7 +82,7 @@ static void every_rule_draws_thin_voxels(void** state)
     picture_case even;
     case_create(*state, &even, STRATUS_FLOAT32, 30, 26, 20, 5);
     set_mode(&even, STRATUS_MODE_COMPOSITE);
-    even.options.sampling = rule;
+    even.options.sampling.rule = rule;
     case_camera(*state, &even, 3, 1);
     picture_case uneven = even;
     stretch(&uneven, 2, 1e-6);
@@ -93,7 +93,7 @@ static void every_rule_draws_thin_voxels(void** state)
   for (uint32_t seed = 1; seed < 6; ++seed) { /* options cannot request rule local */
     picture_case even;
     case_create_local(*state, seed, &even);
-    even.options.crop = 0;
+    even.options.clipping.crop = 0;
     case_camera(*state, &even, (int)seed, 1);
     picture_case uneven = even;
     stretch(&uneven, (int)(seed % 3), 1e-2);
@@ -137,13 +137,13 @@ static void lit_samples_follow_too(void** state)
     case_camera(*state, &c, 2, 0);
     stretch(&c, 2, 1e-2);
     c.transfer.unit_distance = 0.05;
-    c.options.shade = 1;
-    c.options.shading.specular = 0.35;
+    c.options.light.shade = 1;
+    c.options.light.shading.specular = 0.35;
     c.transfer.gradient = steep;
     c.transfer.gradient_count = thins ? 2 : 0;
     case_render(*state, &c, &thin);
     reference_scene scene = case_scene(&c);
-    scene.shading = &c.options.shading;
+    scene.shading = &c.options.light.shading;
     assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, THIN_DB, expected, NULL, &agreement), 0);
     const double db = reference_psnr(thin.rgba, expected, CASE_PIXELS);
     print_message("             lit: %.1f dB, the reference %.1f\n", db, agreement);
@@ -166,7 +166,7 @@ static void functions_of_two_variables_follow_too(void** state)
   stratus_transfer_2d slow = f.of;
   stretch(&uneven, 0, 1e-4);
   slow.unit_distance *= uneven.transfer.unit_distance / even.transfer.unit_distance;
-  uneven.options.transfer_2d = &slow;
+  uneven.options.optics.transfer_2d = &slow;
   expect_alike(*state, &even, &uneven, "two variables");
   free(f.pairs);
   case_destroy(&even);
@@ -180,18 +180,18 @@ static void no_structure_or_instruction_set_changes_a_bit(void** state)
   picture_case c;
   case_create(*state, &c, STRATUS_UINT16, 30, 26, 40, 9);
   set_mode(&c, STRATUS_MODE_COMPOSITE);
-  c.options.tolerance = 0.01;
+  c.options.sampling.tolerance = 0.01;
   case_camera(*state, &c, 5, 0);
   stretch(&c, 1, 1e-3);
   c.transfer.unit_distance = 1e-2;
   for (stratus_sampling rule = STRATUS_SAMPLING_MIDPOINT; rule <= STRATUS_SAMPLING_CELLS; ++rule) {
-    c.options.sampling = rule;
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.sampling.rule = rule;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(*state, &c, &cubes);
     assert_true(case_lit(&cubes) > 100);
     for (int isa = 0; isa <= host->isa; ++isa) {
       for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; ++structure) {
-        c.options.structure = (stratus_structure)structure;
+        c.options.skipping.structure = (stratus_structure)structure;
         other->isa = isa;
         case_render(other, &c, &thin);
         assert_memory_equal(thin.rgba, cubes.rgba, sizeof thin.rgba);
@@ -211,7 +211,7 @@ static void a_step_by_hand_is_one_for_all(void** state)
   case_render(*state, &c, &thin);
   assert_false(thin.report.follows_voxels);
   assert_true(thin.report.sample_distance >= 0.25 && thin.report.sample_distance <= 0.25);
-  c.options.sample_distance = 0.0;
+  c.options.sampling.distance = 0.0;
   case_render(*state, &c, &thin);
   assert_true(thin.report.follows_voxels);
   case_destroy(&c);

@@ -60,11 +60,11 @@ static void judge_scene(stratus_context* context, uint32_t seed, tally tallies[3
     stratus_ray_caster* caster = NULL;
     stratus_ray_cast_report report;
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
-    options.tolerance = tolerances[t];
+    options.sampling.tolerance = tolerances[t];
     assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
     draw(context, caster, &s, &options, rgba, &report);
     double largest;
-    const double ratio = error_between(rgba, truth, &largest) / options.tolerance;
+    const double ratio = error_between(rgba, truth, &largest) / options.sampling.tolerance;
     sum->unmet += !report.tolerance_met;
     if (report.tolerance_met) {
       sum->ratios[sum->cases++] = ratio;
@@ -72,7 +72,7 @@ static void judge_scene(stratus_context* context, uint32_t seed, tally tallies[3
       sum->far_beyond += ratio > 2.0;
       if (ratio > 1.0) {
         print_message("seed %u, %s, tolerance %g: error %.2f tolerances, %.2g in one channel; expected %g; %s\n", seed, s.kind,
-          options.tolerance, ratio, largest, report.expected_error, report.why);
+          options.sampling.tolerance, ratio, largest, report.expected_error, report.why);
       }
     }
     stratus_ray_caster_destroy(caster);
@@ -130,22 +130,22 @@ static void reports_expect_the_error_of_their_picture(void** state)
       stratus_ray_caster* caster = NULL;
       stratus_ray_cast_report report;
       stratus_ray_cast_options options = stratus_ray_cast_options_default();
-      options.shade = shade;
-      options.tolerance = 0.0;
+      options.light.shade = shade;
+      options.sampling.tolerance = 0.0;
       assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
       draw(context, caster, &s, &options, finest, &report);
       for (int t = 0; t < 4; ++t) {
         double largest;
-        options.tolerance = asked[t];
+        options.sampling.tolerance = asked[t];
         draw(context, caster, &s, &options, rgba, &report);
         const double error = error_between(rgba, finest, &largest);
         if (!isnan(report.expected_error) && error > 0.0) {
           ++cases;
           beyond += error > 1.5 * report.expected_error;
-          assert_true(!report.tolerance_met || report.expected_error <= options.tolerance);
+          assert_true(!report.tolerance_met || report.expected_error <= options.sampling.tolerance);
           if (error > 1.5 * report.expected_error) {
-            print_message("seed %u, %s, shade %d, tolerance %g: error %.3g, expected %.3g; %s\n", seed, s.kind, shade, options.tolerance,
-              error, report.expected_error, report.why);
+            print_message("seed %u, %s, shade %d, tolerance %g: error %.3g, expected %.3g; %s\n", seed, s.kind, shade,
+              options.sampling.tolerance, error, report.expected_error, report.why);
           }
         }
       }
@@ -174,16 +174,16 @@ static void a_probe_comes_with_data_function_and_tolerance_alone(void** state)
   draw(context, caster, &s, &options, rgba, &report);
   assert_int_equal(report.probe_builds, 1);
   assert_true(report.probe_samples > 0);
-  assert_true(report.expected_error <= options.tolerance);
+  assert_true(report.expected_error <= options.sampling.tolerance);
   const stratus_ray_cast_report first = report;
 
   const stratus_camera camera = s.camera;
   for (int a = 0; a < 3; ++a) { /* nearer, and from another side */
     s.camera.eye[a] += 0.2 * (a + 1) * s.volume.spacing[a] * (double)s.volume.dimensions[a];
   }
-  options.crop = 1;
-  options.crop_bounds[1] = options.crop_bounds[3] = options.crop_bounds[5] = 1e9;
-  options.structure = STRATUS_STRUCTURE_BLOCK;
+  options.clipping.crop = 1;
+  options.clipping.crop_bounds[1] = options.clipping.crop_bounds[3] = options.clipping.crop_bounds[5] = 1e9;
+  options.skipping.structure = STRATUS_STRUCTURE_BLOCK;
   draw(context, caster, &s, &options, rgba, &report);
   assert_int_equal(report.probe_builds, 1);
   assert_int_equal(report.probe_samples, 0);
@@ -195,27 +195,27 @@ static void a_probe_comes_with_data_function_and_tolerance_alone(void** state)
   s.opacity[3] *= 0.5;
   draw(context, caster, &s, &options, rgba, &report);
   assert_int_equal(report.probe_builds, 2);
-  options.tolerance = 0.05;
+  options.sampling.tolerance = 0.05;
   draw(context, caster, &s, &options, rgba, &report);
   assert_int_equal(report.probe_builds, 3);
   ++s.volume.revision;
   draw(context, caster, &s, &options, rgba, &report);
   assert_int_equal(report.probe_builds, 4);
 
-  options.sampling = STRATUS_SAMPLING_MIDPOINT; /* a rule and a step set by hand need no probe */
-  options.sample_distance = s.volume.spacing[0];
+  options.sampling.rule = STRATUS_SAMPLING_MIDPOINT; /* a rule and a step set by hand need no probe */
+  options.sampling.distance = s.volume.spacing[0];
   draw(context, caster, &s, &options, rgba, &report);
   assert_int_equal(report.probe_builds, 4);
   assert_true(isnan(report.expected_error) && report.tolerance_met);
-  assert_true(report.sample_distance == options.sample_distance);
+  assert_true(report.sample_distance == options.sampling.distance);
 
   /* The last measurement serves again if the options return, and equal input gives an equal choice after any earlier frame. */
   stratus_ray_caster* other = NULL;
   options = stratus_ray_cast_options_default();
-  options.tolerance = 0.05;
+  options.sampling.tolerance = 0.05;
   draw(context, caster, &s, &options, rgba, &report);
   assert_int_equal(report.probe_builds, 4);
-  assert_true(report.expected_error <= options.tolerance);
+  assert_true(report.expected_error <= options.sampling.tolerance);
   assert_int_equal(stratus_ray_caster_create(context, &other), STRATUS_OK);
   draw(context, other, &s, &options, again, &report);
   assert_memory_equal(rgba, again, sizeof rgba);
@@ -241,8 +241,8 @@ static void steps_in_a_dense_medium_are_short(void** state)
   const double opacity[4] = { 0.0, 0.9, 1.0, 0.9 };
   s.transfer.opacity = opacity;
   s.transfer.opacity_count = 2;
-  options.tolerance = 0.05;
-  options.sampling = STRATUS_SAMPLING_MIDPOINT;
+  options.sampling.tolerance = 0.05;
+  options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
   for (int dense = 0; dense < 2; ++dense) {
     const double voxel = fmin(fmin(s.volume.spacing[0], s.volume.spacing[1]), s.volume.spacing[2]);
     s.transfer.unit_distance = dense ? voxel : 1000.0 * voxel;

@@ -18,7 +18,7 @@ static double psnr(const char* what, stratus_context* context, const picture_cas
   static float reference[4 * CASE_PIXELS];
   reference_scene scene = case_scene(c);
   double reference_db = 0.0;
-  scene.shading = c->options.shade ? &c->options.shading : NULL;
+  scene.shading = c->options.light.shade ? &c->options.light.shading : NULL;
   case_render(context, c, &drawn);
   assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 62.0, reference, NULL, &reference_db), 0);
   const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
@@ -33,8 +33,8 @@ static void by_the_gradient_as_the_reference_says(void** state)
   case_create(*state, &c, STRATUS_FLOAT32, 30, 26, 28, 5);
   transfer_2d_case_set(&c, &function, 3, STEEPEST);
   assert_true(psnr("gradient", *state, &c) >= MIDPOINT_DB);
-  c.options.shade = 1;
-  c.options.shading.specular = 0.35;
+  c.options.light.shade = 1;
+  c.options.light.shading.specular = 0.35;
   assert_true(psnr("lit", *state, &c) >= MIDPOINT_DB);
   function.of.unit_distance = 2.5;
   ++function.of.revision;
@@ -48,7 +48,7 @@ static void by_the_gradient_as_the_reference_says(void** state)
   const double turned[16] = { 0.8, -0.6, 0, 30, 0.6, 0.8, 0.1, -7, 0, 0, -1.2, 900, 0, 0, 0, 1 };
   memcpy(c.volume.matrix, turned, sizeof turned);
   case_camera(*state, &c, 3, 1);
-  c.options.sample_distance = 0.15;
+  c.options.sampling.distance = 0.15;
   assert_true(psnr("uneven, turned, mirrored and sheared; parallel", *state, &c) >= MIDPOINT_DB);
   case_destroy(&c);
 }
@@ -67,8 +67,8 @@ static void of_every_type_at_borders_and_in_cells(void** state)
   picture_case c;
   case_create(*state, &c, STRATUS_UINT16, 20, 20, 20, 4);
   transfer_2d_case_set(&c, &function, 5, STEEPEST);
-  c.options.interpolation = STRATUS_INTERPOLATION_NEAREST;
-  c.options.sample_distance = 0.02;
+  c.options.sampling.interpolation = STRATUS_INTERPOLATION_NEAREST;
+  c.options.sampling.distance = 0.02;
   assert_true(psnr("nearest", *state, &c) >= MIDPOINT_DB);
   case_destroy(&c);
 }
@@ -83,7 +83,7 @@ static void by_a_second_component_as_the_reference_says(void** state)
     transfer_2d_case_set(&c, &function, 12u + (uint32_t)i, 0.0);
     c.volume.cell_centered = i == 1;
     case_camera(*state, &c, i, 0);
-    c.options.shade = i == 0;
+    c.options.light.shade = i == 0;
     assert_true(psnr(case_type_names[types[i]], *state, &c) >= MIDPOINT_DB);
     free(function.pairs);
     case_destroy(&c);
@@ -99,7 +99,7 @@ static void on_grids_whose_spacing_changes(void** state)
   grid_case_set(&c, &grid, GRID_GEOMETRIC, 7, 0.0, 1.0, 20.0, &none);
   transfer_2d_case_set(&c, &function, 9, 1.0);
   case_camera(*state, &c, 2, 0);
-  c.options.sample_distance = 0.01;
+  c.options.sampling.distance = 0.01;
   assert_true(psnr("stretched 20:1", *state, &c) >= MIDPOINT_DB);
   case_destroy(&c);
 }
@@ -124,7 +124,7 @@ static void equal_rows_draw_the_picture_of_the_function_of_the_value(void** stat
     }
   }
   case_render(*state, &c, &drawn);
-  c.options.transfer_2d = NULL;
+  c.options.optics.transfer_2d = NULL;
   c.transfer.opacity = opacity;
   c.transfer.color = color;
   c.transfer.opacity_count = c.transfer.color_count = (size_t)function.of.columns;
@@ -141,8 +141,8 @@ static void random_case(stratus_context* context, uint32_t seed, picture_case* c
   if (seed % 4 == 0) {
     grid_case_set_random(context, seed, c, grid);
   }
-  c->options.sampling = STRATUS_SAMPLING_MIDPOINT;
-  c->options.shade = seed % 3 == 0;
+  c->options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+  c->options.light.shade = seed % 3 == 0;
   function.pairs = NULL;
   if (seed % 2) {
     transfer_2d_case_pair(c, &function, seed + 5);
@@ -164,17 +164,17 @@ static void no_structure_thread_or_instruction_set_changes_a_bit(void** state)
     picture_case c;
     grid_case grid;
     random_case(contexts[0], seed, &c, &grid);
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(contexts[0], &c, &drawn);
     lit += case_lit(&drawn) > 0;
     for (int s = STRATUS_STRUCTURE_NONE; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
       const int used = s % 3;
-      c.options.structure = (stratus_structure)s;
+      c.options.skipping.structure = (stratus_structure)s;
       contexts[2]->isa = (int)(seed % 2);
       case_render(contexts[used == 0 ? 2 : used], &c, &other);
       skipped += s == STRATUS_STRUCTURE_DISTANCE && other.report.occupied_blocks < other.report.blocks && other.report.skipped > 0;
       if (memcmp(drawn.rgba, other.rgba, sizeof drawn.rgba) != 0 || memcmp(drawn.depth, other.depth, sizeof drawn.depth) != 0) {
-        fail_msg("seed %u, %s: another picture", seed, stratus_structure_name(c.options.structure));
+        fail_msg("seed %u, %s: another picture", seed, stratus_structure_name(c.options.skipping.structure));
       }
     }
     free(function.pairs);
@@ -201,15 +201,15 @@ static void the_tolerance_is_kept(void** state)
       transfer_2d_case_pair(&c, &function, seed + 40);
     }
     transfer_2d_case_set(&c, &function, seed, STEEPEST);
-    c.options.sampling = STRATUS_SAMPLING_AUTO;
-    c.options.sample_distance = 0.0;
-    c.options.termination = 0.0;
-    c.options.audit = 1;
+    c.options.sampling.rule = STRATUS_SAMPLING_AUTO;
+    c.options.sampling.distance = 0.0;
+    c.options.sampling.termination = 0.0;
+    c.options.skipping.audit = 1;
     const reference_scene scene = case_scene(&c);
     assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, 1.0 / 64.0, reference, NULL), 0);
     for (int t = 0; t < 2; ++t) {
       double squares = 0.0, count = 0.0, largest = 0.0;
-      c.options.tolerance = tolerances[t];
+      c.options.sampling.tolerance = tolerances[t];
       case_render(*state, &c, &drawn);
       assert_int_equal(drawn.report.differing_pixels, 0);
       assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_MIDPOINT);
@@ -249,7 +249,7 @@ static void new_entries_change_the_picture_and_the_same_rebuild_nothing(void** s
   ++function.of.revision;
   case_render_with(*state, caster, &c, &other);
   assert_true(memcmp(drawn.rgba, other.rgba, sizeof drawn.rgba) != 0);
-  c.options.transfer_2d = NULL;
+  c.options.optics.transfer_2d = NULL;
   case_render_with(*state, caster, &c, &other);
   assert_memory_equal(plain.rgba, other.rgba, sizeof plain.rgba);
   stratus_ray_caster_destroy(caster);
@@ -280,17 +280,17 @@ static void what_cannot_be_combined_or_is_no_function_is_refused(void** state)
   picture_case c;
   case_create(*state, &c, STRATUS_FLOAT32, 8, 8, 8, 8);
   transfer_2d_case_set(&c, &function, 3, STEEPEST);
-  c.options.sampling = STRATUS_SAMPLING_CELLS;
+  c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
   expect_refusal(*state, &c, STRATUS_UNSUPPORTED, "cells");
-  c.options.sampling = STRATUS_SAMPLING_PREINTEGRATED;
+  c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
   expect_refusal(*state, &c, STRATUS_UNSUPPORTED, "pre-integrated");
-  c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
+  c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
   c.options.mode = STRATUS_MODE_MAXIMUM;
   expect_refusal(*state, &c, STRATUS_UNSUPPORTED, "maximum");
   c.options.mode = STRATUS_MODE_COMPOSITE;
-  c.options.label_count = 2;
+  c.options.mask.label_count = 2;
   expect_refusal(*state, &c, STRATUS_UNSUPPORTED, "2 labels");
-  c.options.label_count = 0;
+  c.options.mask.label_count = 0;
   c.volume.value_stride = c.volume.components = 3;
   c.volume.dimensions[2] = 2;
   expect_refusal(*state, &c, STRATUS_UNSUPPORTED, "3 components");

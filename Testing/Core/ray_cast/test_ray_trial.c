@@ -13,10 +13,10 @@ static void make_case(stratus_context* context, picture_case* c)
   for (uint32_t seed = 1;; ++seed) {
     case_create_random(context, seed, c);
     c->options.mode = STRATUS_MODE_COMPOSITE;
-    c->options.block_size = 2;
-    c->options.structure = STRATUS_STRUCTURE_NONE;
+    c->options.skipping.block_size = 2;
+    c->options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(context, c, &first);
-    c->options.structure = STRATUS_STRUCTURE_DISTANCE;
+    c->options.skipping.structure = STRATUS_STRUCTURE_DISTANCE;
     case_render(context, c, &second);
     if (second.report.skipped > 0 && second.report.samples > 0 && second.report.occupied_blocks < second.report.blocks &&
       case_lit(&first) > 20) {
@@ -24,8 +24,8 @@ static void make_case(stratus_context* context, picture_case* c)
     }
     case_destroy(c);
   }
-  c->options.structure = STRATUS_STRUCTURE_AUTO;
-  c->options.audit = 1;
+  c->options.skipping.structure = STRATUS_STRUCTURE_AUTO;
+  c->options.skipping.audit = 1;
 }
 
 /* Draws without counts of pixels' samples, which no structure that follows from times gives. */
@@ -83,13 +83,13 @@ static void another_sampling_is_tried_anew(void** state)
   stratus_ray_costs costs = { .frame = { [STRATUS_STRUCTURE_NONE] = 2.0, [STRATUS_STRUCTURE_DISTANCE] = 8.0 },
     .build = { [STRATUS_STRUCTURE_OCTANT] = 1e9 } };
   make_case(*state, &c);
-  c.options.interpolation = STRATUS_INTERPOLATION_LINEAR;
+  c.options.sampling.interpolation = STRATUS_INTERPOLATION_LINEAR;
   assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
   caster->forced = &costs;
   for (int i = 0; i < 5; ++i) {
-    c.options.sampling = samplings[i].sampling;
-    c.options.sample_distance = samplings[i].step;
-    c.options.cell_error = samplings[i].cell_error;
+    c.options.sampling.rule = samplings[i].sampling;
+    c.options.sampling.distance = samplings[i].step;
+    c.options.sampling.cell_error = samplings[i].cell_error;
     /* each sampling's times contradict the earlier sampling's result */
     costs.frame[STRATUS_STRUCTURE_NONE] = i % 2 ? 3.0 : 2.0;
     costs.frame[STRATUS_STRUCTURE_DISTANCE] = i % 2 ? 2.5 : 8.0;
@@ -116,11 +116,11 @@ static void another_sampling_s_result_serves_until_the_next_trial(void** state)
     .build = { [STRATUS_STRUCTURE_OCTANT] = 1e9 },
     .trial = 0.15 };
   make_case(*state, &c);
-  c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
+  c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
   assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
   caster->forced = &costs;
   for (int frame = 0; frame < 5; ++frame) {
-    c.options.sample_distance = frame > 0 ? 0.5 : 1.0;
+    c.options.sampling.distance = frame > 0 ? 0.5 : 1.0;
     costs.frame[STRATUS_STRUCTURE_NONE] = frame > 0 ? 3.0 : 2.0;
     costs.frame[STRATUS_STRUCTURE_DISTANCE] = frame > 0 ? 2.0 : 3.0;
     draw(caster, &c);
@@ -140,12 +140,12 @@ static void all_trials_together_take_a_small_share(void** state)
   stratus_ray_costs costs = { .build = { [STRATUS_STRUCTURE_OCTANT] = 1e9 }, .trial = 0.1 };
   int trials = 0;
   make_case(*state, &c);
-  c.options.sampling = STRATUS_SAMPLING_MIDPOINT;
-  c.options.audit = 0;
+  c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+  c.options.skipping.audit = 0;
   assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
   caster->forced = &costs;
   for (int frame = 0; frame < FRAMES; ++frame) {
-    c.options.sample_distance = frame % 2 ? 2.0 : 1.0;
+    c.options.sampling.distance = frame % 2 ? 2.0 : 1.0;
     costs.frame[STRATUS_STRUCTURE_NONE] = 1.0 + 1e-4 * frame;
     costs.frame[STRATUS_STRUCTURE_DISTANCE] = 1.0;
     draw(caster, &c);
@@ -163,9 +163,9 @@ static void a_trial_s_tiles_are_drawn_once(void** state)
   make_case(*state, &c);
   const stratus_ray_costs costs = { .frame = { [STRATUS_STRUCTURE_NONE] = 4.0, [STRATUS_STRUCTURE_DISTANCE] = 3.0 },
     .build = { [STRATUS_STRUCTURE_OCTANT] = 1e9 } };
-  c.options.structure = STRATUS_STRUCTURE_DISTANCE;
+  c.options.skipping.structure = STRATUS_STRUCTURE_DISTANCE;
   case_render(*state, &c, &first);
-  c.options.structure = STRATUS_STRUCTURE_AUTO;
+  c.options.skipping.structure = STRATUS_STRUCTURE_AUTO;
   assert_int_equal(drawn_with(*state, &c, &costs, 1), STRATUS_STRUCTURE_DISTANCE);
   assert_int_equal(second.report.samples, first.report.samples);
   assert_int_equal(second.report.skipped, first.report.skipped);
@@ -181,9 +181,9 @@ static void a_picture_of_samples_follows_from_no_times(void** state)
   const stratus_ray_costs costs = { .frame = { [STRATUS_STRUCTURE_NONE] = 1.0, [STRATUS_STRUCTURE_DISTANCE] = 3.0 },
     .build = { [STRATUS_STRUCTURE_OCTANT] = 1e9 } };
   make_case(*state, &c);
-  c.options.structure = STRATUS_STRUCTURE_DISTANCE;
+  c.options.skipping.structure = STRATUS_STRUCTURE_DISTANCE;
   case_render(*state, &c, &first);
-  c.options.structure = STRATUS_STRUCTURE_AUTO;
+  c.options.skipping.structure = STRATUS_STRUCTURE_AUTO;
   assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
   caster->forced = &costs;
   draw(caster, &c);
@@ -226,9 +226,9 @@ static void a_tree_that_came_with_the_data_is_drawn_only_where_it_is_cheaper(voi
   for (uint32_t seed = 1; seed <= 40; ++seed) {
     case_create_random(*state, seed, &c);
     c.options.mode = STRATUS_MODE_COMPOSITE;
-    c.options.structure = STRATUS_STRUCTURE_NONE;
+    c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(*state, &c, &first);
-    c.options.structure = STRATUS_STRUCTURE_AUTO;
+    c.options.skipping.structure = STRATUS_STRUCTURE_AUTO;
     for (int cheap = 0; cheap < 2; ++cheap) {
       stratus_ray_caster* caster = NULL;
       const double tree = cheap ? 0.5 : 2.0;

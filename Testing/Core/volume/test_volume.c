@@ -361,8 +361,8 @@ static void read_everything(stratus_context* context, stratus_ray_caster* caster
   assert_int_equal(stratus_camera_perspective(context, eye, focal, up, 30, 1, &camera), STRATUS_OK);
   for (int setting = 0; setting < 12; ++setting) {
     stratus_ray_cast_options options = stratus_ray_cast_options_default();
-    options.structure = (stratus_structure)(setting % 6);
-    options.interpolation = (stratus_interpolation)(setting / 6);
+    options.skipping.structure = (stratus_structure)(setting % 6);
+    options.sampling.interpolation = (stratus_interpolation)(setting / 6);
     assert_int_equal(stratus_ray_caster_render(caster, v, &transfer, &camera, &options, &image, NULL), STRATUS_OK);
     options.mode = STRATUS_MODE_FIRST_HIT;
     assert_int_equal(stratus_ray_caster_render(caster, v, &transfer, &camera, &options, &image, NULL), STRATUS_OK);

@@ -21,16 +21,17 @@ typedef struct picture_case {
 static void choose_cuts(fuzz* f, stratus_ray_cast_options* o, const fuzz_field* field)
 {
   const stratus_volume* v = &field->view;
-  o->crop = fuzz_chance(f, 0.2) ? 1 : 0;
+  o->clipping.crop = fuzz_chance(f, 0.2) ? 1 : 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double width = v->spacing[axis] * (double)v->dimensions[axis], at = v->origin[axis] + width * fuzz_between(f, -0.3, 0.7);
-    o->crop_bounds[2 * axis] = fuzz_odd(f) ? fuzz_odd_real(f) : at;
-    o->crop_bounds[2 * axis + 1] = fuzz_odd(f) ? fuzz_odd_real(f) : at + width * fuzz_between(f, 0.0, 0.8);
+    o->clipping.crop_bounds[2 * axis] = fuzz_odd(f) ? fuzz_odd_real(f) : at;
+    o->clipping.crop_bounds[2 * axis + 1] = fuzz_odd(f) ? fuzz_odd_real(f) : at + width * fuzz_between(f, 0.0, 0.8);
   }
-  o->crop_regions = fuzz_chance(f, 0.5) ? STRATUS_CROP_INSIDE : (uint32_t)fuzz_next(f) & (fuzz_odd(f) ? 0xffffffffu : STRATUS_CROP_ALL);
-  o->clip_plane_count = fuzz_chance(f, 0.7) ? 0 : fuzz_integer(f, 0, STRATUS_CLIP_PLANES_MAX);
+  o->clipping.crop_regions =
+    fuzz_chance(f, 0.5) ? STRATUS_CROP_INSIDE : (uint32_t)fuzz_next(f) & (fuzz_odd(f) ? 0xffffffffu : STRATUS_CROP_ALL);
+  o->clipping.clip_plane_count = fuzz_chance(f, 0.7) ? 0 : fuzz_integer(f, 0, STRATUS_CLIP_PLANES_MAX);
   for (int p = 0; p < STRATUS_CLIP_PLANES_MAX; ++p) {
-    double* plane = o->clip_planes[p];
+    double* plane = o->clipping.clip_planes[p];
     fuzz_vector(f, -1.0, 1.0, plane);
     plane[3] = 0.0;
     for (int axis = 0; axis < 3; ++axis) { /* through the volume, somewhere */
@@ -48,9 +49,9 @@ static void choose_mask(fuzz* f, stratus_ray_cast_options* o, const picture_case
   for (size_t i = 0; mask && i < c->field.values; ++i) {
     mask[i] = labels ? (uint8_t)fuzz_below(f, 6) : (uint8_t)(fuzz_chance(f, 0.7) ? 255 : 0);
   }
-  o->mask = fuzz_input(f, mask, c->field.values);
-  o->mask_revision = fuzz_below(f, 2);
-  o->label_count = labels ? (fuzz_chance(f, 0.05) ? 255 : 1 + (int)fuzz_below(f, 6)) : 0;
+  o->mask.bytes = fuzz_input(f, mask, c->field.values);
+  o->mask.revision = fuzz_below(f, 2);
+  o->mask.label_count = labels ? (fuzz_chance(f, 0.05) ? 255 : 1 + (int)fuzz_below(f, 6)) : 0;
   free(mask);
 }
 
@@ -67,10 +68,10 @@ static void choose_surface_and_function(fuzz* f, stratus_ray_cast_options* o, co
   }
   o->slice.constant = fuzz_chance(f, 0.5) ? 0.0 : fuzz_real(f, -field->shortest, field->shortest);
   if (fuzz_odd(f) || (c->components <= 1 && !coordinates && fuzz_chance(f, 0.2))) {
-    o->clip_gradients = fuzz_flag(f);
-    o->clipped_value = fuzz_real(f, field->low, field->high);
+    o->clipping.clip_gradients = fuzz_flag(f);
+    o->clipping.clipped_value = fuzz_real(f, field->low, field->high);
   }
-  if (fuzz_odd(f) || (o->mode == STRATUS_MODE_COMPOSITE && c->components <= 2 && o->label_count == 0 && fuzz_chance(f, 0.2))) {
+  if (fuzz_odd(f) || (o->mode == STRATUS_MODE_COMPOSITE && c->components <= 2 && o->mask.label_count == 0 && fuzz_chance(f, 0.2))) {
     float rgba[4 * 9 * 9];
     stratus_transfer_2d of = { .columns = 1 + (int)fuzz_below(f, 9), .rows = 1 + (int)fuzz_below(f, 9), .revision = fuzz_next(f) };
     for (int i = 0; i < 4 * of.columns * of.rows; ++i) {
@@ -81,8 +82,8 @@ static void choose_surface_and_function(fuzz* f, stratus_ray_cast_options* o, co
     of.value_range[1] = of.second_range[1] = field->high > field->low ? field->high : field->low + fmax(1.0, fabs(field->low));
     of.second_range[0] = fuzz_odd(f) ? fuzz_odd_real(f) : of.second_range[0];
     of.unit_distance = fuzz_real(f, 0.1 * field->shortest, 10.0 * field->shortest);
-    o->transfer_2d = FUZZ_INPUT(f, of);
-    o->sampling = fuzz_odd(f) ? o->sampling : fuzz_chance(f, 0.5) ? STRATUS_SAMPLING_AUTO : STRATUS_SAMPLING_MIDPOINT;
+    o->optics.transfer_2d = FUZZ_INPUT(f, of);
+    o->sampling.rule = fuzz_odd(f) ? o->sampling.rule : fuzz_chance(f, 0.5) ? STRATUS_SAMPLING_AUTO : STRATUS_SAMPLING_MIDPOINT;
   }
 }
 
@@ -92,35 +93,35 @@ static stratus_ray_cast_options choose_options(fuzz* f, const picture_case* c)
   static const int sizes[] = { 0, 2, 4, 8, 16, 32 };
   const fuzz_field* field = &c->field;
   o.mode = (stratus_mode)(c->components > 1 && !fuzz_odd(f) ? 0 : fuzz_chance(f, 0.4) ? 0 : fuzz_choice(f, STRATUS_MODE_SLICE + 1));
-  o.structure = (stratus_structure)fuzz_choice(f, STRATUS_STRUCTURE_HYBRID + 1);
-  o.sampling = (stratus_sampling)fuzz_choice(f, STRATUS_SAMPLING_CELLS + 1);
-  o.interpolation = (stratus_interpolation)(o.mode == STRATUS_MODE_ISOSURFACE && !fuzz_odd(f) ? 0 : fuzz_choice(f, 2));
-  o.sample_distance = fuzz_chance(f, 0.4) ? 0.0 : fuzz_real(f, 0.1 * field->shortest, 10.0 * field->shortest);
-  o.termination = fuzz_chance(f, 0.5) ? o.termination : fuzz_real(f, 0.0, 1.0);
-  o.block_size = fuzz_odd(f) ? fuzz_integer(f, -1, 64) : sizes[fuzz_below(f, 6)];
+  o.skipping.structure = (stratus_structure)fuzz_choice(f, STRATUS_STRUCTURE_HYBRID + 1);
+  o.sampling.rule = (stratus_sampling)fuzz_choice(f, STRATUS_SAMPLING_CELLS + 1);
+  o.sampling.interpolation = (stratus_interpolation)(o.mode == STRATUS_MODE_ISOSURFACE && !fuzz_odd(f) ? 0 : fuzz_choice(f, 2));
+  o.sampling.distance = fuzz_chance(f, 0.4) ? 0.0 : fuzz_real(f, 0.1 * field->shortest, 10.0 * field->shortest);
+  o.sampling.termination = fuzz_chance(f, 0.5) ? o.sampling.termination : fuzz_real(f, 0.0, 1.0);
+  o.skipping.block_size = fuzz_odd(f) ? fuzz_integer(f, -1, 64) : sizes[fuzz_below(f, 6)];
   choose_cuts(f, &o, field);
-  o.audit = fuzz_chance(f, 0.3);
-  o.normals = (stratus_normals)fuzz_choice(f, 2);
-  fuzz_shading(f, field->bounds, field->edge, &o.shading);
-  o.shade = fuzz_chance(f, 0.25) ? fuzz_flag(f) : 0;
-  o.dependent = (c->components == 2 || (c->components == 4 && field->view.type == STRATUS_UINT8)) && fuzz_chance(f, 0.5);
+  o.skipping.audit = fuzz_chance(f, 0.3);
+  o.light.normals = (stratus_normals)fuzz_choice(f, 2);
+  fuzz_shading(f, field->bounds, field->edge, &o.light.shading);
+  o.light.shade = fuzz_chance(f, 0.25) ? fuzz_flag(f) : 0;
+  o.optics.dependent = (c->components == 2 || (c->components == 4 && field->view.type == STRATUS_UINT8)) && fuzz_chance(f, 0.5);
   if (fuzz_chance(f, 0.5)) {
-    o.average_range[0] = fuzz_real(f, field->low, 0.5 * (field->low + field->high));
-    o.average_range[1] = fuzz_real(f, 0.5 * (field->low + field->high), field->high);
+    o.optics.average_range[0] = fuzz_real(f, field->low, 0.5 * (field->low + field->high));
+    o.optics.average_range[1] = fuzz_real(f, 0.5 * (field->low + field->high), field->high);
   }
-  o.contour_count = fuzz_integer(f, 1, STRATUS_CONTOURS_MAX);
+  o.optics.contour_count = fuzz_integer(f, 1, STRATUS_CONTOURS_MAX);
   for (int i = 0; i < STRATUS_CONTOURS_MAX; ++i) {
-    o.contours[i] = fuzz_real(f, field->low, field->high);
+    o.optics.contours[i] = fuzz_real(f, field->low, field->high);
   }
   if (o.mode == STRATUS_MODE_FIRST_HIT) {
-    o.crop_regions = STRATUS_CROP_INSIDE;
+    o.clipping.crop_regions = STRATUS_CROP_INSIDE;
   } else if (fuzz_chance(f, 0.2)) {
     choose_mask(f, &o, c);
   }
-  o.label_count = fuzz_odd(f) ? (fuzz_chance(f, 0.5) ? -1 : 256) : o.label_count;
+  o.mask.label_count = fuzz_odd(f) ? (fuzz_chance(f, 0.5) ? -1 : 256) : o.mask.label_count;
   choose_surface_and_function(f, &o, c);
-  o.jitter = fuzz_chance(f, 0.2) ? fuzz_flag(f) : 0;
-  o.jitter_seed = (uint32_t)fuzz_next(f);
+  o.sampling.jitter = fuzz_chance(f, 0.2) ? fuzz_flag(f) : 0;
+  o.sampling.jitter_seed = (uint32_t)fuzz_next(f);
   return o;
 }
 
@@ -139,11 +140,11 @@ static stratus_status draw(fuzz* f, stratus_context* context, stratus_ray_caster
     "%s %s %s, interpolation %d, shade %d, labels %d, mask %d, crop %d, clips %d, audit %d, opaque %d, %s camera; %lld x %lld x %lld of "
     "type "
     "%d, %d components, stride %lld, cells %d, ghosts %d %d",
-    stratus_mode_name(options->mode), stratus_structure_name(options->structure), stratus_sampling_name(options->sampling),
-    (int)options->interpolation, options->shade, options->label_count, options->mask != NULL, options->crop, options->clip_plane_count,
-    options->audit, image->opaque_depth != NULL, c->camera.parallel ? "parallel" : "perspective", (long long)v->dimensions[0],
-    (long long)v->dimensions[1], (long long)v->dimensions[2], (int)v->type, v->components, (long long)v->value_stride, v->cell_centered,
-    v->point_ghosts != NULL, v->cell_ghosts != NULL);
+    stratus_mode_name(options->mode), stratus_structure_name(options->skipping.structure), stratus_sampling_name(options->sampling.rule),
+    (int)options->sampling.interpolation, options->light.shade, options->mask.label_count, options->mask.bytes != NULL,
+    options->clipping.crop, options->clipping.clip_plane_count, options->skipping.audit, image->opaque_depth != NULL,
+    c->camera.parallel ? "parallel" : "perspective", (long long)v->dimensions[0], (long long)v->dimensions[1], (long long)v->dimensions[2],
+    (int)v->type, v->components, (long long)v->value_stride, v->cell_centered, v->point_ghosts != NULL, v->cell_ghosts != NULL);
   ++f->tally->pictures;
   return STATUS_OF(context, stratus_ray_caster_render(caster, volume, transfers, camera, given, into, report));
 }
@@ -182,10 +183,10 @@ static void compare(fuzz* f, const picture_case* c, const stratus_image* image, 
     context->isa = (int)fuzz_below(f, (uint64_t)stratus_isa_best() + 1);
   }
   if (structures) {
-    options.structure = (stratus_structure)fuzz_below(f, STRATUS_STRUCTURE_HYBRID + 1);
-    options.sampling = report->sampling;
-    options.sample_distance = options.mode == STRATUS_MODE_FIRST_HIT ? options.sample_distance : report->sample_distance;
-    options.cell_error = report->cell_error;
+    options.skipping.structure = (stratus_structure)fuzz_below(f, STRATUS_STRUCTURE_HYBRID + 1);
+    options.sampling.rule = report->sampling;
+    options.sampling.distance = options.mode == STRATUS_MODE_FIRST_HIT ? options.sampling.distance : report->sample_distance;
+    options.sampling.cell_error = report->cell_error;
   }
   EXPECT(STATUS_OF(context, stratus_ray_caster_create(context, &caster)) == STRATUS_OK, "no caster");
   ++f->tally->objects;
@@ -194,7 +195,7 @@ static void compare(fuzz* f, const picture_case* c, const stratus_image* image, 
   EXPECT(status == STRATUS_OK, "a new caster draws it otherwise: %s: %s", stratus_status_name(status), stratus_context_message(context));
   /* A packet may query a structure for all of its rays at once, so that its width decides how many samples are skipped. An automatic
    * structure follows from times, and the skipped segments follow from it. */
-  const bool chosen = options.structure == STRATUS_STRUCTURE_AUTO && options.mode != STRATUS_MODE_FIRST_HIT;
+  const bool chosen = options.skipping.structure == STRATUS_STRUCTURE_AUTO && options.mode != STRATUS_MODE_FIRST_HIT;
   const bool counted = !structures && !chosen && !report->offered_tree && context->isa == f->context->isa;
   fuzz_check_same(f, image, &picture, counted, structures ? "with another structure" : "on a new caster");
   CALL(stratus_ray_caster_destroy(caster));
@@ -206,7 +207,7 @@ static fuzz_limits limits_of(const picture_case* c)
   const stratus_ray_cast_options* o = &c->options;
   const bool can_be_lit = o->mode == STRATUS_MODE_COMPOSITE || o->mode == STRATUS_MODE_ISOSURFACE;
   return (fuzz_limits){ .behind = c->camera.parallel,
-    .lit = (can_be_lit && o->shade) || o->mode == STRATUS_MODE_FIRST_HIT,
+    .lit = (can_be_lit && o->light.shade) || o->mode == STRATUS_MODE_FIRST_HIT,
     .surfaces = o->mode != STRATUS_MODE_ADDITIVE && o->mode != STRATUS_MODE_AVERAGE };
 }
 
@@ -226,12 +227,12 @@ static void step(fuzz* f, stratus_ray_caster* caster, const picture_case* c)
   stratus_status status = draw(f, f->context, caster, c, &c->options, &image, report);
   const bool troubled = f->memory.refused + f->progress.cancelled > 0;
   fuzz_calm(f);
-  const bool refused = status == STRATUS_UNSUPPORTED && c->options.sampling == STRATUS_SAMPLING_CELLS; /* with light, masks and more */
+  const bool refused = status == STRATUS_UNSUPPORTED && c->options.sampling.rule == STRATUS_SAMPLING_CELLS; /* with light, masks and more */
   EXPECT(status == STRATUS_OK || troubled || refused || !fuzz_is_tame(f), "%s: %s", stratus_status_name(status),
     stratus_context_message(f->context));
   if (troubled && fuzz_is_tame(f)) {
     status = draw(f, f->context, caster, c, &c->options, &image, report);
-    EXPECT(status == STRATUS_OK || refused || c->options.sampling == STRATUS_SAMPLING_CELLS, "after trouble: %s: %s",
+    EXPECT(status == STRATUS_OK || refused || c->options.sampling.rule == STRATUS_SAMPLING_CELLS, "after trouble: %s: %s",
       stratus_status_name(status), stratus_context_message(f->context));
   }
   if (status != STRATUS_OK) {
@@ -252,21 +253,21 @@ static void step(fuzz* f, stratus_ray_caster* caster, const picture_case* c)
 static const stratus_transfer* choose_transfers(fuzz* f, const picture_case* c)
 {
   const stratus_ray_cast_options* o = &c->options;
-  const int labels = o->label_count >= 1 && o->label_count <= 255 && o->mask ? o->label_count + 1 : 1;
+  const int labels = o->mask.label_count >= 1 && o->mask.label_count <= 255 && o->mask.bytes ? o->mask.label_count + 1 : 1;
   const stratus_transfer* transfers =
-    fuzz_transfers(f, c->components > 1 && !o->dependent ? c->components : labels, c->field.low, c->field.high, c->field.edge);
+    fuzz_transfers(f, c->components > 1 && !o->optics.dependent ? c->components : labels, c->field.low, c->field.high, c->field.edge);
   return transfers;
 }
 
 static void change_mask(fuzz* f, picture_case* c)
 {
-  if (c->options.mask) {
+  if (c->options.mask.bytes) {
     uint8_t* mask = malloc(c->field.values + 1);
     for (size_t i = 0; mask && i < c->field.values; ++i) {
       mask[i] = (uint8_t)fuzz_below(f, 3);
     }
-    fuzz_change(f, c->options.mask, mask);
-    ++c->options.mask_revision;
+    fuzz_change(f, c->options.mask.bytes, mask);
+    ++c->options.mask.revision;
     free(mask);
   }
 }
