@@ -159,9 +159,10 @@ static stratus_status check_header(stratus_context* context, const header* h, co
   }
   bool fine = h->method >= 0 && h->method < STRATUS_TREE_AUTO && h->leaps >= LEAPS_CHEBYSHEV && h->leaps <= LEAPS_UNCORRECTED &&
     (h->cell_log2 == 0 || h->cell_log2 == 2) && (h->leaps != LEAPS_UNCORRECTED || h->cell_log2 == 0) &&
-    (h->leaps == LEAPS_OCTANTS || h->entry_bytes == 2) && h->why[sizeof h->why - 1] == 0 && h->origin.intervals >= 0 &&
-    h->origin.intervals <= STRATUS_INTERVALS_MAX && h->voxels >= 0 && h->bricks >= 0 && (h->node_count == 0) == (h->voxels == 0) &&
-    (uint64_t)h->entry_count * (uint64_t)h->entry_bytes <= INT32_MAX && h->row_count <= INT32_MAX / 4 && h->mask_count <= INT32_MAX / 8;
+    (h->leaps != LEAPS_OCTANTS || h->cell_log2 == 2) && (h->leaps == LEAPS_OCTANTS || h->entry_bytes == 2) &&
+    h->why[sizeof h->why - 1] == 0 && h->origin.intervals >= 0 && h->origin.intervals <= STRATUS_INTERVALS_MAX && h->voxels >= 0 &&
+    h->bricks >= 0 && (h->node_count == 0) == (h->voxels == 0) && (uint64_t)h->entry_count * (uint64_t)h->entry_bytes <= INT32_MAX &&
+    h->row_count <= INT32_MAX / 4 && h->mask_count <= INT32_MAX / 8;
   for (int a = 0; a < 3; ++a) {
     fine = fine && h->dimensions[a] >= 1 && h->dimensions[a] <= STRATUS_AXIS_MAX;
   }
