@@ -63,6 +63,10 @@ stratus_context_options stratus_context_options_default(void)
 
 static stratus_status check_options(stratus_context* context, const stratus_context_options* options)
 {
+  if (context->isa < 0) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "this library was built for its own machine (STRATUS_ISAS=native), and needs %s, which this processor lacks", stratus_isa_name());
+  }
   if (options->threads < 0 || options->threads > THREADS_MAX) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "threads %d outside 0..%d", options->threads, THREADS_MAX);
   }

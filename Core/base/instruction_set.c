@@ -2,7 +2,7 @@
  * The instruction sets that this build contains, and the best that this machine runs. */
 #include "instruction_set.h"
 
-int stratus_isa_best(void)
+static int best_here(void)
 {
 #if STRATUS_ISA_COUNT > 1
   __builtin_cpu_init();
@@ -19,8 +19,28 @@ int stratus_isa_best(void)
   return 0;
 }
 
+int stratus_isa_best(void)
+{
+#ifdef STRATUS_ISA_ONLY
+  return best_here() == STRATUS_ISA_ONLY ? STRATUS_ISA_ONLY : -1;
+#else
+  return best_here();
+#endif
+}
+
 const char* stratus_isa_name(void)
 {
   static const char* const names[3] = { "baseline", "AVX2", "AVX-512" };
+#ifdef STRATUS_ISA_ONLY
+  return names[STRATUS_ISA_ONLY];
+#else
   return names[stratus_isa_best()];
+#endif
 }
+
+#ifdef STRATUS_ISA_MAIN /* CMake asks for the best set of the machine that builds */
+int main(void)
+{
+  return best_here();
+}
+#endif

@@ -3,12 +3,13 @@
 #ifndef STRATUS_INSTRUCTION_SET_H
 #define STRATUS_INSTRUCTION_SET_H
 
-/* Number of instruction sets that the build compiles: 0 the compiler's default, 1 AVX2 with FMA, 2 AVX-512. */
+/* Number of instruction sets that the build compiles: 0 the compiler's default, 1 AVX2 with FMA, 2 AVX-512. If STRATUS_ISA_ONLY is set, it
+ * is the highest of these, and the only one that the build compiles. */
 #ifndef STRATUS_ISA_COUNT
 #define STRATUS_ISA_COUNT 1
 #endif
 
-/* Returns the best of them that this machine runs. */
+/* Returns the best of them that this machine runs; -1 if it runs none. */
 int stratus_isa_best(void);
 /* Returns the best instruction set that is not above `most`. */
 static inline int stratus_isa_at_most(int most)
@@ -16,7 +17,7 @@ static inline int stratus_isa_at_most(int most)
   const int best = stratus_isa_best();
   return most < best ? most : best;
 }
-/* Returns its name, such as "AVX-512". */
+/* Returns its name, such as "AVX-512"; if the build has only one, that one's. */
 const char* stratus_isa_name(void);
 
 /* Names a function for the instruction set of its file: *_isa.c is compiled with STRATUS_ISA 0, 1 or 2. */
@@ -25,7 +26,13 @@ const char* stratus_isa_name(void);
 #define STRATUS_ISA_NAME(name) STRATUS_ISA_EXPAND(name, STRATUS_ISA)
 
 /* Initializes an array that an instruction set indexes: STRATUS_ISA_EACH(f) is { f_isa0, f_isa1, f_isa2 }, as far as the build has them. */
-#if STRATUS_ISA_COUNT == 1
+#ifdef STRATUS_ISA_ONLY
+#define STRATUS_ISA_ONE(name) STRATUS_ISA_EXPAND(name, STRATUS_ISA_ONLY)
+#define STRATUS_ISA_EACH(name)                                                                                                             \
+  {                                                                                                                                        \
+    STRATUS_ISA_ONE(name), STRATUS_ISA_ONE(name), STRATUS_ISA_ONE(name)                                                                    \
+  }
+#elif STRATUS_ISA_COUNT == 1
 #define STRATUS_ISA_EACH(name)                                                                                                             \
   {                                                                                                                                        \
     name##_isa0                                                                                                                            \
