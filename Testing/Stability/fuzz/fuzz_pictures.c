@@ -158,7 +158,7 @@ static void check_report(fuzz* f, const picture_case* c, const stratus_image* im
   EXPECT(w[0] >= 0 && w[0] <= w[1] && w[1] <= image->width && w[2] >= 0 && w[2] <= w[3] && w[3] <= image->height, "window %d %d %d %d",
     w[0], w[1], w[2], w[3]);
   EXPECT(memchr(r->why, '\0', sizeof r->why), "why does not end");
-  EXPECT((unsigned)r->structure <= STRATUS_STRUCTURE_HYBRID && (unsigned)r->sampling <= STRATUS_SAMPLING_CELLS, "structure %d",
+  EXPECT((unsigned)r->structure <= STRATUS_STRUCTURE_HYBRID && (unsigned)r->sampling <= STRATUS_SAMPLING_LOCAL, "structure %d",
     (int)r->structure);
   EXPECT(c->options.mode == STRATUS_MODE_FIRST_HIT || (r->sample_distance > 0.0 && isfinite(r->sample_distance)), "sample distance %g",
     r->sample_distance);
@@ -178,8 +178,8 @@ static void compare(fuzz* f, const picture_case* c, const stratus_image* image, 
   stratus_ray_caster* caster = NULL;
   stratus_ray_cast_options options = c->options;
   stratus_ray_cast_report other;
-  /* A distance that follows the voxels can't be set by hand. */
-  const bool structures = fuzz_chance(f, 0.5) && !report->follows_voxels;
+  /* Neither rule local nor a distance that follows the voxels can be set by hand. */
+  const bool structures = fuzz_chance(f, 0.5) && !report->follows_voxels && report->sampling != STRATUS_SAMPLING_LOCAL;
   if (!stratus_context_on_device(context)) {
     context->isa = (int)fuzz_below(f, (uint64_t)stratus_isa_best() + 1);
   }
