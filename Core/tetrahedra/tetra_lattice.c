@@ -185,7 +185,7 @@ static void keep_counts(stratus_tetra_mesh* tetra, const stratus_mesh* whole, co
   tetra->blanked = 6 * (whole->cell_count - counts->shown - counts->hidden);
 }
 
-static bool has_bit(const lattice_build* b, int64_t point)
+static inline bool has_bit(const lattice_build* b, int64_t point)
 {
   return point >= 0 && (b->bits[point / WORD] >> (point % WORD) & 1);
 }
@@ -284,14 +284,22 @@ static void find_turns(lattice_build* b, uint8_t* turns)
   }
 }
 
+/* The byte of a hexahedron, also of a lattice that turns one way and keeps none; 0: there is no visible hexahedron. */
+static inline int byte_at(const lattice_build* b, int64_t point)
+{
+  if (point < 0 || point >= b->mesh->point_count) {
+    return 0;
+  }
+  return b->turns ? b->turns[point] : has_bit(b, point) ? TETRA_TURNS_SHOWN | (b->left ? TETRA_TURNS_ALL : 0) : 0;
+}
+
 /* Whether a hexahedron and all its neighbours show and turn one way. */
 static bool is_inner(const lattice_build* b, int64_t first)
 {
-  const int byte = b->turns[first];
+  const int byte = byte_at(b, first);
   bool inner = byte == TETRA_TURNS_SHOWN || byte == (TETRA_TURNS_SHOWN | TETRA_TURNS_ALL);
   for (int axis = 0; axis < 3 && inner; ++axis) {
-    const int64_t before = first - b->step[axis], behind = first + b->step[axis];
-    inner = before >= 0 && b->turns[before] == byte && behind < b->mesh->point_count && b->turns[behind] == byte;
+    inner = byte_at(b, first - b->step[axis]) == byte && byte_at(b, first + b->step[axis]) == byte;
   }
   return inner;
 }
@@ -302,24 +310,28 @@ static int byte_behind(const lattice_build* b, int64_t first, int way, int f, in
   static const int after[4][3] = { { 1, 2, 0 }, { 1, 0, 2 }, { 0, 2, 1 }, { 2, 0, 1 } };
   const int* axes = stratus_lattice_ways[way];
   const int behind[3] = { axes[after[f][0]], axes[after[f][1]], axes[after[f][2]] };
-  const int64_t next = first + (f == 0 ? b->step[axes[0]] : f == 3 ? -b->step[axes[2]] : 0);
   *turn = turn_of(behind);
-  return next >= 0 && next < b->mesh->point_count ? b->turns[next] : 0;
+  return byte_at(b, first + (f == 0 ? b->step[axes[0]] : f == 3 ? -b->step[axes[2]] : 0));
 }
 
 /* Lists the faces between visible hexahedra and hidden ones, and between tetrahedra that turn left and others, unless faces is NULL, and
  * returns their count. *folded: raised by the number of the latter, of which each tetrahedron lists its own. */
-static size_t list_faces_of_turns(const lattice_build* b, stratus_tetra_face* faces, int64_t* folded)
+static size_t list_faces(const lattice_build* b, stratus_tetra_face* faces, int64_t* folded)
 {
   size_t count = 0;
   int64_t turning = 0;
   for (int64_t first = 0; first < b->mesh->point_count; ++first) {
-    if (!b->turns[first] || is_inner(b, first)) {
+    if (first % WORD == 0 && b->bits[first / WORD] == 0) {
+      first += WORD - 1;
+      continue;
+    }
+    const int byte = byte_at(b, first);
+    if (!byte || is_inner(b, first)) {
       continue;
     }
     for (int part = 0; part < 24; ++part) {
       const int way = part / 4, f = part % 4;
-      const int left = b->turns[first] >> turn_of(stratus_lattice_ways[way]) & 1;
+      const int left = byte >> turn_of(stratus_lattice_ways[way]) & 1;
       int turn;
       const int behind = byte_behind(b, first, way, f, &turn);
       if (behind && (behind >> turn & 1) == left) {
@@ -330,7 +342,7 @@ static size_t list_faces_of_turns(const lattice_build* b, stratus_tetra_face* fa
         tetrahedron(b->step, b->first + first, way, v);
         const bool right = stratus_face_points(v, f, p) * own_orientation(way) * (left ? -1 : 1) > 0;
         faces[count] = (stratus_tetra_face){ { p[0], p[right ? 1 : 2], p[right ? 2 : 1] }, v[f],
-          TETRA_CELL * ((int32_t)b->first + (int32_t)first) + left };
+          TETRA_CELL * ((int32_t)b->first + (int32_t)first) + (b->turns ? left : 0) };
       }
       turning += behind != 0;
       ++count;
@@ -340,45 +352,12 @@ static size_t list_faces_of_turns(const lattice_build* b, stratus_tetra_face* fa
   return count;
 }
 
-/* Lists the faces between visible hexahedra and hidden ones, unless faces is NULL, and returns their count. */
-static size_t list_faces(const lattice_build* b, stratus_tetra_face* faces)
-{
-  const int hand = b->left ? -1 : 1;
-  const int32_t base = (int32_t)b->first;
-  size_t count = 0;
-  for (int64_t first = 0; first < b->mesh->point_count; ++first) {
-    if (first % WORD == 0 && b->bits[first / WORD] == 0) {
-      first += WORD - 1;
-      continue;
-    }
-    for (int axis = 0; has_bit(b, first) && axis < 3; ++axis) {
-      const bool open[2] = { !has_bit(b, first + b->step[axis]), !has_bit(b, first - b->step[axis]) };
-      for (int way = 0; way < 6 && (open[0] || open[1]); ++way) {
-        for (int side = 0; side < 2; ++side) { /* opposite the first point, beyond the last; opposite the last, before the first */
-          const int f = side == 0 ? 0 : 3;
-          if (!open[side] || stratus_lattice_ways[way][side == 0 ? 0 : 2] != axis) {
-            continue;
-          }
-          if (faces) {
-            int32_t v[4], p[3];
-            tetrahedron(b->step, b->first + first, way, v);
-            const bool right = stratus_face_points(v, f, p) * own_orientation(way) * hand > 0;
-            faces[count] = (stratus_tetra_face){ { p[0], p[right ? 1 : 2], p[right ? 2 : 1] }, v[f], TETRA_CELL * (base + (int32_t)first) };
-          }
-          ++count;
-        }
-      }
-    }
-  }
-  return count;
-}
-
 static stratus_status make_faces(stratus_tetra_mesh* tetra, const lattice_build* builds)
 {
   void* memory = NULL;
   size_t count = 0;
   for (int part = 0; part < tetra->lattices; ++part) {
-    count += tetra->turns ? list_faces_of_turns(builds + part, NULL, &tetra->folded) : list_faces(builds + part, NULL);
+    count += list_faces(builds + part, NULL, &tetra->folded);
   }
   if (count > INT32_MAX / TETRA_FACE) {
     return stratus_fail(
@@ -387,9 +366,8 @@ static stratus_status make_faces(stratus_tetra_mesh* tetra, const lattice_build*
   TRY(stratus_allocate(tetra->context, count, sizeof(stratus_tetra_face), &memory));
   tetra->faces = memory;
   for (int part = 0; part < tetra->lattices; ++part) {
-    stratus_tetra_face* to = tetra->faces + tetra->face_count;
     int64_t counted = 0;
-    tetra->face_count += tetra->turns ? list_faces_of_turns(builds + part, to, &counted) : list_faces(builds + part, to);
+    tetra->face_count += list_faces(builds + part, tetra->faces + tetra->face_count, &counted);
   }
   return STRATUS_OK;
 }
