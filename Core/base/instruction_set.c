@@ -38,7 +38,7 @@ const char* stratus_isa_name(void)
 #endif
 }
 
-#ifdef STRATUS_ISA_MAIN /* CMake asks for the best set of the machine that builds */
+#ifdef STRATUS_ISA_MAIN /* CMake runs this on the machine that builds */
 int main(void)
 {
   return best_here();

@@ -303,7 +303,7 @@ private:
   size_t Drawn = 0;         // groups that are drawn
   vtkVolume* Current = nullptr;
   vtkAbstractVolumeMapper* CurrentMapper = nullptr;
-  std::list<std::pair<vtkWeakPointer<vtkRenderer>, vtkStratusLeftOut>> Told;
+  std::list<std::pair<vtkWeakPointer<vtkRenderer>, vtkStratusLeftOut>> Warned;
 };
 
 thread_local Round TheRound;
@@ -324,11 +324,12 @@ private:
 // Raises a warning unless the renderer has had it.
 void Round::Warn(const std::string& text)
 {
-  this->Told.remove_if([](const auto& told) { return !told.first; });
-  auto found = std::find_if(this->Told.begin(), this->Told.end(), [this](const auto& told) { return told.first == this->Renderer; });
-  if (found == this->Told.end()) {
-    this->Told.emplace_front(this->Renderer, vtkStratusLeftOut());
-    found = this->Told.begin();
+  this->Warned.remove_if([](const auto& warned) { return !warned.first; });
+  auto found =
+    std::find_if(this->Warned.begin(), this->Warned.end(), [this](const auto& warned) { return warned.first == this->Renderer; });
+  if (found == this->Warned.end()) {
+    this->Warned.emplace_front(this->Renderer, vtkStratusLeftOut());
+    found = this->Warned.begin();
   }
   vtkObject* object = this->CurrentMapper;
   found->second.WarnOnce(object ? object : this->Current, text);

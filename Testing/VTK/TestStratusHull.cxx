@@ -21,7 +21,7 @@ double Any(double low, double high)
 
 // A region as half-spaces, which this test finds itself.
 struct Region {
-  // How many points of a hundred lie in the region is not known in advance: planes may leave nothing.
+  // Planes may leave nothing of the region, so that the number of points in it is not known in advance.
   Region(bool turned, int planes)
   {
     const double box[6] = { Any(-2, 0), Any(0.1, 2), Any(-2, 0), Any(0.1, 2), Any(-2, 0), Any(0.1, 2) };
