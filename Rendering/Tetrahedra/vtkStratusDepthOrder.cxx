@@ -55,11 +55,15 @@ struct Entry {
 class DrawnProps : public vtkRenderer
 {
 public:
-  static std::vector<vtkProp*> Of(vtkRenderer* renderer)
+  static std::vector<vtkProp*> Of(vtkRenderer* renderer) { return List<DrawnProps>(renderer, renderer->*(&DrawnProps::PropArray)); }
+
+private:
+  // An array and its count, and in newer VTK a vector. Only the function that is called names the count.
+  template <class Drawn> static std::vector<vtkProp*> List(vtkRenderer* renderer, vtkProp** props)
   {
-    vtkProp** props = renderer->*(&DrawnProps::PropArray);
-    return props ? std::vector<vtkProp*>(props, props + renderer->*(&DrawnProps::PropArrayCount)) : std::vector<vtkProp*>();
+    return props ? std::vector<vtkProp*>(props, props + renderer->*(&Drawn::PropArrayCount)) : std::vector<vtkProp*>();
   }
+  template <class Drawn> static std::vector<vtkProp*> List(vtkRenderer*, const std::vector<vtkProp*>& props) { return props; }
 };
 
 Kind FindKind(vtkVolume* volume)
