@@ -6,6 +6,7 @@
 #include "picture.h"
 #include "ray_caster.h"
 #include "ray_frame.h"
+#include "ray_kept.h"
 #include "vector.h"
 #include "volume.h"
 
@@ -24,6 +25,7 @@ typedef struct blocks {
   int overlap[2];     /* two blocks that overlap; -1: none does */
   stratus_image part; /* room for the part of the picture that a block covers */
   float* ends;        /* of its rays */
+  stratus_kept* kept; /* modes whose rays keep a number; else NULL */
 } blocks;
 
 /* Finds the pixels that a block may cover. */
@@ -91,7 +93,7 @@ static bool set_ends(const blocks* b, const int window[4], float least, bool* wa
     const size_t row = (size_t)y * (size_t)b->image->width;
     float* ends = b->ends + (size_t)(y - window[2]) * (size_t)width;
     for (int x = window[0]; x < window[1]; ++x) {
-      const bool opaque = 1.0f - b->image->rgba[4 * (row + (size_t)x) + 3] <= least;
+      const bool opaque = !b->kept && 1.0f - b->image->rgba[4 * (row + (size_t)x) + 3] <= least;
       *ends++ = opaque ? 0.0f : b->image->opaque_depth ? b->image->opaque_depth[row + (size_t)x] : 1.0f;
       any = any || !opaque;
       *wanted = *wanted || (opaque && may_end);
@@ -143,8 +145,13 @@ static stratus_status draw_block(blocks* b, int number, stratus_ray_cast_report*
   options.sampling.tolerance /=
     sqrt(cbrt((double)b->count)); /* of errors of as many blocks as a ray may meet, which add up by their squares */
   const stratus_camera camera = camera_of(b, window);
-  TRY(stratus_ray_caster_render(in->caster, in->volume, in->transfer, &camera, &options, &part, report));
-  blend_behind(b, window, report->window);
+  if (b->kept) {
+    TRY(stratus_kept_draw(b->kept, number, &camera, &options, &part, report));
+    stratus_kept_join(b->kept, number, &part, window[0], window[2], report->window);
+  } else {
+    TRY(stratus_ray_caster_render(in->caster, in->volume, in->transfer, &camera, &options, &part, report));
+    blend_behind(b, window, report->window);
+  }
   for (int side = 0; side < 4; ++side) {
     report->window[side] += window[side / 2 * 2];
   }
@@ -221,6 +228,11 @@ static stratus_status measure(const blocks* b, stratus_block_box* boxes, stratus
   return STRATUS_OK;
 }
 
+static stratus_mode mode_of(const stratus_ray_cast_input* in)
+{
+  return in->options ? in->options->mode : STRATUS_MODE_COMPOSITE;
+}
+
 static stratus_status check(const blocks* b)
 {
   for (int n = 0; n < b->count; ++n) {
@@ -234,15 +246,52 @@ static stratus_status check(const blocks* b)
         b->context, STRATUS_INVALID_ARGUMENT, "the ray caster of block %d has another context than the one of block 0", n);
     }
     TRY(stratus_volume_check(b->context, in->volume));
-    const stratus_mode mode = in->options ? in->options->mode : STRATUS_MODE_COMPOSITE;
-    if (mode != STRATUS_MODE_COMPOSITE && mode != STRATUS_MODE_FIRST_HIT && mode != STRATUS_MODE_ISOSURFACE && mode != STRATUS_MODE_SLICE &&
-      b->count > 1) {
-      return stratus_fail(b->context, STRATUS_UNSUPPORTED,
-        "block %d of %d has mode %s, whose pictures don't lie one behind the other: composite, first-hit, isosurface and slice do", n,
-        b->count, stratus_mode_name(mode));
+    if (mode_of(in) != mode_of(b->inputs)) {
+      return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT, "block %d has mode %s, block 0 has %s: blocks are one picture of one mode",
+        n, stratus_mode_name(mode_of(in)), stratus_mode_name(mode_of(b->inputs)));
+    }
+    if (b->kept) { /* else the picture of each block checks its input */
+      TRY(stratus_ray_check_input(b->context, in->volume, in->transfer, in->options));
     }
   }
   return STRATUS_OK;
+}
+
+/* Draws the blocks in the order given, of one component if rays keep a number. */
+static stratus_status draw_all(blocks* b, const int* order, stratus_ray_cast_report* reports)
+{
+  const bool more = b->kept && b->kept->component > 0;
+  for (int i = 0; i < b->count; ++i) {
+    const int number = order[i];
+    stratus_ray_cast_report report = { .expected_error = NAN, .tolerance_met = 1 };
+    const stratus_status status = draw_block(b, number, &report);
+    if (status != STRATUS_OK) {
+      char message[sizeof b->context->message];
+      memcpy(message, b->context->message, sizeof message);
+      return stratus_fail(b->context, status, "block %d: %.900s", number, message);
+    }
+    if (reports && more) {
+      stratus_ray_cast_report_add(&reports[number], &report);
+    } else if (reports) {
+      reports[number] = report;
+    }
+  }
+  return STRATUS_OK;
+}
+
+/* Draws one component after the other. */
+static stratus_status draw_kept(blocks* b, const int* order, stratus_ray_cast_report* reports)
+{
+  const int components = stratus_volume_components(b->inputs[0].volume);
+  stratus_status status = STRATUS_OK;
+  TRY(stratus_kept_create(b->kept));
+  for (int c = 0; c < components && status == STRATUS_OK; ++c) {
+    stratus_kept_begin(b->kept, c);
+    status = draw_all(b, order, reports);
+    stratus_kept_finish(b->kept);
+  }
+  stratus_kept_destroy(b->kept);
+  return status;
 }
 
 stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
@@ -262,6 +311,8 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
   if (count == 1) {
     return stratus_ray_caster_render(inputs[0].caster, inputs[0].volume, inputs[0].transfer, camera, inputs[0].options, image, reports);
   }
+  stratus_kept kept = { .context = b.context, .mode = mode_of(inputs), .one_field = true, .inputs = inputs, .image = image };
+  b.kept = stratus_kept_is(kept.mode) && kept.mode != STRATUS_MODE_FIRST_HIT ? &kept : NULL; /* the nearest block has the hit, as light */
   TRY(check(&b));
   TRY(stratus_image_check(b.context, image));
   TRY(stratus_camera_check(b.context, camera, image));
@@ -270,22 +321,13 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
   TRY_CLEANUP(stratus_allocate(b.context, (size_t)count, sizeof(int), &order));
   TRY_CLEANUP(measure(&b, boxes, &eye, &slack));
   TRY_CLEANUP(stratus_block_order(b.context, boxes, count, &eye, slack, order, b.overlap));
-  TRY_CLEANUP(stratus_image_part_create(b.context, image, &b.part)); /* as large as the largest part may be */
+  /* as large as the largest part may be */
+  TRY_CLEANUP(b.kept ? stratus_kept_part_create(b.kept, &b.part) : stratus_image_part_create(b.context, image, &b.part));
   TRY_CLEANUP(stratus_allocate(b.context, (size_t)image->width * (size_t)image->height, sizeof(float), &ends));
   b.ends = ends;
-  for (int i = 0; i < count; ++i) {
-    const int number = ((const int*)order)[i];
-    stratus_ray_cast_report report = { .expected_error = NAN, .tolerance_met = 1 };
-    status = draw_block(&b, number, &report);
-    if (status != STRATUS_OK) {
-      char message[sizeof b.context->message];
-      memcpy(message, b.context->message, sizeof message);
-      stratus_fail(b.context, status, "block %d: %.900s", number, message);
-      goto cleanup;
-    }
-    if (reports) {
-      reports[number] = report;
-    }
+  status = (b.kept ? draw_kept : draw_all)(&b, order, reports);
+  if (status != STRATUS_OK) {
+    goto cleanup;
   }
   stratus_image_fill_bytes(image);
 cleanup:

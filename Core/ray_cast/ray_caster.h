@@ -92,6 +92,8 @@ struct stratus_ray_caster {
 
   stratus_ray_caster* parts[4]; /* of independent components, see ray_caster_pictures.c; NULL until such a mode is used */
 
+  bool keeps; /* pictures hold what rays keep, not its colour (ray_kept.h) */
+
   stratus_first_hit* first_hit; /* first_hit_picture.h; NULL until mode FIRST_HIT is used */
 
   stratus_ray_device* device; /* buffers on the OpenCL device; NULL: none */
@@ -139,6 +141,12 @@ uint64_t stratus_ray_differing(const stratus_image* image, const float* rgba, co
 /* One picture, of one component or of all that mix along a ray, of input that was checked. */
 stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
+
+/* ray_caster_pictures.c. Draws what rays keep of one independent component, in maximum, minimum, average or additive, or first hits.
+ * *drawn: the caster that has the component's structures. */
+stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  int component, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
+  const stratus_ray_caster** drawn, stratus_ray_cast_report* report);
 
 /* ray_frame.c: the arrays that a frame reads and writes, and the table among them with its size. */
 const void* stratus_ray_table_of(const stratus_ray_caster* caster, size_t* bytes);

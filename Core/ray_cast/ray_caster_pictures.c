@@ -51,6 +51,16 @@ static void add_component(stratus_ray_cast_report* sum, const stratus_ray_cast_r
   sum->tolerance_met = sum->tolerance_met && part->tolerance_met;
 }
 
+/* Finds the caster of an independent component, and makes it where there is none yet. */
+static stratus_status find_part(stratus_ray_caster* caster, int component, stratus_ray_caster** part)
+{
+  if (!caster->parts[component]) {
+    TRY(stratus_ray_caster_create(caster->context, &caster->parts[component]));
+  }
+  *part = caster->parts[component];
+  return STRATUS_OK;
+}
+
 /* In the report, counts and times are sums; the choices are the first component's. */
 static stratus_status draw_parts(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
@@ -62,11 +72,10 @@ static stratus_status draw_parts(stratus_ray_caster* caster, const stratus_volum
   stratus_image_clear(image);
   for (int c = 0; c < stratus_volume_components(volume); ++c) {
     const stratus_volume view = stratus_volume_component(volume, c);
+    stratus_ray_caster* one = NULL;
     stratus_ray_cast_report mine;
-    if (!caster->parts[c]) {
-      TRY_CLEANUP(stratus_ray_caster_create(caster->context, &caster->parts[c]));
-    }
-    TRY_CLEANUP(stratus_ray_render_one(caster->parts[c], &view, transfer + c, camera, options, &part, &mine));
+    TRY_CLEANUP(find_part(caster, c, &one));
+    TRY_CLEANUP(stratus_ray_render_one(one, &view, transfer + c, camera, options, &part, &mine));
     stratus_image_add(image, &part, (float)transfer[c].weight, opaque);
     if (c == 0) {
       *report = mine;
@@ -77,6 +86,23 @@ static stratus_status draw_parts(stratus_ray_caster* caster, const stratus_volum
   stratus_image_fill_bytes(image);
 cleanup:
   stratus_image_part_destroy(caster->context, &part);
+  return status;
+}
+
+stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  int component, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
+  const stratus_ray_caster** drawn, stratus_ray_cast_report* report)
+{
+  stratus_ray_caster* one = caster;
+  stratus_volume view = *volume;
+  if (draws_parts(volume, options)) {
+    view = stratus_volume_component(volume, component);
+    TRY(find_part(caster, component, &one));
+  }
+  one->keeps = options->mode != STRATUS_MODE_FIRST_HIT;
+  const stratus_status status = stratus_ray_render_one(one, &view, transfer + component, camera, options, image, report);
+  one->keeps = false;
+  *drawn = one;
   return status;
 }
 

@@ -244,6 +244,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     const bool found = !with_map || caster->occupancy->count > 0;
     arguments.values.has_hidden = caster->hides;
     stratus_ray_modes_arguments(caster, options, &arguments);
+    arguments.mode.kept = caster->keeps;
     stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
     stratus_ray_slice_arguments_of(volume, options, &arguments);
     stratus_ray_frame_structures(

@@ -214,8 +214,12 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->mode.sign = options->mode == STRATUS_MODE_MINIMUM ? -1.0f : 1.0f;
   a->mode.top = options->mode == STRATUS_MODE_MINIMUM ? -ranges->whole_lo : ranges->whole_hi;
   a->mode.sum = is_sum(options->mode);
+  a->mode.kept = 0;
   float counted[2] = { -INFINITY, INFINITY };
-  if (!additive) {
+  if (is_extreme(options->mode)) { /* values beyond never show, so that blocks of such values are skipped */
+    counted[0] = caster->values.count > 0 ? caster->values.of[0][0] : INFINITY;
+    counted[1] = caster->values.count > 0 ? caster->values.of[0][1] : -INFINITY;
+  } else if (!additive) {
     fetched_range(options->optics.average_range, ranges->bias, counted);
   }
   a->mode.counted_first = counted[0];

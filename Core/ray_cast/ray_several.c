@@ -6,6 +6,7 @@
 #include "ray_cast_rest.h"
 #include "ray_device_buffers.h"
 #include "ray_frame.h"
+#include "ray_kept.h"
 #include "ray_several_picture.h"
 #include "tiles.h"
 
@@ -211,6 +212,9 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
   s.context = stratus_several_context(inputs);
   if (count == 1 && inputs[0].caster) {
     return stratus_ray_caster_render(inputs[0].caster, inputs[0].volume, inputs[0].transfer, camera, inputs[0].options, image, reports);
+  }
+  if (stratus_kept_is(stratus_several_mode(inputs))) {
+    return stratus_several_kept(inputs, count, camera, image, reports);
   }
   for (int n = 0; n < count; ++n) {
     stratus_several_input* in = &s.inputs[n];

@@ -336,9 +336,14 @@ typedef struct stratus_ray_cast_input {
   const struct stratus_tetra_options* tetra_options; /* of a mesh; NULL: the defaults */
 } stratus_ray_cast_input;
 
-/* Draw 1..STRATUS_SEVERAL_MAX volumes as one medium. They may overlap, and each has its own place, grid, type, function and options. Where
- * volumes overlap, their optical depths and their emitted light add up. The order of the inputs matters only to rounding. A single input
- * gives the image of stratus_ray_caster_render().
+/* Draw 1..STRATUS_SEVERAL_MAX volumes as one medium, or in modes whose rays keep a number or a hit. They may overlap, and each has its own
+ * place, grid, type, function and options. Where volumes overlap, their optical depths and their emitted light add up. The order of the
+ * inputs matters only to rounding. A single input gives the image of stratus_ray_caster_render().
+ *
+ * All inputs have the same mode. In maximum, minimum, average, additive and first-hit, each input is drawn by itself, as
+ * stratus_ray_caster_render() or stratus_tetra_caster_render() draws it, and what its rays keep is joined: the best of the values that
+ * show, in its own input's colour and opacity; the sum of all; the mean over the lengths of all; the nearest hit. Values are fractions of
+ * their own input's range. Components are joined one after the other. Meshes have no first hits.
  *
  * Composite mode, whole volumes (no DUPLICATE ghosts), and as crop regions the inside or all. gradient_distance with a gradient opacity,
  * and clip_gradients with clip planes, are not drawn. Other input gives STRATUS_UNSUPPORTED. Components, labels, functions of two
@@ -370,7 +375,8 @@ STRATUS_API stratus_status stratus_ray_caster_render_several(const stratus_ray_c
  * the planes across these axes that separate the boxes. Blocks whose boxes overlap are drawn one behind the other, the nearest middle
  * first, and the reports of two of them say so. stratus_ray_caster_render_several() mixes overlapping volumes.
  *
- * Modes composite, first-hit, isosurface and slice; other modes give STRATUS_UNSUPPORTED for more than one block. Errors along a ray add up
+ * All blocks have the same mode. In maximum, minimum, average and additive, what a ray keeps of all blocks is joined; values are fractions
+ * of the range of all blocks, and the functions are inputs[0]'s. Errors along a ray add up
  * by their squares. Each block therefore has the tolerance of its options divided by the square root of the cube root of count.
  *
  * reports: NULL, or one for each block. The report of a block that cannot be seen has zeros, and says so. Each block is drawn as

@@ -293,12 +293,28 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   frame.table = caster->look.table;
   frame.march_sums = caster->look.sums;
   stratus_tetra_frame_shade(&frame, options);
-  stratus_tetra_frame_contours(&frame, caster->mesh, caster->look.transfer, options);
+  stratus_tetra_frame_contours(&frame, caster->mesh, caster->look.transfer, options, caster->keeps);
   stratus_tetra_frame_clip(&frame, mesh, options);
   stratus_tetra_frame_light(&frame, caster, mesh, transfer, options);
   stratus_tetra_frame_components(&frame, caster, options);
   report->transform_ms = stratus_now_ms() - start;
   return marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report);
+}
+
+static stratus_status draw_component(stratus_tetra_caster* caster, int component, const stratus_mesh* mesh,
+  const stratus_transfer* transfers, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image,
+  stratus_tetra_report* report, double* bias)
+{
+  stratus_tetra_part* other = component > 0 ? caster->parts + component - 1 : NULL;
+  if (other) {
+    stratus_tetra_part_swap(caster, other);
+  }
+  const stratus_status status = draw_one(caster, mesh, transfers + component, camera, options, image, report);
+  *bias = caster->mesh->bias;
+  if (other) {
+    stratus_tetra_part_swap(caster, other);
+  }
+  return status;
 }
 
 /* In the report, counts and times are sums; the method is the same for all parts. */
@@ -326,15 +342,8 @@ static stratus_status draw_parts(stratus_tetra_caster* caster, const stratus_mes
   stratus_image_clear(image);
   for (int c = 0; c < mesh->components; ++c) {
     stratus_tetra_report mine = { 0 };
-    stratus_tetra_part* other = c > 0 ? caster->parts + c - 1 : NULL;
-    if (other) {
-      stratus_tetra_part_swap(caster, other);
-    }
-    status = draw_one(caster, mesh, transfers + c, camera, options, &part, &mine);
-    if (other) {
-      stratus_tetra_part_swap(caster, other);
-    }
-    TRY_CLEANUP(status);
+    double bias;
+    TRY_CLEANUP(draw_component(caster, c, mesh, transfers, camera, options, &part, &mine, &bias));
     stratus_image_add(image, &part, (float)transfers[c].weight, opaque);
     add_report(report, &mine);
   }
@@ -432,4 +441,20 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
     *report = mine;
   }
   return STRATUS_OK;
+}
+
+stratus_status stratus_tetra_caster_render_kept(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+  int component, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, double* bias,
+  stratus_tetra_report* report)
+{
+  stratus_tetra_options marched = options ? *options : stratus_tetra_options_default();
+  const stratus_mesh* drawn = NULL;
+  marched.method = STRATUS_TETRA_METHOD_MARCH;
+  const stratus_tetra_subject of = { mesh, transfer, &marched };
+  TRY(take(caster, &of, camera, image, &drawn, report));
+  caster->keeps = true;
+  const stratus_status status = draw_component(caster, component, drawn, transfer, camera, &marched, image, report, bias);
+  caster->keeps = false;
+  fill_report(caster, report);
+  return status;
 }

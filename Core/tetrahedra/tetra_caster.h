@@ -96,6 +96,7 @@ typedef struct stratus_tetra_list stratus_tetra_list;   /* tetra_lattice.h */
 
 struct stratus_tetra_caster {
   stratus_context* context;
+  bool keeps;               /* pictures hold what rays keep, not its colour */
   stratus_mesh view;        /* the source of `mesh`; the list's where a lattice is listed */
   stratus_tetra_list* list; /* NULL: none */
   stratus_tetra_mesh* mesh;
@@ -122,6 +123,11 @@ typedef struct stratus_tetra_subject {
   const stratus_tetra_options* options;
 } stratus_tetra_subject;
 
+/* tetra_caster.c: draws, by marching, what rays keep of one component (kernels/tetrahedra/tetra_arguments.h, `kept`). *bias: what values in
+ * the image are relative to. */
+stratus_status stratus_tetra_caster_render_kept(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+  int component, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, double* bias,
+  stratus_tetra_report* report);
 /* tetra_caster.c: makes a frame of mode composite whose rays another room marches: its entries are counted, and to be found by tile. *shows
  * false: nothing of the mesh shows, and there is no frame. */
 stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera,
@@ -175,8 +181,8 @@ stratus_status stratus_tetra_value_sums(
   stratus_context* context, const stratus_table* table, const stratus_table_values* values, const double range[2], int32_t** sums);
 /* Sets mode, contours and planes of a frame whose table is set. */
 void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options);
-void stratus_tetra_frame_contours(
-  stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer, const stratus_tetra_options* options);
+void stratus_tetra_frame_contours(stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer,
+  const stratus_tetra_options* options, bool keeps);
 void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);
 /* tetra_light.c: light and gradient opacity. */
 stratus_status stratus_tetra_light_check(

@@ -114,12 +114,13 @@ void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_op
   a->sign = options->mode == STRATUS_TETRA_MINIMUM ? -1.0f : 1.0f;
 }
 
-void stratus_tetra_frame_contours(
-  stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer, const stratus_tetra_options* options)
+void stratus_tetra_frame_contours(stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer,
+  const stratus_tetra_options* options, bool keeps)
 {
   stratus_tetra_arguments* a = &frame->arguments;
   a->grey =
     options->mode == STRATUS_TETRA_ADDITIVE ? (float)(((double)frame->table->size + 1.0) / SUM_MOST / transfer->unit_distance) : 0.0f;
+  a->kept = keeps ? (float)(((double)frame->table->size + 1.0) / SUM_MOST) : 0.0f;
   a->contour_count = 0;
   for (int n = 0; options->mode == STRATUS_TETRA_ISOSURFACE && n < options->contour_count; ++n) { /* insertion sort without duplicates */
     const float value = (float)(options->contours[n] - mesh->bias);

@@ -2,6 +2,7 @@
 #include "vtkStratusMultiBlockVolumeMapper.h"
 
 #include "vtkStratusAMR.h"
+#include "vtkStratusBlockMask.h"
 #include "vtkStratusDepthOrder.h"
 #include "vtkStratusJointPicture.h"
 #include "vtkStratusVolumeMapperInternals.h"
@@ -86,12 +87,14 @@ public:
   std::vector<Block> Find(vtkStratusMultiBlockVolumeMapper* mapper, vtkVolume* volume, std::string& warning, std::string& error);
   void Configure(vtkStratusMultiBlockVolumeMapper* from, const std::vector<Block>& blocks); // makes a mapper of each block
   void Configure(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to) const;
+  bool CutMask(std::string& error);                                         // gives each block its part of the mask
   bool Measure(vtkRenderer* renderer, vtkVolume* volume, double choice[3]); // vtkStratusMultiBlockVolumeMapper::MeasureSampling()
   // Draws all mappers' blocks in one picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* volume, std::string& error);
 
   vtkNew<vtkStratusVolumeMapper> Settings, Whole;
   std::vector<vtkSmartPointer<vtkStratusVolumeMapper>> Mappers; // of the blocks, in the input's order
+  std::vector<vtkStratusBlockMask> Masks;                       // of the blocks
   vtkStratusJointPicture Picture;
   vtkStratusCellFinder Finder;
   std::string Error, Warning;
@@ -265,6 +268,24 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   }
 }
 
+bool vtkStratusMultiBlockVolumeMapper::Internals::CutMask(std::string& error)
+{
+  vtkImageData* mask = this->Settings->GetMaskInput();
+  this->Masks.resize(this->Mappers.size());
+  for (size_t i = 0; i < this->Mappers.size() && error.empty(); ++i) {
+    vtkStratusVolumeMapper* block = this->Mappers[i];
+    int on_cells = 0;
+    vtkDataSet* grid = vtkDataSet::SafeDownCast(block->GetDataObjectInput());
+    if (mask && grid) {
+      vtkAbstractMapper::GetScalars(
+        grid, block->GetScalarMode(), block->GetArrayAccessMode(), block->GetArrayId(), block->GetArrayName(), on_cells);
+    }
+    block->SetMaskInput(mask && grid ? this->Masks[i].Get(mask, grid, on_cells == 1, error) : nullptr);
+    block->SetMaskType(this->Settings->GetMaskType());
+  }
+  return error.empty();
+}
+
 void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to) const
 {
   vtkStratusVolumeMapper* settings = this->Settings;
@@ -434,6 +455,9 @@ void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* 
   const std::vector<Block> blocks = this->Internal->Find(this, volume, warning, error);
   auto& mappers = this->Internal->Mappers;
   this->Internal->Configure(this, blocks);
+  if (error.empty()) {
+    this->Internal->CutMask(error);
+  }
   for (size_t i = 0; i < blocks.size() && !this->Internal->IsRefined; ++i) {
     for (size_t j = 0; j < i && warning.empty(); ++j) {
       if (Overlap(blocks[i], blocks[j])) {
@@ -476,12 +500,14 @@ bool vtkStratusMultiBlockVolumeMapper::MeasureSampling(vtkRenderer* renderer, vt
     const double own[4] = { 0.0, -1.0, 0.0, -1.0 };
     std::copy_n(own, 4, this->Internal->Whole->Internal->Transfer2DRanges);
     this->Internal->Whole->SetInputDataObject(whole);
+    this->Internal->Whole->SetMaskInput(this->Internal->Settings->GetMaskInput());
+    this->Internal->Whole->SetMaskType(this->Internal->Settings->GetMaskType());
     this->Internal->Whole->SetDevice(this->Internal->Settings->GetDevice());
     return this->Internal->Whole->MeasureSampling(renderer, volume, choice);
   }
   std::string unused, error;
   this->Internal->Configure(this, this->Internal->Find(this, volume, unused, error));
-  return error.empty() && this->Internal->Measure(renderer, volume, choice);
+  return error.empty() && this->Internal->CutMask(error) && this->Internal->Measure(renderer, volume, choice);
 }
 
 void vtkStratusMultiBlockVolumeMapper::SetTransfer2DRanges(const double ranges[4])

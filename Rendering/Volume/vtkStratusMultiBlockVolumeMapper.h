@@ -20,9 +20,10 @@
  * error, and so is vtkNonOverlappingAMR.
  *
  * Set the members of vtkVolumeMapper (scalars, blend mode, cropping, clipping planes) at this mapper, and all other settings at
- * GetSettings(). Both hold for all blocks. The blocks' frames are blended as floats, so that their borders do not show. This supports the
- * blend modes composite, isosurface and slice, and first hits; more than one block in another mode is refused by an error, and nothing is
- * drawn. The cost of a frame grows with the visible part of each block. Each block keeps its own structure and tables.
+ * GetSettings(). Both hold for all blocks. The blocks' frames are blended as floats, so that their borders do not show. All blend modes
+ * and first hits are drawn. Maximum, minimum, average and additive are of all blocks together, with the range of all values. A mask or a
+ * label map of GetSettings() may have any grid: each value of a block takes the byte of the mask's nearest point, and 0 outside the mask.
+ * The cost of a frame grows with the visible part of each block. Each block keeps its own structure and tables.
  *
  * Among other volumes of the renderer it is drawn by depth. Volumes that overlap it are drawn over it or under it, with a warning.
  *

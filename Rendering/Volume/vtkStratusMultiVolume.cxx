@@ -124,10 +124,6 @@ bool vtkStratusMultiVolume::Internals::PrepareContext(std::string& error)
 bool vtkStratusMultiVolume::Internals::DescribeVolume(
   vtkRenderer* renderer, vtkVolume* volume, vtkStratusVolumeMapper* mapper, std::string& error)
 {
-  if (mapper->RenderMode != vtkStratusVolumeMapper::COMPOSITE_MODE) {
-    error = "first hits are not supported by vtkStratusMultiVolume, only render mode composite is";
-    return false;
-  }
   if (mapper->Internal->Describe(renderer, volume, this->Options[this->Count], error)) {
     mapper->Internal->LeftOut.Warn(mapper);
   }

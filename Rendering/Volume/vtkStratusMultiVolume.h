@@ -16,7 +16,11 @@
  * by cell, of blend mode composite without light and gradient opacity, by method auto or march. At least one volume must have a
  * vtkStratusVolumeMapper. Where there is a mesh the host draws.
  *
- * Volumes support blend mode composite, one to four components, point and cell data, functions of two variables (TF_2D), light, gradient
+ * In maximum, minimum, average and additive intensity and in first hits, which all volumes must then have, each volume is drawn by itself,
+ * and the picture shows the best of the values that show, the sum, the mean over the lengths in all volumes, or the nearest hit. Meshes
+ * have no first hits.
+ *
+ * In composite mode volumes support one to four components, point and cell data, functions of two variables (TF_2D), light, gradient
  * opacity, binary masks and label maps, crop boxes (the inside region, or all) and up to six clipping planes a volume. The prop supports
  * opaque geometry, translucent surfaces peeled with volumes, and hardware picking. Everything else is refused by an error, and nothing is
  * drawn. A single volume is drawn as by its mapper.

@@ -66,6 +66,7 @@ std::string Mixer::FindHindrance(const std::vector<vtkVolume*>& volumes)
   }
   std::set<vtkAbstractVolumeMapper*> mappers;
   bool any = false;
+  int first = vtkVolumeMapper::COMPOSITE_BLEND;
   for (vtkVolume* volume : volumes) {
     auto* images = vtkStratusVolumeMapper::SafeDownCast(volume->GetMapper());
     auto* meshes = vtkStratusTetrahedraMapper::SafeDownCast(volume->GetMapper());
@@ -76,9 +77,13 @@ std::string Mixer::FindHindrance(const std::vector<vtkVolume*>& volumes)
         "vtkStratusTetrahedraMapper is";
     }
     const int mode = images ? images->GetBlendMode() : meshes->GetBlendMode();
-    if (mode != vtkVolumeMapper::COMPOSITE_BLEND) {
-      return "blend mode " + std::to_string(mode) + " is not mixed, only composite (0) is";
+    if (mode > vtkVolumeMapper::ADDITIVE_BLEND) {
+      return "blend mode " + std::to_string(mode) + " is not mixed, only composite (0) to additive (4) are";
     }
+    if (!mappers.empty() && mode != first) {
+      return "blend modes " + std::to_string(first) + " and " + std::to_string(mode) + " are not mixed, all volumes need the same";
+    }
+    first = mode;
     if (!mappers.insert(volume->GetMapper()).second) {
       return "two volumes share a mapper, each needs one of its own";
     }

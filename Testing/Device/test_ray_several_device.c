@@ -111,6 +111,19 @@ static void make_media_case(stratus_context* context, uint32_t seed, several_cas
   m->of[0].options.skipping.audit = 1;
 }
 
+/* Modes whose rays keep a number or a hit. */
+static void make_kept_case(stratus_context* context, uint32_t seed, several_case* m)
+{
+  static const stratus_mode modes[] = { STRATUS_MODE_ADDITIVE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
+    STRATUS_MODE_FIRST_HIT };
+  several_create(context, m, 3, 760 + seed);
+  for (int n = 0; n < m->count; ++n) {
+    m->of[n].options.mode = modes[seed];
+    m->of[n].options.sampling.rule = STRATUS_SAMPLING_AUTO;
+    m->of[n].options.skipping.audit = 1;
+  }
+}
+
 /* Samples are not compared: which of them a packet leaps over depends on its width. */
 static int differing(void)
 {
@@ -121,11 +134,11 @@ static int differing(void)
   return count;
 }
 
-typedef enum compared { PLAIN, SHARP, MEDIA } compared;
+typedef enum compared { PLAIN, SHARP, MEDIA, KEPT } compared;
 
 static void compare(compared what, bool one_ray)
 {
-  static const uint32_t seeds[] = { [PLAIN] = 9, [SHARP] = 5, [MEDIA] = 4 };
+  static const uint32_t seeds[] = { [PLAIN] = 9, [SHARP] = 5, [MEDIA] = 4, [KEPT] = 5 };
   static media_case media;
   stratus_context* host = case_context("host", 2);
   stratus_context* device = case_context("0", 2);
@@ -138,6 +151,8 @@ static void compare(compared what, bool one_ray)
       make_case(host, seed, &m, &grid);
     } else if (what == SHARP) {
       make_sharp_case(host, seed, &m);
+    } else if (what == KEPT) {
+      make_kept_case(host, seed, &m);
     } else {
       make_media_case(host, seed, &m, &media);
     }
@@ -190,6 +205,15 @@ static void a_device_draws_several_media_as_the_host(void** state)
     compare(MEDIA, false);
   }
   compare(MEDIA, true);
+}
+
+static void a_device_keeps_what_the_host_keeps(void** state)
+{
+  (void)state;
+  compare(KEPT, false);
+  if (!few_run()) {
+    compare(KEPT, true);
+  }
 }
 
 /* Only what changed is sent again: for another function of one volume by the midpoint rule, its table, its layers and its map. */
@@ -297,6 +321,7 @@ int test_ray_several_media_device(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_device_draws_sharp_functions_as_the_host),
     cmocka_unit_test(a_device_draws_several_media_as_the_host),
+    cmocka_unit_test(a_device_keeps_what_the_host_keeps),
   };
   return RUN(tests);
 }

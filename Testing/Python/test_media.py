@@ -268,7 +268,7 @@ def several():
     refuse(ValueError, "same Volume", render_several, [kept[0], kept[0]])
     refuse(ValueError, "item 1: mode", render_several, [first, (second, dict(mode="glow"))], **host)
     refuse(TypeError, "item 1", render_several, [first, (second, dict(gleam=1))], **host)
-    refuse(Unsupported, "only composite", render_several, [first, (second, dict(mode="maximum"))], **host)
+    refuse(Unsupported, "does not mix with composite", render_several, [first, (second, dict(mode="maximum"))], **host)
     refuse(ValueError, "depth", render_several, [first, second], opaque_depth=whole_depth[1:], **host)
 
 

@@ -402,7 +402,7 @@ void Unmixed()
     CHECK(stage.Warnings->Count == 1 && stage.Warnings->Has(words) && stage.Errors->Count == 0, "%s: %d warnings: %s, %s", words,
       stage.Warnings->Count, stage.Warnings->Text.c_str(), stage.Errors->Text.c_str());
   };
-  warns("blend mode 1 is not mixed", [](Cube& red, Cube&) { red.Mapper->SetBlendModeToMaximumIntensity(); });
+  warns("are not mixed, all volumes need the same", [](Cube& red, Cube&) { red.Mapper->SetBlendModeToMaximumIntensity(); });
   warns("share a mapper", [](Cube& red, Cube& blue) { blue.Volume->SetMapper(red.Mapper); });
   warns("crop regions", [](Cube&, Cube& blue) {
     blue.Mapper->CroppingOn();
@@ -425,6 +425,10 @@ void Unmixed()
   stage.Watch(red.Mapper), stage.Watch(blue.Mapper);
   stage.Look(70, 10);
   stage.DrawInAllOrders("maxima", { red.Volume, blue.Volume });
+  // Maxima that overlap are the maxima of both.
+  blue.Volume->SetPosition(-0.5, 0, 0);
+  stage.DrawInAllOrders("maxima that overlap", { red.Volume, blue.Volume });
+  CHECK(!red.Mapper->GetLastImage() && !blue.Mapper->GetLastImage(), "maxima that overlap are drawn one by one");
   // First hits are solid: the other volume's rays end there, wherever it is.
   blue.Mapper->SetBlendModeToComposite();
   red.Mapper->SetBlendModeToComposite();

@@ -525,7 +525,7 @@ void Refusals()
     scene.Other->SetMapper(mapper);
   });
   refuses("mode maximum", [](Pair& scene) { scene.OtherMapper->SetBlendModeToMaximumIntensity(); });
-  refuses("first hits", [](Pair& scene) { scene.OtherMapper->SetRenderModeToFirstHit(); });
+  refuses("mode first-hit", [](Pair& scene) { scene.OtherMapper->SetRenderModeToFirstHit(); });
   refuses("by cells of a volume with light", [](Pair& scene) {
     scene.OtherMapper->SetSamplingToCells();
     scene.Other->GetProperty()->ShadeOn();

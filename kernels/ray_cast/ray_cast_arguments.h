@@ -151,10 +151,11 @@ typedef struct stratus_ray_rough {
 /* Extremes, sums and isosurfaces. */
 typedef struct stratus_ray_mode {
   float sign, top;                   /* extremes: 1 for maxima, -1 for minima, and sign times the value that none passes */
-  float counted_first, counted_last; /* sums: the values that count, ends included */
+  float counted_first, counted_last; /* the values that count in a sum, and that an extreme may show, ends included */
   float grey_scale, grey_offset;     /* sums: the grey of a value is value * scale + offset */
   float sum_scale;                   /* sums: factor of a sum over samples; 0: the mean is shown */
   int sum;                           /* 1: rays show something wherever they meet the bounds */
+  int kept;                          /* 1: extremes and sums store what a ray has kept (ray_modes.h) in place of its colour */
   int contour_count;
   float contour[STRATUS_CONTOURS_MAX][5]; /* isosurfaces, sorted by value: value, colour times opacity, opacity */
 } stratus_ray_mode;

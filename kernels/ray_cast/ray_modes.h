@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Rays that gather no light: the largest or smallest value of their samples, or a sum. Included by ray_cast.h with STRATUS_RAY_MODE set. A
- * segment that the structure leaves out would have changed nothing, so that skipping is as exact here as it is for light. */
+ * segment that the structure leaves out would have changed nothing, so that skipping is as exact here as it is for light.
+ *
+ * Pictures of several grids are put together from the states of their rays (Core/ray_cast/ray_kept.h). A pixel then holds such a state:
+ * red is the best value, or the integral of opacity times grey; green is the length on which values count, of means only; blue is the
+ * integral of the opacity, of sums and means. Lengths are the world's. Alpha is 1 where the ray has a state. */
 
 INLINE void RAY_NAME(ray_advance)(stratus_packet* k, vmask done)
 {
@@ -27,6 +31,14 @@ INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
 {
   const vmask found = k->hits & v_lt(v_set(-LARGEST_FLOAT), k->front);
   vfloat layer[4];
+  if (a->mode.kept) {
+    const vfloat value = v_set(a->mode.sign) * k->front;
+    const vmask counts = found & v_le(v_set(a->mode.counted_first), value) & v_le(value, v_set(a->mode.counted_last));
+    k->red = v_select(counts, value, v_set(0.0f));
+    k->transparency = v_select(counts, v_set(0.0f), v_set(1.0f));
+    k->depth = v_select(counts, k->depth, v_set(LARGEST_FLOAT));
+    return;
+  }
   gather_four((GLOBAL const float*)table, table_entry(&a->table, table, v_set(a->mode.sign) * k->front), found, layer);
   k->red = layer[0];
   k->green = layer[1];
@@ -48,6 +60,7 @@ INLINE void RAY_NAME(ray_shade)(
   k->samples -= mask_int(k->live);
   k->front = v_select(counts, v_fma(grey, sample->length, k->front), k->front);
   k->red = v_select(counts, k->red + sample->length, k->red);
+  k->blue = v_select(counts, v_fma(layer[3], sample->length, k->blue), k->blue);
   const vmask first = counts & v_lt(v_set(0.0f), layer[3]) & v_le(v_set(LARGEST_FLOAT), k->depth);
   k->depth = v_select(first, packet_length(a, k, sample->lo + k->first) * v_set(a->lattice.step), k->depth);
   RAY_NAME(ray_advance)(k, m_none());
@@ -59,6 +72,14 @@ INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   vmask shown = k->hits;
   vfloat scale = v_set(a->mode.sum_scale);
+  if (a->mode.kept) {
+    const vfloat length = v_set(a->lattice.step);
+    k->green = k->red * v_set(a->mode.sum_scale == 0.0f ? a->lattice.step : 0.0f); /* sums skip values without opacity, means do not */
+    k->red = k->front * length;
+    k->blue = k->blue * length;
+    k->transparency = v_select(shown, zero, one);
+    return;
+  }
   if (a->mode.sum_scale == 0.0f) {
     shown = shown & v_lt(zero, k->red);
     scale = v_reciprocal(v_max(k->red, v_set(1e-30f)));

@@ -120,6 +120,10 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
     v_store(channel[1], grey);
     v_store(channel[2], grey);
     v_store(channel[3], v_select(counts, one, v_set(0.0f)));
+    if (a->kept > 0.0f) {
+      v_store(channel[0], k->light.red * v_set(a->kept));
+      v_store(channel[1], k->light.green * v_set(a->kept));
+    }
   }
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
     float rgba[4];
@@ -131,6 +135,11 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
       if (a->mode == TETRA_EXTREMES) {
         rgba[c] = largest[lane] > -LARGEST_FLOAT ? t->view->colors[4 * entry[lane] + c] : 0.0f;
       }
+    }
+    if (a->mode == TETRA_EXTREMES && a->kept > 0.0f) {
+      const int found = largest[lane] > -LARGEST_FLOAT;
+      rgba[0] = found ? a->sign * largest[lane] : 0.0f;
+      rgba[3] = found ? 1.0f : 0.0f;
     }
     store_ray(t, pixel[lane], rgba, depth[lane], segments[lane]);
     t->found.segments += (uint)segments[lane];

@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Joins what rays keep of several grids: the best value, a sum, or the nearest hit. */
+#include "ray_kept.h"
+
+#include "picture.h"
+#include "tetra_caster.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool is_extreme(stratus_mode mode)
+{
+  return mode == STRATUS_MODE_MAXIMUM || mode == STRATUS_MODE_MINIMUM;
+}
+
+bool stratus_kept_is(stratus_mode mode)
+{
+  return is_extreme(mode) || mode == STRATUS_MODE_AVERAGE || mode == STRATUS_MODE_ADDITIVE || mode == STRATUS_MODE_FIRST_HIT;
+}
+
+stratus_status stratus_kept_create(stratus_kept* kept)
+{
+  void* memory = NULL;
+  TRY(stratus_allocate(kept->context, (size_t)kept->image->width * (size_t)kept->image->height, sizeof *kept->pixels, &memory));
+  kept->pixels = memory;
+  return STRATUS_OK;
+}
+
+void stratus_kept_destroy(stratus_kept* kept)
+{
+  stratus_release(kept->context, kept->pixels);
+  kept->pixels = NULL;
+}
+
+stratus_status stratus_kept_part_create(const stratus_kept* kept, stratus_image* part)
+{
+  stratus_image like = *kept->image;
+  float depth = 0.0f;
+  like.depth = &depth;
+  return stratus_image_part_create(kept->context, &like, part);
+}
+
+void stratus_kept_begin(stratus_kept* kept, int component)
+{
+  const size_t pixels = (size_t)kept->image->width * (size_t)kept->image->height;
+  for (size_t i = 0; i < pixels; ++i) {
+    kept->pixels[i] = (stratus_kept_pixel){ .depth = INFINITY, .of = -1 };
+  }
+  kept->component = component;
+  kept->any = false;
+  kept->low = kept->high = kept->base = 0.0;
+}
+
+/* ---- drawing */
+
+stratus_status stratus_kept_draw(stratus_kept* kept, int n, const stratus_camera* camera, const stratus_ray_cast_options* options,
+  const stratus_image* part, stratus_ray_cast_report* report)
+{
+  const stratus_ray_cast_input* in = &kept->inputs[n];
+  const stratus_ray_caster* caster = NULL;
+  TRY(stratus_ray_render_kept(in->caster, in->volume, in->transfer, kept->component, camera, options, part, &caster, report));
+  if (caster->ranges) {
+    kept->bias = caster->ranges->bias;
+    kept->part_low = (double)caster->ranges->whole_lo + kept->bias;
+    kept->part_high = (double)caster->ranges->whole_hi + kept->bias;
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_kept_draw_mesh(
+  stratus_kept* kept, int n, const stratus_camera* camera, const stratus_image* part, stratus_ray_cast_report* report)
+{
+  const stratus_ray_cast_input* in = &kept->inputs[n];
+  stratus_tetra_report of_mesh = { 0 };
+  TRY(stratus_tetra_caster_render_kept(
+    in->tetra, in->mesh, in->transfer, kept->component, camera, in->tetra_options, part, &kept->bias, &of_mesh));
+  report->rays = of_mesh.rays;
+  report->samples = of_mesh.segments;
+  report->cast_ms = of_mesh.transform_ms + of_mesh.entries_ms + of_mesh.march_ms;
+  report->window[1] = part->width;
+  report->window[3] = part->height;
+  snprintf(report->why, sizeof report->why, "a mesh of %lld cells: %s", (long long)of_mesh.cells, of_mesh.why);
+  return STRATUS_OK;
+}
+
+/* ---- joining */
+
+/* Widens the range of one field by a part's, before the part is joined. */
+static void widen(stratus_kept* kept)
+{
+  const bool known = kept->part_low <= kept->part_high; /* else the part has no finite value */
+  if (known && !kept->any) {
+    kept->base = kept->low = kept->part_low;
+    kept->high = kept->part_high;
+  } else if (known) {
+    kept->low = fmin(kept->low, kept->part_low);
+    kept->high = fmax(kept->high, kept->part_high);
+  }
+  kept->any = kept->any || known;
+}
+
+/* Whether a value shows in its input's function. */
+static bool shows(const stratus_kept* kept, int n, double value)
+{
+  double rgba[4];
+  stratus_transfer_at(kept->inputs[n].transfer + kept->component, value, rgba);
+  return rgba[3] > 0.0;
+}
+
+static void join_best(const stratus_kept* kept, int n, const float rgba[4], float depth, stratus_kept_pixel* pixel)
+{
+  const double value = (double)rgba[0] + kept->bias;
+  const bool better = pixel->of < 0 || (kept->mode == STRATUS_MODE_MINIMUM ? value < pixel->value : value > pixel->value);
+  const bool equal = pixel->of >= 0 && !(value < pixel->value) && !(value > pixel->value);
+  if ((better || (equal && depth < pixel->depth)) && (kept->one_field || shows(kept, n, value))) {
+    *pixel = (stratus_kept_pixel){ .value = value, .depth = depth, .of = n };
+  }
+}
+
+static void join_sum(const stratus_kept* kept, int n, const float rgba[4], float depth, stratus_kept_pixel* pixel)
+{
+  double value = (double)rgba[0];
+  if (kept->one_field) { /* the part's grey spans its own range */
+    value = value * (kept->part_high - kept->part_low) + (double)rgba[2] * (kept->part_low - kept->base);
+  } else if (kept->mode == STRATUS_MODE_ADDITIVE) {
+    value /= kept->inputs[n].transfer[kept->component].unit_distance;
+  }
+  pixel->value += value;
+  pixel->length += (double)rgba[1];
+  pixel->weight += (double)rgba[2];
+  pixel->depth = fminf(pixel->depth, depth);
+  pixel->of = pixel->of < 0 ? n : pixel->of;
+}
+
+void stratus_kept_join(stratus_kept* kept, int n, const stratus_image* part, int x0, int y0, const int inside[4])
+{
+  const stratus_image* image = kept->image;
+  if (kept->one_field) {
+    widen(kept);
+  }
+#pragma omp parallel for num_threads(kept->context->threads)
+  for (int y = inside[2]; y < inside[3]; ++y) {
+    for (int x = inside[0]; x < inside[1]; ++x) {
+      const size_t from = (size_t)y * (size_t)part->width + (size_t)x, to = (size_t)(y0 + y) * (size_t)image->width + (size_t)(x0 + x);
+      const float *rgba = part->rgba + 4 * from, depth = part->depth[from];
+      stratus_kept_pixel* pixel = kept->pixels + to;
+      if (image->samples) {
+        image->samples[to] += part->samples[from];
+      }
+      if (!(rgba[3] > 0.0f)) {
+        continue;
+      }
+      if (kept->mode == STRATUS_MODE_FIRST_HIT) {
+        if (depth < pixel->depth) {
+          *pixel = (stratus_kept_pixel){ .depth = depth, .of = n };
+          memcpy(image->rgba + 4 * to, rgba, 4 * sizeof *rgba);
+        }
+      } else if (is_extreme(kept->mode)) {
+        join_best(kept, n, rgba, depth, pixel);
+      } else {
+        join_sum(kept, n, rgba, depth, pixel);
+      }
+    }
+  }
+}
+
+/* ---- colours */
+
+static void color_best(const stratus_kept* kept, stratus_kept_pixel* pixel, float rgba[4])
+{
+  double color[4];
+  stratus_transfer_at(kept->inputs[pixel->of].transfer + kept->component, pixel->value, color);
+  for (int c = 0; c < 4; ++c) {
+    rgba[c] = (float)(c < 3 ? color[c] * color[3] : color[3]);
+  }
+  if (!(color[3] > 0.0)) {
+    pixel->depth = INFINITY;
+  }
+}
+
+static void color_sum(const stratus_kept* kept, const stratus_kept_pixel* pixel, float rgba[4])
+{
+  const stratus_transfer* transfer = kept->inputs[pixel->of].transfer + kept->component;
+  const bool mean = kept->mode == STRATUS_MODE_AVERAGE;
+  double grey = pixel->value;
+  if (kept->one_field) {
+    const double extent = kept->high - kept->low;
+    grey = extent > 0.0 && isfinite(extent) ? (grey + pixel->weight * (kept->base - kept->low)) / extent : 0.0;
+    grey = mean ? grey : grey / transfer->unit_distance;
+  }
+  if (mean) {
+    grey = pixel->length > 0.0 ? grey / pixel->length : 0.0;
+  }
+  const bool any = !mean || pixel->length > 0.0;
+  rgba[0] = rgba[1] = rgba[2] = any ? (float)fmin(fmax(grey, 0.0), 1.0) : 0.0f;
+  rgba[3] = any ? 1.0f : 0.0f;
+}
+
+void stratus_kept_finish(const stratus_kept* kept)
+{
+  const stratus_image* image = kept->image;
+  const int64_t pixels = (int64_t)image->width * image->height;
+  const bool opaque = !is_extreme(kept->mode);
+#pragma omp parallel for num_threads(kept->context->threads)
+  for (int64_t i = 0; i < pixels; ++i) {
+    stratus_kept_pixel* pixel = kept->pixels + i;
+    float *to = image->rgba + 4 * i, add[4];
+    if (pixel->of < 0) {
+      continue;
+    }
+    if (kept->mode != STRATUS_MODE_FIRST_HIT) {
+      const float weight = (float)kept->inputs[pixel->of].transfer[kept->component].weight;
+      if (is_extreme(kept->mode)) {
+        color_best(kept, pixel, add);
+      } else {
+        color_sum(kept, pixel, add);
+      }
+      for (int c = 0; c < 3; ++c) {
+        to[c] = fminf(to[c] + weight * add[c], 1.0f);
+      }
+      to[3] = opaque ? fmaxf(to[3], add[3]) : fminf(to[3] + weight * add[3], 1.0f);
+    }
+    if (image->depth) {
+      image->depth[i] = fminf(image->depth[i], pixel->depth);
+    }
+  }
+}

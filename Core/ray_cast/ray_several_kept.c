@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Draws several volumes and meshes in the modes whose rays keep a number or a hit: one after the other, and joins what rays have kept. */
+#include "camera.h"
+#include "picture.h"
+#include "ray_kept.h"
+#include "ray_several_picture.h"
+
+#include <math.h>
+#include <string.h>
+
+stratus_mode stratus_several_mode(const stratus_ray_cast_input* input)
+{
+  static const stratus_mode of_mesh[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
+    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE };
+  if (!input->tetra) {
+    return input->options ? input->options->mode : STRATUS_MODE_COMPOSITE;
+  }
+  const stratus_tetra_mode mode = input->tetra_options ? input->tetra_options->mode : STRATUS_TETRA_COMPOSITE;
+  return (unsigned)mode < sizeof of_mesh / sizeof *of_mesh ? of_mesh[mode] : STRATUS_MODE_COMPOSITE;
+}
+
+/* The components that are drawn by themselves. */
+static int components_of(const stratus_ray_cast_input* input, stratus_mode mode)
+{
+  if (mode == STRATUS_MODE_FIRST_HIT) {
+    return 1;
+  }
+  return input->tetra ? (input->mesh->components > 1 ? input->mesh->components : 1) : stratus_volume_components(input->volume);
+}
+
+static stratus_status check(stratus_context* context, const stratus_ray_cast_input* inputs, int count)
+{
+  for (int n = 0; n < count; ++n) {
+    const stratus_ray_cast_input* in = &inputs[n];
+    const stratus_mode mode = stratus_several_mode(in), first = stratus_several_mode(inputs);
+    if (mode != first) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume %d of several has mode %s, volume 0 has %s: all need the same", n,
+        stratus_mode_name(mode), stratus_mode_name(first));
+    }
+    if (in->tetra && !in->mesh) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume %d of several has no mesh", n);
+    }
+    if (!in->tetra) {
+      const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
+      TRY(stratus_ray_check_input(context, in->volume, in->transfer, in->options ? in->options : &defaults));
+    }
+  }
+  return STRATUS_OK;
+}
+
+/* Draws a component of all inputs that have it. */
+static stratus_status draw(
+  stratus_kept* kept, int count, const stratus_camera* camera, const stratus_image* part, stratus_ray_cast_report* reports)
+{
+  const bool adds = kept->mode == STRATUS_MODE_AVERAGE || kept->mode == STRATUS_MODE_ADDITIVE; /* errors, too, by their squares */
+  const int all[4] = { 0, part->width, 0, part->height };
+  for (int n = 0; n < count; ++n) {
+    const stratus_ray_cast_input* in = &kept->inputs[n];
+    stratus_ray_cast_report report = { .expected_error = NAN, .tolerance_met = 1 };
+    if (kept->component >= components_of(in, kept->mode)) {
+      continue;
+    }
+    if (in->tetra) {
+      TRY(stratus_kept_draw_mesh(kept, n, camera, part, &report));
+    } else {
+      stratus_ray_cast_options options = in->options ? *in->options : stratus_ray_cast_options_default();
+      options.sampling.tolerance /= adds ? sqrt((double)count) : 1.0;
+      TRY(stratus_kept_draw(kept, n, camera, &options, part, &report));
+    }
+    stratus_kept_join(kept, n, part, 0, 0, all);
+    if (reports && kept->component > 0) {
+      stratus_ray_cast_report_add(&reports[n], &report);
+    } else if (reports) {
+      reports[n] = report;
+    }
+  }
+  return STRATUS_OK;
+}
+
+stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
+  const stratus_image* image, stratus_ray_cast_report* reports)
+{
+  stratus_context* context = stratus_several_context(inputs);
+  stratus_kept kept = { .context = context, .mode = stratus_several_mode(inputs), .inputs = inputs, .image = image };
+  stratus_image part = { 0 };
+  stratus_status status = STRATUS_OK;
+  int components = 1;
+  TRY(stratus_image_check(context, image));
+  TRY(stratus_camera_check(context, camera, image));
+  TRY(check(context, inputs, count));
+  for (int n = 0; n < count; ++n) {
+    const int mine = components_of(&inputs[n], kept.mode);
+    components = mine > components ? mine : components;
+  }
+  stratus_image_clear(image);
+  TRY(stratus_kept_create(&kept));
+  TRY_CLEANUP(stratus_kept_part_create(&kept, &part));
+  for (int c = 0; c < components; ++c) {
+    stratus_kept_begin(&kept, c);
+    TRY_CLEANUP(draw(&kept, count, camera, &part, reports));
+    stratus_kept_finish(&kept);
+  }
+  stratus_image_fill_bytes(image);
+  int window[4] = { 0, 0, 0, 0 };
+  for (int n = 0; reports && n < count; ++n) {
+    stratus_window_join(window, reports[n].window);
+  }
+  for (int n = 0; reports && n < count; ++n) {
+    memcpy(reports[n].window, window, sizeof window);
+  }
+cleanup:
+  stratus_image_part_destroy(context, &part);
+  stratus_kept_destroy(&kept);
+  return status;
+}
