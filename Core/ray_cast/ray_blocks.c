@@ -251,6 +251,11 @@ static stratus_status check(const blocks* b)
         n, stratus_mode_name(mode_of(in)), stratus_mode_name(mode_of(b->inputs)));
     }
     if (b->kept) { /* else the picture of each block checks its input */
+      const int components = stratus_volume_components(in->volume), first = stratus_volume_components(b->inputs[0].volume);
+      if (components != first) {
+        return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT,
+          "block %d has %d components, block 0 has %d: in mode %s all need the same", n, components, first, stratus_mode_name(mode_of(in)));
+      }
       TRY(stratus_ray_check_input(b->context, in->volume, in->transfer, in->options));
     }
   }

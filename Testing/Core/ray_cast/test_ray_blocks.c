@@ -376,6 +376,14 @@ static void uncut_volumes_are_refused(void** state)
   cut b = { .count = 0 };
   case_create(*state, &c, STRATUS_UINT8, 20, 20, 20, 1);
   cut_at_random(*state, &c, 4, 1, &b);
+  c.options.mode = STRATUS_MODE_MAXIMUM;
+  b.volume[2].components = 2;
+  b.volume[2].value_stride *= 2;
+  assert_int_equal(draw_blocks(&c, &b, &drawn, NULL), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(*state), "block 2 has 2 components, block 0 has 1"));
+  b.volume[2].components = b.volume[1].components;
+  b.volume[2].value_stride = b.volume[1].value_stride;
+  c.options.mode = STRATUS_MODE_COMPOSITE;
   b.volume[2].dimensions[1] = 0;
   assert_int_not_equal(draw_blocks(&c, &b, &drawn, NULL), STRATUS_OK);
   b.volume[2] = b.volume[1];
