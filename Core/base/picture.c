@@ -71,12 +71,7 @@ void stratus_image_add(const stratus_image* sum, const stratus_image* part, floa
 {
   const size_t pixels = (size_t)sum->width * (size_t)sum->height;
   for (size_t i = 0; i < pixels; ++i) {
-    float* to = sum->rgba + 4 * i;
-    const float* from = part->rgba + 4 * i;
-    for (size_t k = 0; k < 3; ++k) {
-      to[k] = fminf(to[k] + weight * from[k], 1.0f);
-    }
-    to[3] = opaque ? fmaxf(to[3], from[3]) : fminf(to[3] + weight * from[3], 1.0f);
+    stratus_pixel_add(sum->rgba + 4 * i, part->rgba + 4 * i, weight, opaque);
     if (sum->depth) {
       sum->depth[i] = fminf(sum->depth[i], part->depth[i]);
     }

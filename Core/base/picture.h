@@ -5,6 +5,9 @@
 
 #include "base.h"
 
+#include <math.h>
+#include <stdbool.h>
+
 /* Checks that the image and its colours exist, and that its sides are within limits. */
 stratus_status stratus_image_check(stratus_context* context, const stratus_image* image);
 /* Sets all pixels to transparent, their depth to INFINITY and their samples to 0. */
@@ -17,6 +20,14 @@ void stratus_image_part_destroy(stratus_context* context, stratus_image* part);
 /* Add a part's premultiplied colours times weight, up to 1. Its alpha is added in the same way; if images are opaque, the larger alpha
  * stays. The nearer depth stays. Samples add up. The sum's bytes are unchanged. */
 void stratus_image_add(const stratus_image* sum, const stratus_image* part, float weight, bool opaque);
+/* Adds one pixel in the same way, but for depth and samples. */
+static inline void stratus_pixel_add(float sum[4], const float part[4], float weight, bool opaque)
+{
+  for (int c = 0; c < 3; ++c) {
+    sum[c] = fminf(sum[c] + weight * part[c], 1.0f);
+  }
+  sum[3] = opaque ? fmaxf(sum[3], part[3]) : fminf(sum[3] + weight * part[3], 1.0f);
+}
 /* Rounds a colour, which is never negative, to a byte; those above 1 become 255. */
 static inline uint8_t stratus_image_byte(float color)
 {

@@ -228,11 +228,6 @@ static stratus_status measure(const blocks* b, stratus_block_box* boxes, stratus
   return STRATUS_OK;
 }
 
-static stratus_mode mode_of(const stratus_ray_cast_input* in)
-{
-  return in->options ? in->options->mode : STRATUS_MODE_COMPOSITE;
-}
-
 static stratus_status check(const blocks* b)
 {
   for (int n = 0; n < b->count; ++n) {
@@ -246,15 +241,16 @@ static stratus_status check(const blocks* b)
         b->context, STRATUS_INVALID_ARGUMENT, "the ray caster of block %d has another context than the one of block 0", n);
     }
     TRY(stratus_volume_check(b->context, in->volume));
-    if (mode_of(in) != mode_of(b->inputs)) {
+    if (stratus_kept_mode(in) != stratus_kept_mode(b->inputs)) {
       return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT, "block %d has mode %s, block 0 has %s: blocks are one picture of one mode",
-        n, stratus_mode_name(mode_of(in)), stratus_mode_name(mode_of(b->inputs)));
+        n, stratus_mode_name(stratus_kept_mode(in)), stratus_mode_name(stratus_kept_mode(b->inputs)));
     }
     if (b->kept) { /* else the picture of each block checks its input */
       const int components = stratus_volume_components(in->volume), first = stratus_volume_components(b->inputs[0].volume);
       if (components != first) {
         return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT,
-          "block %d has %d components, block 0 has %d: in mode %s all need the same", n, components, first, stratus_mode_name(mode_of(in)));
+          "block %d has %d components, block 0 has %d: in mode %s all need the same", n, components, first,
+          stratus_mode_name(stratus_kept_mode(in)));
       }
       TRY(stratus_ray_check_input(b->context, in->volume, in->transfer, in->options));
     }
@@ -316,7 +312,7 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
   if (count == 1) {
     return stratus_ray_caster_render(inputs[0].caster, inputs[0].volume, inputs[0].transfer, camera, inputs[0].options, image, reports);
   }
-  stratus_kept kept = { .context = b.context, .mode = mode_of(inputs), .one_field = true, .inputs = inputs, .image = image };
+  stratus_kept kept = { .context = b.context, .mode = stratus_kept_mode(inputs), .one_field = true, .inputs = inputs, .image = image };
   b.kept = stratus_kept_is(kept.mode) && kept.mode != STRATUS_MODE_FIRST_HIT ? &kept : NULL; /* the nearest block has the hit, as light */
   TRY(check(&b));
   TRY(stratus_image_check(b.context, image));

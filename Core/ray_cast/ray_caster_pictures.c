@@ -7,8 +7,7 @@
 
 static bool draws_parts(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
-  const bool one_value = options->mode == STRATUS_MODE_MAXIMUM || options->mode == STRATUS_MODE_MINIMUM ||
-    options->mode == STRATUS_MODE_AVERAGE || options->mode == STRATUS_MODE_ADDITIVE;
+  const bool one_value = stratus_mode_is_extreme(options->mode) || stratus_mode_is_sum(options->mode);
   return one_value && stratus_volume_components(volume) > 1 && !options->optics.dependent;
 }
 
@@ -65,7 +64,7 @@ static stratus_status find_part(stratus_ray_caster* caster, int component, strat
 static stratus_status draw_parts(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
 {
-  const bool opaque = options->mode == STRATUS_MODE_AVERAGE || options->mode == STRATUS_MODE_ADDITIVE;
+  const bool opaque = stratus_mode_is_sum(options->mode);
   stratus_image part;
   stratus_status status = STRATUS_OK;
   TRY(stratus_image_part_create(caster->context, image, &part));

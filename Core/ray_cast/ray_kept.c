@@ -9,14 +9,20 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool is_extreme(stratus_mode mode)
-{
-  return mode == STRATUS_MODE_MAXIMUM || mode == STRATUS_MODE_MINIMUM;
-}
-
 bool stratus_kept_is(stratus_mode mode)
 {
-  return is_extreme(mode) || mode == STRATUS_MODE_AVERAGE || mode == STRATUS_MODE_ADDITIVE || mode == STRATUS_MODE_FIRST_HIT;
+  return stratus_mode_is_extreme(mode) || stratus_mode_is_sum(mode) || mode == STRATUS_MODE_FIRST_HIT;
+}
+
+stratus_mode stratus_kept_mode(const stratus_ray_cast_input* input)
+{
+  static const stratus_mode of_mesh[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
+    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE };
+  if (!input->tetra) {
+    return input->options ? input->options->mode : STRATUS_MODE_COMPOSITE;
+  }
+  const stratus_tetra_mode mode = input->tetra_options ? input->tetra_options->mode : STRATUS_TETRA_COMPOSITE;
+  return (unsigned)mode < sizeof of_mesh / sizeof *of_mesh ? of_mesh[mode] : STRATUS_MODE_COMPOSITE;
 }
 
 stratus_status stratus_kept_create(stratus_kept* kept)
@@ -156,7 +162,7 @@ void stratus_kept_join(stratus_kept* kept, int n, const stratus_image* part, int
           *pixel = (stratus_kept_pixel){ .depth = depth, .of = n };
           memcpy(image->rgba + 4 * to, rgba, 4 * sizeof *rgba);
         }
-      } else if (is_extreme(kept->mode)) {
+      } else if (stratus_mode_is_extreme(kept->mode)) {
         join_best(kept, n, rgba, depth, pixel);
       } else {
         join_sum(kept, n, rgba, depth, pixel);
@@ -201,25 +207,22 @@ void stratus_kept_finish(const stratus_kept* kept)
 {
   const stratus_image* image = kept->image;
   const int64_t pixels = (int64_t)image->width * image->height;
-  const bool opaque = !is_extreme(kept->mode);
+  const bool opaque = !stratus_mode_is_extreme(kept->mode);
 #pragma omp parallel for num_threads(kept->context->threads)
   for (int64_t i = 0; i < pixels; ++i) {
     stratus_kept_pixel* pixel = kept->pixels + i;
-    float *to = image->rgba + 4 * i, add[4];
+    float add[4];
     if (pixel->of < 0) {
       continue;
     }
     if (kept->mode != STRATUS_MODE_FIRST_HIT) {
       const float weight = (float)kept->inputs[pixel->of].transfer[kept->component].weight;
-      if (is_extreme(kept->mode)) {
+      if (stratus_mode_is_extreme(kept->mode)) {
         color_best(kept, pixel, add);
       } else {
         color_sum(kept, pixel, add);
       }
-      for (int c = 0; c < 3; ++c) {
-        to[c] = fminf(to[c] + weight * add[c], 1.0f);
-      }
-      to[3] = opaque ? fmaxf(to[3], add[3]) : fminf(to[3] + weight * add[3], 1.0f);
+      stratus_pixel_add(image->rgba + 4 * i, add, weight, opaque);
     }
     if (image->depth) {
       image->depth[i] = fminf(image->depth[i], pixel->depth);

@@ -33,8 +33,10 @@ typedef struct stratus_kept {
   bool any;
 } stratus_kept;
 
-/* Whether rays of the mode keep a number. */
+/* Whether rays of the mode keep a number or a hit. */
 bool stratus_kept_is(stratus_mode mode);
+/* The mode of an input, also of a mesh. */
+stratus_mode stratus_kept_mode(const stratus_ray_cast_input* input);
 stratus_status stratus_kept_create(stratus_kept* kept); /* sets pixels and what follows; the rest is set */
 void stratus_kept_destroy(stratus_kept* kept);
 /* Makes room for a part, with depths, whether the image has them or not. */

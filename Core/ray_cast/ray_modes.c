@@ -15,12 +15,12 @@ const char* stratus_mode_name(stratus_mode mode)
   return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
 }
 
-static bool is_extreme(stratus_mode mode)
+bool stratus_mode_is_extreme(stratus_mode mode)
 {
   return mode == STRATUS_MODE_MAXIMUM || mode == STRATUS_MODE_MINIMUM;
 }
 
-static bool is_sum(stratus_mode mode)
+bool stratus_mode_is_sum(stratus_mode mode)
 {
   return mode == STRATUS_MODE_AVERAGE || mode == STRATUS_MODE_ADDITIVE;
 }
@@ -175,7 +175,7 @@ stratus_status stratus_ray_modes_bounds(const stratus_ray_caster* caster, stratu
   const size_t at = (map->bytes_size + 63) / 64 * 64, bytes = blocks * sizeof(float);
   const bool smallest = caster->shown.mode == STRATUS_MODE_MINIMUM;
   void* memory = NULL;
-  if (!is_extreme(caster->shown.mode)) {
+  if (!stratus_mode_is_extreme(caster->shown.mode)) {
     return STRATUS_OK;
   }
   TRY(stratus_allocate(caster->context, at + bytes, 1, &memory));
@@ -213,10 +213,10 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   const bool additive = options->mode == STRATUS_MODE_ADDITIVE;
   a->mode.sign = options->mode == STRATUS_MODE_MINIMUM ? -1.0f : 1.0f;
   a->mode.top = options->mode == STRATUS_MODE_MINIMUM ? -ranges->whole_lo : ranges->whole_hi;
-  a->mode.sum = is_sum(options->mode);
+  a->mode.sum = stratus_mode_is_sum(options->mode);
   a->mode.kept = 0;
   float counted[2] = { -INFINITY, INFINITY };
-  if (is_extreme(options->mode)) { /* values beyond never show, so that blocks of such values are skipped */
+  if (stratus_mode_is_extreme(options->mode)) { /* values beyond never show, so that blocks of such values are skipped */
     counted[0] = caster->values.count > 0 ? caster->values.of[0][0] : INFINITY;
     counted[1] = caster->values.count > 0 ? caster->values.of[0][1] : -INFINITY;
   } else if (!additive) {
@@ -266,8 +266,8 @@ stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
   if (mode == STRATUS_MODE_ISOSURFACE || mode == STRATUS_MODE_SLICE) {
     return mode == STRATUS_MODE_SLICE ? STRATUS_VARIANT_SLICE : STRATUS_VARIANT_ISOSURFACE;
   }
-  if (is_extreme(mode) || is_sum(mode)) {
-    return is_sum(mode) ? STRATUS_VARIANT_SUMS : STRATUS_VARIANT_EXTREMES;
+  if (stratus_mode_is_extreme(mode) || stratus_mode_is_sum(mode)) {
+    return stratus_mode_is_sum(mode) ? STRATUS_VARIANT_SUMS : STRATUS_VARIANT_EXTREMES;
   }
   return caster->choice.sampling == STRATUS_SAMPLING_CELLS      ? STRATUS_VARIANT_CELLS
     : caster->choice.sampling == STRATUS_SAMPLING_LOCAL         ? STRATUS_VARIANT_LOCAL
@@ -277,5 +277,5 @@ stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
 
 bool stratus_ray_modes_covers(const stratus_ray_cast_options* options)
 {
-  return is_sum(options->mode);
+  return stratus_mode_is_sum(options->mode);
 }

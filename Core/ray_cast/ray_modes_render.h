@@ -16,6 +16,9 @@ typedef struct stratus_ray_shown {
   double contours[STRATUS_CONTOURS_MAX];
 } stratus_ray_shown;
 
+/* Whether rays keep the largest or smallest value, or a sum or mean. */
+bool stratus_mode_is_extreme(stratus_mode mode);
+bool stratus_mode_is_sum(stratus_mode mode);
 stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_ray_cast_options* options);
 /* Extracts them from the options. Fields that the mode does not use are 0. */
 stratus_ray_shown stratus_ray_modes_shown(const stratus_ray_cast_options* options);

@@ -4,20 +4,10 @@
 #include "picture.h"
 #include "ray_kept.h"
 #include "ray_several_picture.h"
+#include "tetra_cells.h"
 
 #include <math.h>
 #include <string.h>
-
-stratus_mode stratus_several_mode(const stratus_ray_cast_input* input)
-{
-  static const stratus_mode of_mesh[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
-    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE };
-  if (!input->tetra) {
-    return input->options ? input->options->mode : STRATUS_MODE_COMPOSITE;
-  }
-  const stratus_tetra_mode mode = input->tetra_options ? input->tetra_options->mode : STRATUS_TETRA_COMPOSITE;
-  return (unsigned)mode < sizeof of_mesh / sizeof *of_mesh ? of_mesh[mode] : STRATUS_MODE_COMPOSITE;
-}
 
 /* The components that are drawn by themselves. */
 static int components_of(const stratus_ray_cast_input* input, stratus_mode mode)
@@ -25,14 +15,14 @@ static int components_of(const stratus_ray_cast_input* input, stratus_mode mode)
   if (mode == STRATUS_MODE_FIRST_HIT) {
     return 1;
   }
-  return input->tetra ? (input->mesh->components > 1 ? input->mesh->components : 1) : stratus_volume_components(input->volume);
+  return input->tetra ? stratus_tetra_component_count(input->mesh) : stratus_volume_components(input->volume);
 }
 
 static stratus_status check(stratus_context* context, const stratus_ray_cast_input* inputs, int count)
 {
   for (int n = 0; n < count; ++n) {
     const stratus_ray_cast_input* in = &inputs[n];
-    const stratus_mode mode = stratus_several_mode(in), first = stratus_several_mode(inputs);
+    const stratus_mode mode = stratus_kept_mode(in), first = stratus_kept_mode(inputs);
     if (mode != first) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume %d of several has mode %s, volume 0 has %s: all need the same", n,
         stratus_mode_name(mode), stratus_mode_name(first));
@@ -52,7 +42,7 @@ static stratus_status check(stratus_context* context, const stratus_ray_cast_inp
 static stratus_status draw(
   stratus_kept* kept, int count, const stratus_camera* camera, const stratus_image* part, stratus_ray_cast_report* reports)
 {
-  const bool adds = kept->mode == STRATUS_MODE_AVERAGE || kept->mode == STRATUS_MODE_ADDITIVE; /* errors, too, by their squares */
+  const bool adds = stratus_mode_is_sum(kept->mode); /* errors, too, by their squares */
   const int all[4] = { 0, part->width, 0, part->height };
   for (int n = 0; n < count; ++n) {
     const stratus_ray_cast_input* in = &kept->inputs[n];
@@ -81,7 +71,7 @@ stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int co
   const stratus_image* image, stratus_ray_cast_report* reports)
 {
   stratus_context* context = stratus_several_context(inputs);
-  stratus_kept kept = { .context = context, .mode = stratus_several_mode(inputs), .inputs = inputs, .image = image };
+  stratus_kept kept = { .context = context, .mode = stratus_kept_mode(inputs), .inputs = inputs, .image = image };
   stratus_image part = { 0 };
   stratus_status status = STRATUS_OK;
   int components = 1;

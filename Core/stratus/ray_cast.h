@@ -375,9 +375,9 @@ STRATUS_API stratus_status stratus_ray_caster_render_several(const stratus_ray_c
  * the planes across these axes that separate the boxes. Blocks whose boxes overlap are drawn one behind the other, the nearest middle
  * first, and the reports of two of them say so. stratus_ray_caster_render_several() mixes overlapping volumes.
  *
- * All blocks have the same mode. In maximum, minimum, average and additive, what a ray keeps of all blocks is joined; values are fractions
- * of the range of all blocks, and the functions are inputs[0]'s. Errors along a ray add up
- * by their squares. Each block therefore has the tolerance of its options divided by the square root of the cube root of count.
+ * All blocks have the same mode. Maximum, minimum, average and additive are of all blocks together: values are fractions of the range of
+ * all blocks, and a value has the colour and opacity of its own block's function. Errors along a ray add up by their squares. Each block
+ * therefore has the tolerance of its options divided by the square root of the cube root of count.
  *
  * reports: NULL, or one for each block. The report of a block that cannot be seen has zeros, and says so. Each block is drawn as
  * stratus_ray_caster_render() draws a volume. A failed call names the block, and leaves the image undefined. */

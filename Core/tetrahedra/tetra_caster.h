@@ -123,8 +123,8 @@ typedef struct stratus_tetra_subject {
   const stratus_tetra_options* options;
 } stratus_tetra_subject;
 
-/* tetra_caster.c: draws, by marching, what rays keep of one component (kernels/tetrahedra/tetra_arguments.h, `kept`). *bias: what values in
- * the image are relative to. */
+/* tetra_caster.c: draws the states of rays in one component by marching (kernels/tetrahedra/tetra_arguments.h, `kept`). Values in the image
+ * are relative to *bias. */
 stratus_status stratus_tetra_caster_render_kept(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   int component, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, double* bias,
   stratus_tetra_report* report);
