@@ -6,6 +6,7 @@ import numpy
 from vtk.util.numpy_support import vtk_to_numpy
 
 import matrix_scenes as scenes
+from vtk_verdict_reference import trilinear
 
 STEP = 1 / 24  # of the world, where rays are sampled
 OPAQUE = 1e6  # optical depth of opacity 1
@@ -50,17 +51,7 @@ class Lattice:
         self.slopes = None
 
     def mix(self, table, points):
-        corners, result = [], 0.0
-        for axis, x in zip(self.axes, points.T):
-            cell = numpy.clip(numpy.searchsorted(axis, x, "right") - 1, 0, len(axis) - 2)
-            corners.append((cell, numpy.clip((x - axis[cell]) / (axis[cell + 1] - axis[cell]), 0, 1)))
-        (i, u), (j, v), (k, w) = corners
-        for dk in 0, 1:
-            for dj in 0, 1:
-                for di in 0, 1:
-                    weight = (u if di else 1 - u) * (v if dj else 1 - v) * (w if dk else 1 - w)
-                    result = result + weight.reshape(-1, *[1] * (table.ndim - 3)) * table[k + dk, j + dj, i + di]
-        return result
+        return trilinear(self.axes, table, points)
 
     def at(self, points):
         """Values, (places, components); NaN: there is none."""

@@ -37,7 +37,7 @@ def rays(bounds, camera):
 
 
 def trilinear(axes, field, points):
-    """The field[z, y, x] between the points of axes x, y, z."""
+    """The field[z, y, x], of numbers or arrays, between the points of axes x, y, z."""
     result, corners = 0.0, []
     for axis, coordinate in zip(axes, numpy.moveaxis(points, -1, 0)):
         cell = numpy.clip(numpy.searchsorted(axis, coordinate, "right") - 1, 0, len(axis) - 2)
@@ -47,7 +47,7 @@ def trilinear(axes, field, points):
         for dj in 0, 1:
             for di in 0, 1:
                 weight = (u if di else 1 - u) * (v if dj else 1 - v) * (w if dk else 1 - w)
-                result = result + weight * field[k + dk, j + dj, i + di]
+                result = result + weight.reshape(weight.shape + (1,) * (field.ndim - 3)) * field[k + dk, j + dj, i + di]
     return result
 
 
