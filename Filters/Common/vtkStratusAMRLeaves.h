@@ -33,7 +33,7 @@ public:
   using Place = vtkStratusAMRField::Place;
   struct Box {
     int Level;
-    Place Lo, Hi; // in units
+    Place Lo{}, Hi{}; // in units
   };
   // Shrinks lo..hi, the bounds of all boxes, to one piece's bounds: planes across the longest side halve the pieces, so that each half has
   // its share of all boxes' values. The planes are between cells of level 0, which are `cell` wide. Returns false if nothing is left for
@@ -52,7 +52,7 @@ private:
 
   const vtkStratusAMRField& Field;
   bool Nearest;
-  Place WholeLo, WholeHi;
+  Place WholeLo{}, WholeHi{};
   std::vector<vtkStratusAMRLeaf> Leaves;
 };
 
