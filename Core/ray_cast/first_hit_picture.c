@@ -294,9 +294,12 @@ static void set_window(first_hit_frame* frame)
   }
 }
 
-static stratus_status render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+/* Draws the followed component, in the colours of the others. */
+static stratus_status render(stratus_ray_caster* caster, const stratus_volume* whole, const stratus_transfer* transfer,
   const stratus_voxel_borders* borders, first_hit_frame* frame, stratus_ray_cast_report* report)
 {
+  const int followed = stratus_ray_followed(whole, frame->options);
+  const stratus_volume view = stratus_volume_component(whole, followed), *volume = &view;
   stratus_context* context = caster->context;
   const stratus_camera* camera = frame->camera;
   const stratus_ray_cast_options* options = frame->options;
@@ -315,6 +318,9 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   set_limits(volume, index_to_world, frame);
   set_window(frame);
   stratus_shader_set(&frame->shader, volume, borders, transfer, camera, options, index_to_world, world_to_index);
+  if (followed) {
+    stratus_shader_set_colors(&frame->shader, whole);
+  }
   stratus_image_clear(frame->image);
   TRY(draw(context, frame, report));
   const int64_t* n = volume->dimensions;

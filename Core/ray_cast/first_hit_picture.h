@@ -61,6 +61,10 @@ typedef struct stratus_first_hit_pixel {
 typedef struct stratus_shader {
   const stratus_volume* volume;
   const stratus_transfer* transfer;
+  /* of dependent components: each as a volume, and their biases; the last is `volume`. color_count 0: there are none */
+  stratus_volume colors[3];
+  double color_bias[3];
+  int color_count;
   const stratus_ray_cast_options* options;
   const stratus_voxel_borders* borders; /* NULL: the volume has no coordinates */
   double bias;                          /* stratus_volume_bias() */
@@ -71,10 +75,12 @@ typedef struct stratus_shader {
   int light_count;
 } stratus_shader;
 
-/* first_hit_shading.c; borders: as in stratus_shader */
+/* first_hit_shading.c; volume: of one component; borders: as in stratus_shader */
 void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_voxel_borders* borders,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const double index_to_world[16],
   const double world_to_index[16]);
+/* Gives hits the colours of the dependent components of `whole`, whose last is the shader's volume. */
+void stratus_shader_set_colors(stratus_shader* shader, const stratus_volume* whole);
 /* Compute colour (alpha 1) and world distance of a hit from only ray and voxel, so that every structure gives the same bits. */
 void stratus_shader_apply(
   const stratus_shader* shader, const stratus_ray* ray, uint32_t cut, const int32_t voxel[3], float rgba[4], float* depth);

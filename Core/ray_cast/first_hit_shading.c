@@ -3,6 +3,7 @@
 #include "first_hit_picture.h"
 
 #include "matrix.h"
+#include "ray_shading_table.h"
 #include "vector.h"
 
 #include <string.h>
@@ -57,12 +58,42 @@ void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, co
   }
 }
 
+void stratus_shader_set_colors(stratus_shader* shader, const stratus_volume* whole)
+{
+  shader->color_count = stratus_volume_components(whole) - 1;
+  for (int c = 0; c < shader->color_count; ++c) {
+    shader->colors[c] = stratus_volume_component(whole, c);
+    shader->color_bias[c] = stratus_volume_bias(&shader->colors[c]);
+  }
+}
+
 /* ---- values */
+
+static size_t index_of(const stratus_shader* shader, const int64_t at[3])
+{
+  const int64_t* n = shader->volume->dimensions;
+  return (size_t)((at[2] * n[1] + at[1]) * n[0] + at[0]);
+}
 
 static double value_at(const stratus_shader* shader, const int64_t at[3])
 {
-  const int64_t* n = shader->volume->dimensions;
-  return (double)stratus_volume_fetch(shader->volume, shader->bias, (size_t)((at[2] * n[1] + at[1]) * n[0] + at[0]));
+  return (double)stratus_volume_fetch(shader->volume, shader->bias, index_of(shader, at));
+}
+
+/* Returns the value of a dependent component. */
+static double color_value(const stratus_shader* shader, int c, const int64_t at[3])
+{
+  return (double)stratus_volume_fetch(&shader->colors[c], shader->color_bias[c], index_of(shader, at)) + shader->color_bias[c];
+}
+
+/* Gives a voxel's colour, not lit. */
+static void color_at(const stratus_shader* shader, const int64_t at[3], double rgba[4])
+{
+  const bool own = shader->color_count == 0;
+  stratus_transfer_at(shader->transfer, own ? value_at(shader, at) + shader->bias : color_value(shader, 0, at), rgba);
+  for (int c = 0; shader->color_count > 1 && c < shader->color_count; ++c) { /* red, green, blue */
+    rgba[c] = fmin(fmax(color_value(shader, c, at) / 255.0, 0.0), 1.0);
+  }
 }
 
 /* ---- normals: outward, in world coordinates, of length 1 */
@@ -200,7 +231,7 @@ void stratus_shader_apply(
   const double t = entry(shader->borders, ray, voxel, &face);
   stratus_matrix_vector(shader->index_to_world, ray->direction, direction);
   const double length = sqrt(stratus_vector_dot(direction, direction));
-  stratus_transfer_at(shader->transfer, value_at(shader, at) + shader->bias, shown);
+  color_at(shader, at, shown);
   if (shader->options->light.shading.on) {
     for (int axis = 0; axis < 3; ++axis) {
       direction[axis] /= length;

@@ -246,10 +246,11 @@ static stratus_status check(const blocks* b)
         n, stratus_mode_name(stratus_kept_mode(in)), stratus_mode_name(stratus_kept_mode(b->inputs)));
     }
     if (b->kept) { /* else the picture of each block checks its input */
-      const int components = stratus_volume_components(in->volume), first = stratus_volume_components(b->inputs[0].volume);
+      const int components = stratus_ray_parts(in->volume, in->options),
+                first = stratus_ray_parts(b->inputs[0].volume, b->inputs[0].options);
       if (components != first) {
         return stratus_fail(b->context, STRATUS_INVALID_ARGUMENT,
-          "block %d has %d components, block 0 has %d: in mode %s all need the same", n, components, first,
+          "block %d has %d independent components, block 0 has %d: in mode %s all need the same", n, components, first,
           stratus_mode_name(stratus_kept_mode(in)));
       }
       TRY(stratus_ray_check_input(b->context, in->volume, in->transfer, in->options));
@@ -283,7 +284,7 @@ static stratus_status draw_all(blocks* b, const int* order, stratus_ray_cast_rep
 /* Draws one component after the other. */
 static stratus_status draw_kept(blocks* b, const int* order, stratus_ray_cast_report* reports)
 {
-  const int components = stratus_volume_components(b->inputs[0].volume);
+  const int components = stratus_ray_parts(b->inputs[0].volume, b->inputs[0].options);
   stratus_status status = STRATUS_OK;
   TRY(stratus_kept_create(b->kept));
   for (int c = 0; c < components && status == STRATUS_OK; ++c) {

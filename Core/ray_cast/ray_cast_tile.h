@@ -37,7 +37,7 @@ static void RAY_NAME(tile)(const stratus_ray_cast_frame* frame, int x0, int y0, 
       }
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
 #if defined(STRATUS_RAY_MODE)
-        RAY_NAME(ray_finish)(a, frame->table, &k[i]);
+        RAY_NAME(ray_finish)(a, frame->values, frame->hidden, frame->table, &k[i]);
 #endif
         store_packet(frame, &k[i], x + i * PACKET_X, y, &mine);
       }

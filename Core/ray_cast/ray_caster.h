@@ -54,6 +54,9 @@ struct stratus_ray_caster {
   float* fetched;              /* float copy of the values; NULL: none */
   uint64_t samples_since_data; /* samples that rays have taken of the data; decides when the copy pays */
   bool copy_failed;            /* memory ran out for it since the data changed */
+  /* The component that rays follow: of dependent components, the last one, but in composite mode and slices; else 0. `ranges` are its own.
+   */
+  int followed;
   stratus_value_range* ranges;
   uint8_t* hidden;      /* hidden bytes as traversal reads them; NULL: none */
   bool hidden_by_value; /* its cells are centred on values */
@@ -142,8 +145,10 @@ uint64_t stratus_ray_differing(const stratus_image* image, const float* rgba, co
 stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
 
-/* ray_caster_pictures.c. Draws what rays keep of one independent component, in maximum, minimum, average or additive, or first hits.
- * *drawn: the caster that has the component's structures. */
+/* ray_caster_pictures.c. stratus_ray_parts(): the number of components that are drawn by themselves; options NULL: the defaults.
+ * stratus_ray_render_kept() draws what rays keep of one of them, in maximum, minimum, average or additive, or first hits. *drawn: the
+ * caster that has the component's structures. */
+int stratus_ray_parts(const stratus_volume* volume, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   int component, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   const stratus_ray_caster** drawn, stratus_ray_cast_report* report);

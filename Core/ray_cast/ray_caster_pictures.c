@@ -11,6 +11,11 @@ static bool draws_parts(const stratus_volume* volume, const stratus_ray_cast_opt
   return one_value && stratus_volume_components(volume) > 1 && !options->optics.dependent;
 }
 
+int stratus_ray_parts(const stratus_volume* volume, const stratus_ray_cast_options* options)
+{
+  return options && draws_parts(volume, options) ? stratus_volume_components(volume) : 1;
+}
+
 void stratus_ray_cast_report_add(stratus_ray_cast_report* sum, const stratus_ray_cast_report* part)
 {
   if (!sum || !part) {

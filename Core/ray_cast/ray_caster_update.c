@@ -51,7 +51,8 @@ static stratus_status update_ranges(
 {
   const int block_size = chosen_block_size(volume, options->skipping.block_size);
   const bool by_value = options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST && volume->cell_centered;
-  const bool same = same_data(caster, volume, block_size);
+  const int followed = stratus_ray_followed(volume, options);
+  const bool same = same_data(caster, volume, block_size) && caster->followed == followed;
   if (!same || caster->hidden_by_value != by_value || !stratus_ray_mask_same(caster, options)) {
     const double start = stratus_now_ms();
     stratus_value_range* ranges = NULL;
@@ -62,11 +63,12 @@ static stratus_status update_ranges(
       status =
         stratus_ray_mask_join(caster->context, volume, options->mask.bytes, options->mask.label_count > 0, by_value, &hidden, &hides);
     }
+    const stratus_volume view = stratus_volume_component(volume, followed);
     if (status == STRATUS_OK && !same) {
-      status = stratus_value_range_create(caster->context, volume, block_size, &ranges);
+      status = stratus_value_range_create(caster->context, &view, block_size, &ranges);
     }
     if (status == STRATUS_OK && ranges && ranges->whole_lo == ranges->whole_hi) {
-      status = stratus_volume_check_floats(caster->context, volume, ranges->bias);
+      status = stratus_volume_check_floats(caster->context, &view, ranges->bias);
     }
     if (status != STRATUS_OK) {
       stratus_value_range_destroy(ranges);
@@ -86,6 +88,7 @@ static stratus_status update_ranges(
       stratus_ray_drop_transfer(caster);
       stratus_value_range_destroy(caster->ranges);
       caster->ranges = ranges;
+      caster->followed = followed;
       stratus_ray_fetched_drop(caster);
       ++caster->range_builds;
       caster->owns_all = stratus_volume_owned(volume, caster->owned[0], caster->owned[1]);
@@ -159,7 +162,11 @@ static stratus_status update_function(stratus_ray_caster* caster, const stratus_
   const stratus_ray_cast_options* options, bool* changed)
 {
   const int media = stratus_ray_shading_media(volume, options);
-  const stratus_ray_shown shown = stratus_ray_modes_shown(options);
+  stratus_ray_shown shown = stratus_ray_modes_shown(options);
+  if (caster->followed) { /* an average's values are another component's */
+    shown.average_range[0] = -INFINITY;
+    shown.average_range[1] = INFINITY;
+  }
   if (!same_transfers(caster, transfer, media, options->optics.dependent != 0)) {
     TRY(keep_transfers(caster, transfer, media, options->optics.dependent != 0));
     *changed = true;
@@ -185,7 +192,7 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
 {
   const bool sums = caster->choice.sampling != STRATUS_SAMPLING_MIDPOINT;
   const stratus_sampling rule = sums ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
-  const double distance = stratus_ray_modes_table_distance(options, caster->transfers, caster->choice.sample_distance);
+  const double distance = stratus_ray_modes_table_distance(options->mode, caster->transfers, caster->choice.sample_distance);
   const int entries = stratus_table_entries_for(rule, stratus_ray_tolerance(options));
   const stratus_ray_made_table last = caster->made;
   stratus_ray_made_table made = last;

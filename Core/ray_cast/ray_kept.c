@@ -67,9 +67,10 @@ stratus_status stratus_kept_draw(stratus_kept* kept, int n, const stratus_camera
   const stratus_ray_caster* caster = NULL;
   TRY(stratus_ray_render_kept(in->caster, in->volume, in->transfer, kept->component, camera, options, part, &caster, report));
   if (caster->ranges) {
-    kept->bias = caster->ranges->bias;
-    kept->part_low = (double)caster->ranges->whole_lo + kept->bias;
-    kept->part_high = (double)caster->ranges->whole_hi + kept->bias;
+    const stratus_value_range* ranges = stratus_mode_is_sum(kept->mode) ? stratus_ray_shading_range_of(caster, 0) : caster->ranges;
+    kept->bias = ranges->bias;
+    kept->part_low = (double)ranges->whole_lo + kept->bias;
+    kept->part_high = (double)ranges->whole_hi + kept->bias;
   }
   return STRATUS_OK;
 }
@@ -120,7 +121,7 @@ static void join_best(const stratus_kept* kept, int n, const float rgba[4], floa
   const bool better = pixel->of < 0 || (kept->mode == STRATUS_MODE_MINIMUM ? value < pixel->value : value > pixel->value);
   const bool equal = pixel->of >= 0 && !(value < pixel->value) && !(value > pixel->value);
   if ((better || (equal && depth < pixel->depth)) && (kept->one_field || shows(kept, n, value))) {
-    *pixel = (stratus_kept_pixel){ .value = value, .depth = depth, .of = n };
+    *pixel = (stratus_kept_pixel){ .value = value, .depth = depth, .color = { rgba[1], rgba[2], rgba[3] - 1.0f }, .of = n };
   }
 }
 
@@ -173,10 +174,19 @@ void stratus_kept_join(stratus_kept* kept, int n, const stratus_image* part, int
 
 /* ---- colours */
 
+/* Whether an input's components are one medium. */
+static bool is_dependent(const stratus_ray_cast_input* input)
+{
+  return !input->tetra && input->options && input->options->optics.dependent && stratus_volume_components(input->volume) > 1;
+}
+
 static void color_best(const stratus_kept* kept, stratus_kept_pixel* pixel, float rgba[4])
 {
   double color[4];
   stratus_transfer_at(kept->inputs[pixel->of].transfer + kept->component, pixel->value, color);
+  for (int c = 0; is_dependent(&kept->inputs[pixel->of]) && c < 3; ++c) {
+    color[c] = (double)pixel->color[c];
+  }
   for (int c = 0; c < 4; ++c) {
     rgba[c] = (float)(c < 3 ? color[c] * color[3] : color[3]);
   }

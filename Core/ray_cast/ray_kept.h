@@ -15,7 +15,8 @@ typedef struct stratus_kept_pixel {
   double length; /* means: the world length on which values count */
   double weight; /* sums of one field: the integral of opacity */
   float depth;
-  int of; /* extremes: the input that has the best value; sums: 0; -1: nothing is kept */
+  float color[3]; /* extremes of dependent components */
+  int of;         /* extremes: the input that has the best value; sums: 0; -1: nothing is kept */
 } stratus_kept_pixel;
 
 typedef struct stratus_kept {

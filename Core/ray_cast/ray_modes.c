@@ -100,9 +100,9 @@ bool stratus_ray_modes_same(const stratus_ray_shown* a, const stratus_ray_shown*
   return same;
 }
 
-double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options, const stratus_transfer* transfer, double sample_distance)
+double stratus_ray_modes_table_distance(stratus_mode mode, const stratus_transfer* transfer, double sample_distance)
 {
-  return options->mode == STRATUS_MODE_COMPOSITE ? sample_distance : transfer->unit_distance;
+  return mode == STRATUS_MODE_COMPOSITE ? sample_distance : transfer->unit_distance;
 }
 
 /* The contour as rays see it. */
@@ -208,8 +208,8 @@ static double changing_extent(const stratus_transfer* transfer, double lo, doubl
 
 void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
-  const stratus_value_range* ranges = caster->ranges;
-  const double lo = (double)ranges->whole_lo, hi = (double)ranges->whole_hi, extent = hi - lo;
+  const stratus_value_range *ranges = caster->ranges, *summed = stratus_ray_shading_range_of(caster, 0);
+  const double lo = (double)summed->whole_lo, hi = (double)summed->whole_hi, extent = hi - lo;
   const bool additive = options->mode == STRATUS_MODE_ADDITIVE;
   a->mode.sign = options->mode == STRATUS_MODE_MINIMUM ? -1.0f : 1.0f;
   a->mode.top = options->mode == STRATUS_MODE_MINIMUM ? -ranges->whole_lo : ranges->whole_hi;
@@ -220,7 +220,7 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
     counted[0] = caster->values.count > 0 ? caster->values.of[0][0] : INFINITY;
     counted[1] = caster->values.count > 0 ? caster->values.of[0][1] : -INFINITY;
   } else if (!additive) {
-    fetched_range(options->optics.average_range, ranges->bias, counted);
+    fetched_range(options->optics.average_range, summed->bias, counted);
   }
   a->mode.counted_first = counted[0];
   a->mode.counted_last = counted[1];
@@ -228,7 +228,7 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   a->mode.grey_offset = a->mode.grey_scale > 0.0f ? (float)(-lo / extent) : 0.0f;
   a->mode.sum_scale = additive ? (float)fmin(caster->choice.sample_distance / caster->transfers[0].unit_distance, 1e30) : 0.0f;
   if (stratus_ray_visits_cells(caster->choice.sampling)) {
-    const double error = caster->choice.cell_error * changing_extent(caster->transfers, lo + ranges->bias, hi + ranges->bias);
+    const double error = caster->choice.cell_error * changing_extent(caster->transfers, lo + summed->bias, hi + summed->bias);
     a->lattice.pieces_per_bend = error > 0.0 ? (float)fmin(1.0 / (8.0 * error), 1e30) : 0.0f;
   }
   if (caster->choice.sampling == STRATUS_SAMPLING_CELLS || options->mode == STRATUS_MODE_SLICE) {
@@ -257,7 +257,7 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
 stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
 {
   const stratus_mode mode = caster->shown.mode;
-  if (caster->shades) {
+  if (caster->shades && mode == STRATUS_MODE_COMPOSITE) {
     return caster->made.table->sums ? STRATUS_VARIANT_SHADING_PREINTEGRATED : STRATUS_VARIANT_SHADING_MIDPOINT;
   }
   if (caster->transfer_2d.on) {

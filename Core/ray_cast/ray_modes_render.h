@@ -25,7 +25,7 @@ stratus_ray_shown stratus_ray_modes_shown(const stratus_ray_cast_options* option
 bool stratus_ray_modes_same(const stratus_ray_shown* a, const stratus_ray_shown* b);
 /* Returns the distance over which the table's opacity accumulates: the sample distance in mode COMPOSITE. Other modes use alpha as given,
  * so theirs is the unit distance. */
-double stratus_ray_modes_table_distance(const stratus_ray_cast_options* options, const stratus_transfer* transfer, double sample_distance);
+double stratus_ray_modes_table_distance(stratus_mode mode, const stratus_transfer* transfer, double sample_distance);
 /* Finds the fetched values that matter to the mode, as those that show. The caller releases values->of. */
 stratus_status stratus_ray_modes_values(stratus_context* context, const stratus_ray_shown* shown, const stratus_transfer* transfer,
   const stratus_fetching* fetching, stratus_shown* values);

@@ -466,7 +466,7 @@ static stratus_status make_patches_by(stratus_ray_caster* caster, int block_size
   memset(shading->ranges, 0, sizeof shading->ranges);
   for (int c = 0; status == STRATUS_OK && c < shading->components; ++c) {
     const stratus_volume view = stratus_volume_component(&caster->volume, c);
-    status = stratus_value_range_create(caster->context, &view, block_size, c == 0 ? &caster->ranges : &shading->ranges[c]);
+    status = stratus_value_range_create(caster->context, &view, block_size, c == caster->followed ? &caster->ranges : &shading->ranges[c]);
   }
   if (status == STRATUS_OK) {
     status = stratus_ray_make_occupancy(caster);
@@ -476,7 +476,7 @@ static stratus_status make_patches_by(stratus_ray_caster* caster, int block_size
   }
   stratus_value_range_destroy(caster->ranges);
   stratus_occupancy_destroy(caster->occupancy);
-  for (int c = 1; c < 4; ++c) {
+  for (int c = 0; c < 4; ++c) {
     stratus_value_range_destroy(shading->ranges[c]);
   }
   caster->ranges = ranges;

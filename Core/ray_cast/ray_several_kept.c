@@ -12,10 +12,9 @@
 /* The components that are drawn by themselves. */
 static int components_of(const stratus_ray_cast_input* input, stratus_mode mode)
 {
-  if (mode == STRATUS_MODE_FIRST_HIT) {
-    return 1;
-  }
-  return input->tetra ? stratus_tetra_component_count(input->mesh) : stratus_volume_components(input->volume);
+  return !input->tetra               ? stratus_ray_parts(input->volume, input->options)
+    : mode == STRATUS_MODE_FIRST_HIT ? 1
+                                     : stratus_tetra_component_count(input->mesh);
 }
 
 static stratus_status check(stratus_context* context, const stratus_ray_cast_input* inputs, int count)

@@ -46,9 +46,8 @@ static stratus_material material_of(const stratus_ray_caster* caster, const stra
 
 bool stratus_ray_shading_wanted(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
-  const bool more =
-    options->light.shade || transfer->gradient_count > 0 || stratus_volume_components(volume) > 1 || options->mask.label_count > 0;
-  return options->mode == STRATUS_MODE_COMPOSITE && more && !options->optics.transfer_2d;
+  const bool more = options->light.shade || transfer->gradient_count > 0 || options->mask.label_count > 0;
+  return !options->optics.transfer_2d && (stratus_volume_components(volume) > 1 || (options->mode == STRATUS_MODE_COMPOSITE && more));
 }
 
 /* Largest number of samples in gradient_distance: products with the optical depth of opacity 1, 1e30, stay floats. */
@@ -71,7 +70,7 @@ static void set_tables(const stratus_ray_caster* caster, const stratus_ray_cast_
   a->media.component_bytes = (int)(uint32_t)(volume->values == caster->fetched ? values * sizeof(float) : stratus_type_size(volume->type));
   for (int c = 0; c < 4; ++c) {
     const stratus_table* table = shading->tables[c];
-    const bool has = caster->shades && c < shading->components;
+    const bool has = caster->shades && options->mode == STRATUS_MODE_COMPOSITE && c < shading->components;
     a->media.factor_first[c] = has ? shading->factor_first[c] : -1;
     if (a->media.factor_first[c] >= 0 || a->media.label_factors) {
       a->media.factor_reach = (float)fmin(options->optics.gradient_distance / caster->choice.sample_distance, REACH_MOST);
@@ -93,6 +92,7 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
   const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
   const double edge = stratus_ray_voxel_length(volume);
+  const bool lit = options->mode == STRATUS_MODE_COMPOSITE || options->mode == STRATUS_MODE_ISOSURFACE;
   double index_to_world[16], world_to_index[16];
   if (!caster->shades && !options->light.shade && !caster->transfer_2d.on) {
     return;
@@ -119,7 +119,7 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
     const bool there = c == 0 || c < caster->shading_tables.components;
     const stratus_material material = material_of(caster, options, there ? c : 0);
     const double numbers[4] = { material.ambient, material.diffuse, material.specular, material.specular_power };
-    a->light.on |= there && material.shade ? 1 << c : 0;
+    a->light.on |= lit && there && material.shade ? 1 << c : 0;
     for (int i = 0; i < 4; ++i) {
       a->light.material[c][i] = (float)numbers[i];
     }

@@ -24,6 +24,12 @@ stratus_volume stratus_volume_component(const stratus_volume* volume, int compon
   return view;
 }
 
+int stratus_ray_followed(const stratus_volume* volume, const stratus_ray_cast_options* options)
+{
+  const bool mixes = options->mode == STRATUS_MODE_COMPOSITE || options->mode == STRATUS_MODE_SLICE;
+  return options->optics.dependent && !mixes ? stratus_volume_components(volume) - 1 : 0;
+}
+
 int stratus_ray_shading_media(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   return options->mask.label_count > 0                         ? 1 + options->mask.label_count
@@ -52,12 +58,11 @@ stratus_status stratus_ray_shading_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const int components = stratus_volume_components(volume);
-  const bool surfaces =
-    options->mode == STRATUS_MODE_FIRST_HIT || options->mode == STRATUS_MODE_ISOSURFACE || options->mode == STRATUS_MODE_SLICE;
-  if (components > 1 && options->mode != STRATUS_MODE_COMPOSITE && (surfaces || options->optics.dependent)) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of a volume of %d %s components: %s", stratus_mode_name(options->mode),
-      components, options->optics.dependent ? "dependent" : "independent",
-      surfaces ? "only modes without surfaces take more than 1" : "only composite takes dependent ones");
+  const bool surfaces = options->mode == STRATUS_MODE_FIRST_HIT || options->mode == STRATUS_MODE_ISOSURFACE;
+  if (components > 1 && surfaces && !options->optics.dependent) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "mode %s of a volume of %d independent components: only modes without surfaces take more than 1", stratus_mode_name(options->mode),
+      components);
   }
   if (options->mask.label_count < 0 || options->mask.label_count > 255 || (options->mask.label_count > 0 && !options->mask.bytes)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d labels %s a mask, must be 0..255, and there must be one",
@@ -70,9 +75,9 @@ stratus_status stratus_ray_shading_check_volume(
   if (options->optics.dependent && components == 3) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "3 dependent components, must be 2 or 4");
   }
-  if (options->optics.dependent && components == 4 && volume->type != STRATUS_UINT8) {
+  if (options->optics.dependent && components == 4 && stratus_type_is_wide(volume->type)) {
     return stratus_fail(
-      context, STRATUS_UNSUPPORTED, "4 dependent components of type %d, must be bytes (%d)", (int)volume->type, STRATUS_UINT8);
+      context, STRATUS_UNSUPPORTED, "4 dependent components of type %d, must be of up to 16 bits or floats", (int)volume->type);
   }
   for (int c = 0; c < stratus_ray_shading_media(volume, options); ++c) {
     TRY(stratus_transfer_check(context, transfer + c));
@@ -116,7 +121,7 @@ static bool has_labels(const stratus_ray_caster* caster)
 
 bool stratus_ray_shading_several(const stratus_ray_caster* caster)
 {
-  return !caster->transfer_2d.on && (caster->shading_tables.components > 1 || has_labels(caster));
+  return !caster->transfer_2d.on && !caster->followed && (caster->shading_tables.components > 1 || has_labels(caster));
 }
 
 stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster)
@@ -127,9 +132,11 @@ stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster)
     return STRATUS_OK;
   }
   stratus_ray_shading_release(caster);
-  for (int c = 1; c < components; ++c) {
+  for (int c = 0; c < components; ++c) {
     const stratus_volume view = stratus_volume_component(&caster->volume, c);
-    TRY(stratus_value_range_create(caster->context, &view, caster->ranges->block_size, &shading->ranges[c]));
+    if (c != caster->followed) {
+      TRY(stratus_value_range_create(caster->context, &view, caster->ranges->block_size, &shading->ranges[c]));
+    }
   }
   shading->components = components;
   shading->range_builds = caster->range_builds;
@@ -138,7 +145,7 @@ stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster)
 
 const stratus_value_range* stratus_ray_shading_range_of(const stratus_ray_caster* caster, int c)
 {
-  return c == 0 ? caster->ranges : caster->shading_tables.ranges[c];
+  return c == caster->followed ? caster->ranges : caster->shading_tables.ranges[c];
 }
 
 /* ---- tables */
@@ -161,8 +168,8 @@ static stratus_status create_table(stratus_ray_caster* caster, const stratus_tra
 {
   const stratus_table_values values =
     stratus_table_values_of(stratus_ray_shading_range_of(caster, c), caster->interpolation == STRATUS_INTERPOLATION_NEAREST);
-  return stratus_table_create_fine(
-    caster->context, transfer, &values, STRATUS_SAMPLING_MIDPOINT, caster->choice.sample_distance, entries, table);
+  const double distance = stratus_ray_modes_table_distance(caster->shown.mode, transfer, caster->choice.sample_distance);
+  return stratus_table_create_fine(caster->context, transfer, &values, STRATUS_SAMPLING_MIDPOINT, distance, entries, table);
 }
 
 /* Return the number of entries of each label's table: as many as the caster's table, which follow the tolerance, unless there is no room
@@ -202,8 +209,8 @@ static stratus_status create_label_tables(stratus_ray_caster* caster)
   return STRATUS_OK;
 }
 
-/* Makes the tables of several components. Independent components have one each. Of dependent ones, the last has one for opacity; of two,
- * the first has another for colour. */
+/* Makes the tables of several components. Independent components have one each. Of dependent ones, the last has one for opacity, unless
+ * rays follow it; of two, the first has another for colour. */
 static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
 {
   stratus_ray_shading_tables* shading = &caster->shading_tables;
@@ -229,7 +236,7 @@ static stratus_status create_tables(stratus_ray_caster* caster, bool dependent)
     color.clamp = 1;
     TRY(create_table(caster, &color, 0, caster->made.entries, &shading->tables[0]));
   }
-  return create_table(caster, caster->transfers, last, caster->made.entries, &shading->tables[last]);
+  return caster->followed ? STRATUS_OK : create_table(caster, caster->transfers, last, caster->made.entries, &shading->tables[last]);
 }
 
 /* Appends what finds an entry in a table of several entries a cell, unless out is NULL. Returns the end. */
@@ -301,11 +308,12 @@ static size_t lay_out(stratus_ray_caster* caster, bool dependent, float* out)
 {
   stratus_ray_shading_tables* shading = &caster->shading_tables;
   size_t at = 0;
-  if (shading->components == 1) {
-    at = stratus_table_words(caster->made.table);
+  if (shading->components == 1 || caster->followed) {
+    const size_t words = stratus_table_words(caster->made.table);
     if (out) {
-      memcpy(out, caster->made.table->rgba ? (const void*)caster->made.table->rgba : (const void*)caster->made.table->sums, 4 * at);
+      memcpy(out, caster->made.table->rgba ? (const void*)caster->made.table->rgba : (const void*)caster->made.table->sums, 4 * words);
     }
+    at = rounded_to_four(words);
   }
   for (int c = 0; c < shading->components; ++c) {
     const stratus_table* table = shading->tables[c];
@@ -355,7 +363,7 @@ bool stratus_ray_shading_show(const stratus_ray_caster* caster)
       return true;
     }
   }
-  if (shading->components <= 1 || caster->transfer_2d.on) {
+  if (shading->components <= 1 || caster->transfer_2d.on || caster->followed) {
     return stratus_shown_meets(&caster->values, caster->ranges->whole_lo, caster->ranges->whole_hi);
   }
   for (int c = 0; c < shading->components; ++c) {

@@ -9,7 +9,7 @@
 
 typedef struct stratus_ray_shading_tables {
   int components;                 /* of the volume */
-  stratus_value_range* ranges[4]; /* value range of each component; [0] is NULL: caster->ranges serves */
+  stratus_value_range* ranges[4]; /* value range of each component; NULL of the one that rays follow: caster->ranges serves */
   stratus_table* tables[4];       /* table of each component that has one; all NULL if components is 1 */
   void* memory;                   /* all tables and gradient opacities, as rays read them */
   size_t bytes;
@@ -24,11 +24,13 @@ typedef struct stratus_ray_shading_tables {
 
 int stratus_volume_components(const stratus_volume* volume);
 stratus_volume stratus_volume_component(const stratus_volume* volume, int component); /* a component as a volume of its own */
+/* The component that rays follow, see stratus_ray_caster. */
+int stratus_ray_followed(const stratus_volume* volume, const stratus_ray_cast_options* options);
 int stratus_ray_shading_media(
   const stratus_volume* volume, const stratus_ray_cast_options* options); /* number of transfer functions that the render takes */
 stratus_status stratus_ray_shading_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
-stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster); /* value ranges of all components but the first */
+stratus_status stratus_ray_shading_ranges(stratus_ray_caster* caster); /* value ranges of all components but the followed one */
 const stratus_value_range* stratus_ray_shading_range_of(const stratus_ray_caster* caster, int component);
 stratus_status stratus_ray_shading_tables_update(stratus_ray_caster* caster, bool dependent); /* call after caster->made is */
 bool stratus_ray_shading_several(const stratus_ray_caster* caster);       /* whether several tables decide which blocks are occupied */

@@ -171,20 +171,22 @@ typedef struct stratus_ray_skipping_options {
 
 /* The colour and opacity of samples before they are lit. */
 typedef struct stratus_ray_optics_options {
-  /* Volumes of several components. First hits, isosurface and slice do not draw them, and only composite draws dependent ones: other
-   * requests give STRATUS_UNSUPPORTED.
+  /* Volumes of several components. First hits and isosurface do not draw independent ones: STRATUS_UNSUPPORTED.
    *
-   * Composite, 0 (default): each component is a medium with its own transfer function. Where media mix, their optical depths and their
-   * emitted light add up. In other modes each independent component is drawn by itself. Their premultiplied colours, times the components'
-   * weights, add up to at most 1, and so do the alphas of extremes.
+   * 0 (default): each component is a medium with its own transfer function. Composite: where media mix, their optical depths and their
+   * emitted light add up. Slice: the same at each point, over a length of which each opacity is. Maximum, minimum, average and additive
+   * draw each component by itself. Their premultiplied colours, times the components' weights, add up to at most 1, and so do the alphas of
+   * extremes.
    *
    * 1: the components are one medium with one transfer function. Of 2 components, the first has the colour and the second the opacity. Of 4
-   * (STRATUS_UINT8 only), the first three are red, green and blue in 0..255, and the fourth has the opacity. The gradient is the last
-   * component's. */
+   * (up to 16 bits, or floats), the first three are red, green and blue in 0..255, and the fourth has the opacity. The gradient is the last
+   * component's. Maximum and minimum keep the last component's value, isosurface cuts it, first hits and slice show it by its opacity,
+   * each in the colour of the others at that place. Average and additive add the last one's opacity times the first one's value, as VTK's
+   * mappers do; average_range is of the first one. */
   int dependent;
-  /* Composite, independent components. 0 (default): optical depths add up, as if media share a place. 1: each component counts by its share
-   * of the optical depths, so that depths d give (sum of d^2) / (sum of d), while emitted light adds up. VTK's mappers mix components in
-   * this way. */
+  /* Composite and slice, independent components. 0 (default): optical depths add up, as if media share a place. 1: each component counts by
+   * its share of the optical depths, so that depths d give (sum of d^2) / (sum of d), while emitted light adds up. VTK's mappers mix
+   * components in this way. */
   int mean_components;
   /* Composite, with a gradient opacity F; at least 0, finite. 0 (default): F multiplies the optical depth, which does not depend on a
    * length; a value of opacity 1 stays opaque. Greater than 0: F multiplies the opacity A of a segment of this world length, which then

@@ -55,7 +55,7 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
                    (with d = x - center: square[0] dx dx + [1] dy dy + [2] dz dz + [3] dx dy + [4] dy dz + [5] dx dz + linear . d + constant = 0).
                    `slab` makes thick slices, in any mode
     dependent      for 2 or 4 components; False: each is a separate medium, and their optical depths and light add up. True: all are one medium. Of 2
-                   the first has the colour and the second the opacity; 4 are red, green and blue in 0..255, uint8, and the opacity
+                   the first has the colour and the second the opacity; 4 are red, green and blue in 0..255 and the opacity, of up to 16 bits or floats
     weights        for independent components: a factor in 0..1 of the optical depth of each; default 1
     mean_components  for independent components: whether each counts by its share of the optical depth, as VTK's mappers mix them
     labels, looks  whole numbers in 0..255 in the values' shape, and a dict of labels, 1..255, and dicts of opacity, color and gradient_opacity:

@@ -31,15 +31,19 @@
  *   opacity (GradientOpacityDistance);
  * - arrays of 2 to 4 components. Independent components are media that mix (ComponentMixing): their optical depths, multiplied by
  *   ComponentWeight, add up or, as in VTK, each counts by its share. Each has its own Shade and material. Dependent components are colour
- *   and opacity (2), or red, green, blue and opacity (4 of unsigned char);
+ *   and opacity (2), or red, green and blue in 0..255 and opacity (4 of up to 16 bits, or float);
  * - two-dimensional transfer functions (TF_2D). Columns cover the range of the values. Rows cover gradient magnitudes from 0 to a quarter
  *   of that range per mean spacing, as in VTK's mapper, or the range of a second array (Transfer2DYAxisArray). Opacities are per
  *   ScalarOpacityUnitDistance. Sampling is by the midpoint rule only, with a step that keeps ImageErrorTolerance;
  * - UseClippedVoxelIntensity: gradients at clipping planes use ClippedVoxelIntensity beyond the planes (vtkImageData, one component);
  * - label maps, with colours, opacities and gradient opacities of their own.
  *
- * Lights of all kinds shine, with attenuation and cones (vtkLight; a ConeAngle of 90 and more is none). Maximum, minimum, average and
- * additive draw each of 2 to 4 independent components by itself, and add their weighted colours, as VTK's mappers do.
+ * Lights of all kinds shine, with attenuation and cones (vtkLight; a ConeAngle of 90 and more is none).
+ *
+ * Maximum, minimum, average and additive draw each of 2 to 4 independent components by itself, and add their weighted colours, as VTK's
+ * mappers do. Slices mix them as composite mode mixes them at a sample. Of dependent components, extremes keep the last one's value,
+ * isosurfaces cut it, slices and first hits show it by its opacity, each in the colour of the others at that place; average and additive
+ * take the last one's opacity times the first one's value, as VTK's mappers do.
  *
  * Cropping planes are along the image's own axes, as in VTK's mappers: at origin + spacing * index, before the direction matrix. Planes
  * that are taken from GetBounds() may miss a mirrored or turned image; a warning says so.

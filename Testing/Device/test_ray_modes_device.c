@@ -62,6 +62,12 @@ static void modes_are_those_of_the_host(void** state)
     const int mode = STRATUS_MODE_MAXIMUM + (int)(seed % 5);
     case_create(host, &c, types[seed / 5 % 2], 21, 19, 23, seed);
     ask_for(&c, mode, seed, mask);
+    if (seed % 4 == 3) { /* two dependent components: every second value is the other's */
+      c.volume.dimensions[0] = 10;
+      c.volume.components = 2;
+      c.volume.value_stride = 2;
+      c.options.optics.dependent = 1;
+    }
     case_render(host, &c, &on_host);
     c.options.skipping.audit = 1;
     case_render(device, &c, &on_device);

@@ -21,18 +21,18 @@ void Components()
   pairs->SetDimensions(5, 5, 5);
   pairs->AllocateScalars(VTK_UNSIGNED_CHAR, 2);
   pairs->GetPointData()->GetScalars()->Fill(1);
-  for (int blend = vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND; blend <= vtkVolumeMapper::ISOSURFACE_BLEND; ++blend) {
+  for (int solid = 0; solid < 2; ++solid) {
     Refused(
-      "two dependent components in another mode, and any of surfaces", "2 components",
+      "surfaces of two independent components", "2 independent components",
       [&](Scene& s) {
         s.Mapper->SetInputData(pairs);
-        s.Mapper->SetBlendMode(blend);
-        s.Volume->GetProperty()->SetIndependentComponents(blend == vtkVolumeMapper::ISOSURFACE_BLEND);
+        s.Mapper->SetBlendMode(solid ? vtkVolumeMapper::COMPOSITE_BLEND : vtkVolumeMapper::ISOSURFACE_BLEND);
+        s.Mapper->SetRenderMode(solid ? vtkStratusVolumeMapper::FIRST_HIT_MODE : vtkStratusVolumeMapper::COMPOSITE_MODE);
       },
       [](Scene& s) {
         s.Mapper->SetInputData(s.Image);
-        s.Volume->GetProperty()->IndependentComponentsOn();
         s.Mapper->SetBlendModeToComposite();
+        s.Mapper->SetRenderModeToComposite();
       });
   }
 }

@@ -351,22 +351,24 @@ def extremes(layers, eyes, ways, sign):
 
 
 def sums(layers, eyes, ways, mean):
-    """Opacity times value as a part of the volume's range: its integral, or its mean over all volumes; components are added."""
+    """Opacity times value as a part of the volume's range: its integral, or its mean over all volumes; components are added. Of dependent
+    components, the last one's opacity times the first one's value."""
     ray, _, values = along(layers, eyes, ways)
-    grey = numpy.zeros(len(eyes))
+    shown = numpy.zeros(len(eyes))
     for turn in range(max(len(layer.media()) for layer in layers)):
         total, counted = numpy.zeros(len(eyes)), numpy.zeros(len(eyes))
         for layer, value in zip(layers, values):
             if turn >= len(layer.media()):
                 continue
             m = layer.media()[turn]
-            low, high = layer.field.range[0][m], layer.field.range[1][m]
+            grey = 0 if "rgba" in layer.features else m
+            low, high = layer.field.range[0][grey], layer.field.range[1][grey]
             there = numpy.isfinite(value).all(-1)
             _, opacity = layer.look(numpy.where(there[:, None], value, 0), m)
-            numpy.add.at(total, ray, numpy.where(there, opacity * (value[:, m] - low) / (high - low), 0) * STEP)
+            numpy.add.at(total, ray, numpy.where(there, opacity * (value[:, grey] - low) / (high - low), 0) * STEP)
             numpy.add.at(counted, ray, there * STEP)
-        grey += numpy.minimum(total / numpy.maximum(counted, 1e-300) if mean else total, 1)
-    return numpy.minimum(grey, 1)[:, None] * numpy.ones(3)
+        shown += numpy.minimum(total / numpy.maximum(counted, 1e-300) if mean else total, 1)
+    return numpy.minimum(shown, 1)[:, None] * numpy.ones(3)
 
 
 def blend(count, ray, s, rgb, alpha):
@@ -411,10 +413,13 @@ def slices(layers, eyes, ways):
     found = []
     for layer in layers:
         value = layer.value_at(points)
+        there = numpy.isfinite(value).all(-1) & (s > 0)
+        depth, light = numpy.zeros(there.sum()), numpy.zeros((there.sum(), 3))  # components mix as in composite
         for m in layer.media():
-            there = numpy.isfinite(value).all(-1) & (s > 0)
             rgb, opacity = layer.look(value[there], m)
-            found.append((numpy.flatnonzero(there), s[there], rgb, opacity))
+            depth += depth_of(opacity)
+            light += depth_of(opacity)[:, None] * rgb
+        found.append((numpy.flatnonzero(there), s[there], light / numpy.maximum(depth, 1e-300)[:, None], -numpy.expm1(-depth)))
     return blend(len(eyes), *[numpy.concatenate(f) for f in zip(*found)])
 
 

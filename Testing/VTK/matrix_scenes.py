@@ -33,12 +33,17 @@ def bump(x, y, z):
     return (1.3 * numpy.exp(-((x - 8) ** 2 + (y - 7) ** 2 + (z - 8) ** 2) / 20)).astype(numpy.float32)
 
 
+def rgba(v):
+    """Red, green, blue and what opacity is of, bytes."""
+    return [numpy.clip(200 * part, 0, 255).astype(numpy.uint8) for part in (0.3 + 0.5 * v, v, 1 - v, v)]
+
+
 def values_of(features, v):
     """The components of values v, whose axes are z, y, x: the field itself, and another one."""
     if "two_components" in features:
         return numpy.stack([v, v[::-1]], -1)
     if "rgba" in features:
-        return numpy.clip(numpy.stack([v, v, 1 - v, v], -1) * 200, 0, 255).astype(numpy.uint8)
+        return numpy.stack(rgba(v), -1)
     return v[..., None]
 
 
@@ -103,8 +108,7 @@ def levels(features):
     if "two_components" in features:
         fields.append(refined.Refined(refined.uneven(), function=lambda x, y, z: refined.bump(x, y, 10 - z)))
     if "rgba" in features:
-        red = [refined.Refined(refined.uneven(), function=lambda x, y, z, c=c: numpy.clip(200 * (1 - refined.bump(x, y, z) if c == 2 else refined.bump(x, y, z)), 0, 255).astype(numpy.uint8)) for c in range(4)]
-        fields = red
+        fields = [refined.Refined(refined.uneven(), function=lambda x, y, z, c=c: rgba(refined.bump(x, y, z))[c].astype(float)) for c in range(4)]
     return fields
 
 

@@ -4,7 +4,7 @@ import numpy
 import vtk
 
 import vtk_verdict_data as made
-from vtk_verdict import FIXED, GPU, SMART, Better, Different, Same, case, differences, nothing, pair, picture, refusal
+from vtk_verdict import FIXED, GPU, SMART, Better, Different, Same, case, differences, nothing, pair, picture
 from vtk_verdict_cuts import crop
 from vtk_verdict_data import colors, image, look, opacity
 from vtk_verdict_light import SHINY
@@ -157,22 +157,22 @@ def four_dependent_lit():
 
 @case("TestGPURayCastFourComponentsAdditive")
 def four_dependent_additive():
-    return refusal(image(rgba()), dependent(alpha=((0, 0), (255, 0.1))), mode("Additive"))
+    return Same(pair(image(rgba()), dependent(alpha=((0, 0), (255, 0.1))), mode("Additive")))
 
 
 @case("TestGPURayCastFourComponentsAverage")
 def four_dependent_average():
-    return refusal(image(rgba()), dependent(), mode("AverageIntensity"))
+    return Same(pair(image(rgba()), dependent(), mode("AverageIntensity")))
 
 
 @case("TestGPURayCastFourComponentsMIP")
 def four_dependent_maximum():
-    return refusal(image(rgba()), dependent(), mode("MaximumIntensity"))
+    return Same(pair(image(rgba()), dependent(), mode("MaximumIntensity")))
 
 
 @case("TestGPURayCastFourComponentsMinIP")
 def four_dependent_minimum():
-    return refusal(image(rgba()), dependent(alpha=((0, 1), (255, 0))), mode("MinimumIntensity"))
+    return Same(pair(image(rgba()), dependent(alpha=((0, 1), (255, 0))), mode("MinimumIntensity")))
 
 
 def raycaster(chosen, linear, settings=nothing, unit=1):

@@ -26,7 +26,11 @@ typedef struct scene {
   const stratus_transfer* transfer;
   const stratus_ray_cast_options* options;
   double to_world[3][4]; /* from places */
-  double low, high;      /* of all finite values */
+  double low, high;      /* of all finite values; of dependent components, the first one's */
+  /* Of several components, each as a volume. Dependent ones: the last is `volume`, and has the opacity. count 1: there is one. */
+  stratus_volume parts[4];
+  int count;
+  bool dependent;
 } scene;
 
 /* ---- the field */
@@ -139,6 +143,56 @@ static void color_at(const stratus_transfer* transfer, double x, double rgba[4])
   for (size_t c = 0; c < 3; ++c) {
     rgba[c] = between(transfer->color, transfer->color_count, 4, c + 1, x);
   }
+}
+
+/* The value of component c at a position. */
+static double part_at(const scene* s, int c, const double p[3])
+{
+  scene part = *s;
+  kept_cell cell = NO_CELL;
+  part.volume = &s->parts[c];
+  return field_at(&part, p, &cell);
+}
+
+/* Gives the colour and opacity of a value; the colour of dependent components is the others' at p. */
+static void look_at(const scene* s, double value, const double p[3], double rgba[4])
+{
+  color_at(s->transfer, value, rgba);
+  if (s->dependent && s->count == 2) {
+    double color[4];
+    color_at(s->transfer, part_at(s, 0, p), color);
+    memcpy(rgba, color, 3 * sizeof *rgba);
+  }
+  for (int c = 0; s->dependent && s->count == 4 && c < 3; ++c) {
+    rgba[c] = part_at(s, c, p) / 255.0;
+  }
+}
+
+/* Gives what a point of several components shows: optical depths add up, and weigh the colours. Returns false where nothing shows. */
+static bool mix_at(const scene* s, double value, const double p[3], double rgba[4])
+{
+  double depths = 0.0, squares = 0.0, light[3] = { 0.0, 0.0, 0.0 };
+  if (s->count == 1 || s->dependent) {
+    look_at(s, value, p, rgba);
+    return !isnan(value);
+  }
+  for (int c = 0; c < s->count; ++c) {
+    const double here = part_at(s, c, p);
+    double own[4];
+    color_at(s->transfer + c, here, own);
+    const double depth = isnan(here) ? 0.0 : s->transfer[c].weight * fmin(-log1p(-own[3]), 1e15);
+    depths += depth;
+    squares += depth * depth;
+    for (int i = 0; i < 3 && depth > 0.0; ++i) {
+      light[i] += depth * own[i];
+    }
+  }
+  const double depth = s->options->optics.mean_components && depths > 0.0 ? squares / depths : depths;
+  rgba[3] = -expm1(-depth);
+  for (int i = 0; i < 3; ++i) {
+    rgba[i] = depth > 0.0 ? light[i] / depth : 0.0;
+  }
+  return depth > 0.0;
 }
 
 /* ---- rays */
@@ -313,7 +367,9 @@ static void draw_extreme(const scene* s, const line* l, double step, float rgba[
     }
   }
   if (isfinite(best)) {
-    color_at(s->transfer, sign * best, color);
+    double p[3];
+    point_on(l, at, p);
+    look_at(s, sign * best, p, color);
     for (int c = 0; c < 4; ++c) {
       rgba[c] = (float)(color[c] * (c < 3 ? color[3] : 1.0));
     }
@@ -329,11 +385,12 @@ static void draw_sum(const scene* s, const line* l, double step, float rgba[4], 
   while (next_sample(&all)) {
     double p[3], color[4];
     point_on(l, all.t, p);
-    const double value = field_at(s, p, &all.cell);
-    if (isnan(value) || (mean && !(value >= s->options->optics.average_range[0] && value <= s->options->optics.average_range[1]))) {
+    const double shown = field_at(s, p, &all.cell), value = s->dependent ? part_at(s, 0, p) : shown;
+    if (isnan(shown) || isnan(value) ||
+      (mean && !(value >= s->options->optics.average_range[0] && value <= s->options->optics.average_range[1]))) {
       continue;
     }
-    color_at(s->transfer, value, color);
+    color_at(s->transfer, shown, color);
     sum += s->high > s->low ? color[3] * (value - s->low) / (s->high - s->low) * all.length : 0.0;
     counted += all.length;
     *depth = color[3] > 0.0 && (double)*depth > all.t ? (float)all.t : *depth;
@@ -431,8 +488,9 @@ static void draw_surfaces(const scene* s, const line* l, float rgba[4], float* d
   qsort(found, (size_t)count, sizeof *found, by_distance);
   double left = 1.0;
   for (int i = 0; i < count; ++i) {
-    double color[4];
-    color_at(s->transfer, found[i].contour, color);
+    double color[4], p[3];
+    point_on(l, found[i].t, p);
+    look_at(s, found[i].contour, p, color);
     for (int c = 0; c < 3; ++c) {
       rgba[c] += (float)(left * color[3] * color[c]);
     }
@@ -479,12 +537,11 @@ static void draw_slice(const scene* s, const line* l, float rgba[4], float* dept
       const double middle = 0.5 * (lo + hi);
       *((slice_at(s, l, middle) < 0.0) == (first < 0.0) ? &lo : &hi) = middle;
     }
-    const double value = field_on(s, l, lo, &cell);
-    double color[4];
-    if (isnan(value)) {
+    double color[4], p[3];
+    point_on(l, lo, p);
+    if (!mix_at(s, field_at(s, p, &cell), p, color)) {
       continue;
     }
-    color_at(s->transfer, value, color);
     for (int c = 0; c < 3; ++c) {
       rgba[c] += (float)(left * color[3] * color[c]);
     }
@@ -497,12 +554,20 @@ static void draw_slice(const scene* s, const line* l, float rgba[4], float* dept
 void reference_modes_render(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
   const stratus_ray_cast_options* options, int width, int height, double step, float* rgba, float* depth)
 {
+  static const size_t sizes[] = { 1, 1, 2, 2, 4, 4, 8, 8, 4, 8 }; /* of stratus_type */
   scene s = { .volume = volume, .transfer = transfer, .options = options, .low = (double)INFINITY, .high = -(double)INFINITY };
+  s.count = volume->components > 1 ? volume->components : 1;
+  s.dependent = options->optics.dependent && s.count > 1;
+  for (int c = 0; c < s.count; ++c) {
+    s.parts[c] = *volume;
+    s.parts[c].values = (const char*)volume->values + (size_t)c * sizes[volume->type];
+  }
+  s.volume = &s.parts[s.dependent ? s.count - 1 : 0];
   set_to_world(&s);
   for (int64_t k = 0; k < volume->dimensions[2]; ++k) {
     for (int64_t j = 0; j < volume->dimensions[1]; ++j) {
       for (int64_t i = 0; i < volume->dimensions[0]; ++i) {
-        const double value = reference_value(volume, i, j, k);
+        const double value = reference_value(&s.parts[0], i, j, k);
         s.low = isfinite(value) ? fmin(s.low, value) : s.low;
         s.high = isfinite(value) ? fmax(s.high, value) : s.high;
       }

@@ -11,10 +11,10 @@
 extern "C" {
 #endif
 
-/* Draws options->mode, except first hits. It obeys these options: interpolation, average_range, contours, crop (bounds and regions) and
- * mask. step: length of a step in the world. Isosurfaces take no steps: each cell on a ray is cut into 64 parts, and sign changes are found
- * by bisection. rgba: premultiplied, bottom row first. depth: world distance to the first contribution, INFINITY if there is none;
- * extremes: to the extreme value. */
+/* Draws options->mode, except first hits. It obeys these options: interpolation, average_range, contours, crop (bounds and regions), mask,
+ * dependent and, for slices of several components, mean_components. step: length of a step in the world. Isosurfaces take no steps: each
+ * cell on a ray is cut into 64 parts, and sign changes are found by bisection. rgba: premultiplied, bottom row first. depth: world distance
+ * to the first contribution, INFINITY if there is none; extremes: to the extreme value. */
 void reference_modes_render(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
   const stratus_ray_cast_options* options, int width, int height, double step, float* rgba, float* depth);
 

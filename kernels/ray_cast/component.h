@@ -18,25 +18,40 @@ typedef struct stratus_label_sample {
   stratus_lit_sample lighting;
 } stratus_label_sample;
 
-#if RAY_IN_PAGES
-INLINE value_source component_values(value_source values, int c)
-{
-  values.component = c;
-  return values;
-}
-#define COMPONENT_VALUES(a, values, c) component_values(values, c)
-#else
-#define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->media.component_bytes)
-#endif
 #endif
 
 #if !STRATUS_PREINTEGRATED
-/* The value of component c at the sample. */
-OUTLINE vfloat RAY_NAME(component_value)(
+/* The value of component c at s on the rays. */
+OUTLINE vfloat RAY_NAME(component_at)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+  const stratus_packet* k, vfloat s, int c, vmask mask)
+{
+  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
+  return RAY_NAME(ray_value)(a, COMPONENT_VALUES(a, values, c), hidden, k->grid, x, mask);
+}
+
+/* The same at the sample. */
+INLINE vfloat RAY_NAME(component_value)(
   CONSTANT stratus_ray_cast_arguments* a, const stratus_packet* k, const stratus_sample* sample, int c, vmask mask)
 {
-  const vfloat s = v_fma(v_set(0.5f), sample->weight, sample->lo);
-  const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
-  return RAY_NAME(ray_value)(a, COMPONENT_VALUES(a, sample->values, c), sample->hidden, k->grid, x, mask);
+  return RAY_NAME(component_at)(a, sample->values, sample->hidden, k, v_fma(v_set(0.5f), sample->weight, sample->lo), c, mask);
+}
+
+/* The colour of dependent components at s on the rays: of two, the first one's in its table; of four, the first three. Returns the lanes of
+ * `mask` that have one. */
+INLINE vmask RAY_NAME(dependent_color)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, value_source values,
+  GLOBAL const uchar* hidden, const stratus_packet* k, vfloat s, vmask mask, vfloat color[4])
+{
+  if (a->media.dependent == 1) {
+    const vfloat value = RAY_NAME(component_at)(a, values, hidden, k, s, 0, mask);
+    mask = mask & v_finite(value);
+    gather_four((GLOBAL const float*)table + a->media.first[0], shading_entry(a, table, 0, value), mask, color);
+  } else {
+    for (int c = 0; c < 3; ++c) {
+      const vfloat value = RAY_NAME(component_at)(a, values, hidden, k, s, c, mask);
+      mask = mask & v_finite(value);
+      color[c] = v_clamp(value * v_set(1.0f / 255.0f), 0.0f, 1.0f);
+    }
+  }
+  return mask;
 }
 #endif

@@ -74,7 +74,7 @@ PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGU
     }
   }
 #if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
-  RAY_NAME(ray_finish)(a, table, &k);
+  RAY_NAME(ray_finish)(a, values, hidden, table, &k);
 #endif
   store_pixel(a, &to, x, y, (float4)(k.red, k.green, k.blue, 1.0f - k.transparency), k.depth, (uint)k.samples);
   if (k.hits) {
@@ -126,7 +126,7 @@ PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGU
       }
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
 #if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
-        RAY_NAME(ray_finish)(a, table, &k[i]);
+        RAY_NAME(ray_finish)(a, values, hidden, table, &k[i]);
 #endif
         store_packet(a, &to, &k[i], x + i * PACKET_X, y);
         rays += (uint)m_count(k[i].hits);

@@ -32,6 +32,14 @@
 #define RAY_WITH_FUNCTIONS_2D 0
 #endif
 
+/* Where the values are that rays follow: in these modes, of dependent components the last one's. */
+#undef FOLLOWED_VALUES
+#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES || STRATUS_RAY_MODE == STRATUS_RAY_SUMS || STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE
+#define FOLLOWED_VALUES(a, values) COMPONENT_VALUES(a, values, RAY_RARE(RAY_COMPONENTS, (a)->media.dependent))
+#else
+#define FOLLOWED_VALUES(a, values) (values)
+#endif
+
 #include "fetch.h"
 #if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
 #include "ray_extremes.h"
@@ -147,7 +155,7 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #endif
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   stratus_sample sample;
-  sample.value = RAY_NAME(ray_value)(a, values, hidden, k->grid, x, inside);
+  sample.value = RAY_NAME(ray_value)(a, FOLLOWED_VALUES(a, values), hidden, k->grid, x, inside);
   sample.lo = lo;
   sample.weight = hi - lo;
   sample.length = packet_length(a, k, sample.weight);
@@ -157,12 +165,15 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 }
 
 /* These are included here and not where they are used, because a device is sent each header once, in only one of the branches below. */
-#if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE || STRATUS_RAY_MODE == STRATUS_RAY_TRANSFER_2D
+#if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS && STRATUS_RAY_MODE != STRATUS_RAY_LOCAL
+#if STRATUS_RAY_MODE != STRATUS_RAY_EXTREMES && STRATUS_RAY_MODE != STRATUS_RAY_SUMS
 #include "gradient.h"
-#include "lighting.h"
 #endif
-#if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_TRANSFER_2D
+#include "lighting.h"
 #include "component.h"
+#endif
+#if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_SLICE
+#include "ray_media.h"
 #endif
 #if STRATUS_RAY_MODE == STRATUS_RAY_TRANSFER_2D || RAY_WITH_FUNCTIONS_2D
 #include "function_2d.h"
@@ -262,9 +273,12 @@ INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, valu
 }
 #endif
 
-INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
+INLINE void RAY_NAME(ray_finish)(
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, GLOBAL const void* table, stratus_packet* k)
 {
   (void)a;
+  (void)values;
+  (void)hidden;
   (void)table;
   (void)k;
 }

@@ -32,8 +32,15 @@ INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloa
 
 /* Composites the surface at point s of the rays. */
 SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
-  stratus_packet* k, vmask mask, vfloat s, vfloat layer[4])
+  GLOBAL const void* table, stratus_packet* k, vmask mask, vfloat s, vfloat layer[4])
 {
+  if (RAY_RARE(RAY_COMPONENTS, a->media.dependent)) { /* the last component has the surface and its opacity */
+    vfloat color[4];
+    mask = RAY_NAME(dependent_color)(a, table, values, hidden, k, s, mask, color);
+    for (int c = 0; c < 3; ++c) {
+      layer[c] = color[c] * layer[3];
+    }
+  }
   vfloat x[3];
   for (int axis = 0; axis < 3; ++axis) {
     x[axis] = v_fma(s, k->d[axis], k->p[axis]);
@@ -51,7 +58,7 @@ SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments*
   if (a->light.on) {
     vfloat g[3];
     stratus_lit_sample lighting;
-    RAY_NAME(ray_gradient)(a, values, k->grid, x, mask, g);
+    RAY_NAME(ray_gradient)(a, FOLLOWED_VALUES(a, values), k->grid, x, mask, g);
     light_at(&a->light, 0, x, k->d, g, lighting.diffuse, lighting.specular);
     light_layer(&lighting, layer);
   }
@@ -65,7 +72,7 @@ SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments*
 /* Composites all surfaces in the cells of the rays in `mask`, in the order in which the rays meet them: piece by piece, and within a piece
  * by rising or falling values. */
 SURFACE_OUTLINE void RAY_NAME(surface_roots)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
-  stratus_packet* k, const cell_walk* w, const stratus_cubic* cubic, vmask mask)
+  GLOBAL const void* table, stratus_packet* k, const cell_walk* w, const stratus_cubic* cubic, vmask mask)
 {
   for (int piece = 0; piece < 3; ++piece) {
     const vfloat from = cubic->value[piece], to = cubic->value[piece + 1];
@@ -81,22 +88,22 @@ SURFACE_OUTLINE void RAY_NAME(surface_roots)(CONSTANT stratus_ray_cast_arguments
         for (int c = 0; c < 4; ++c) {
           layer[c] = v_select(rising, v_set(up[1 + c]), v_set(down[1 + c]));
         }
-        RAY_NAME(surface_show)(a, values, hidden, k, meets, v_fma(at, w->leave - w->s, w->s), layer);
+        RAY_NAME(surface_show)(a, values, hidden, table, k, meets, v_fma(at, w->leave - w->s, w->s), layer);
       }
     }
   }
 }
 
 /* Visits the cell of every live ray. */
-INLINE void RAY_NAME(surface_visit)(
-  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, stratus_packet* k, const cell_walk* w)
+INLINE void RAY_NAME(surface_visit)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+  GLOBAL const void* table, stratus_packet* k, const cell_walk* w)
 {
   vint inside[3];
   vfloat v[8];
   for (int axis = 0; axis < 3; ++axis) {
     inside[axis] = cell_inside(a, w, axis);
   }
-  RAY_NAME(fetch_cell)(a, values, inside[0], inside[1], inside[2], k->live, v);
+  RAY_NAME(fetch_cell)(a, FOLLOWED_VALUES(a, values), inside[0], inside[1], inside[2], k->live, v);
   k->samples -= mask_int(k->live);
   vmask crosses = surface_crosses(a, v, k->live);
   if (RAY_RARE(RAY_HIDDEN, a->values.has_hidden & HIDDEN_CELLS) && m_any(crosses)) {
@@ -116,7 +123,7 @@ INLINE void RAY_NAME(surface_visit)(
       f[axis] = cell_fraction(a, k, axis, inside[axis], w->leave, w->leave_at[axis], vi_select(forward, high, low));
     }
     cubic_of_cell(v, e, f, &cubic);
-    RAY_NAME(surface_roots)(a, values, hidden, k, w, &cubic, crosses);
+    RAY_NAME(surface_roots)(a, values, hidden, table, k, w, &cubic, crosses);
   }
 }
 
@@ -125,7 +132,6 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
 {
   cell_walk w;
   (void)rough;
-  (void)table;
   if (!m_any(k->live) || !cell_begin(k, 0, 0, &w)) {
     return;
   }
@@ -134,7 +140,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
     if (a->map.structure) {
       cell_skip(a, map, k, k->live & v_le(w.run, w.s), &w);
     }
-    RAY_NAME(surface_visit)(a, values, hidden, k, &w);
+    RAY_NAME(surface_visit)(a, values, hidden, table, k, &w);
     cell_leave(a, k, k->live, &w);
   } while (m_any(k->live));
 }

@@ -39,6 +39,18 @@ typedef struct value_source {
 typedef GLOBAL const void* value_source;
 #endif
 
+/* Where the values of component c are. */
+#if RAY_IN_PAGES
+INLINE value_source component_values(value_source values, int c)
+{
+  values.component = c;
+  return values;
+}
+#define COMPONENT_VALUES(a, values, c) component_values(values, c)
+#else
+#define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->media.component_bytes)
+#endif
+
 typedef struct stratus_packet {
   vfloat p[3], d[3], inverse[3], begin, end, first;
   vfloat unit; /* the length of a sample in sample distances */

@@ -62,7 +62,8 @@ INLINE void slice_begin(CONSTANT stratus_ray_cast_arguments* a, int x, int y, co
 }
 #endif
 
-/* Puts what the values on the surface show, where they show by their own opacity, one point behind the other. */
+/* Puts what the values on the surface show, where they show by their own opacity, one point behind the other. Several components show what
+ * a sample of composite shows, of a length over which each one's opacity is as given. */
 INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
@@ -73,13 +74,26 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
     const vmask there = k->live & v_le(from, k->surface[n]) & v_lt(k->surface[n], to) & v_le(v_set(a->termination), k->transparency);
     if (m_any(there)) {
       const vfloat s = v_select(there, k->surface[n], from);
+      k->samples -= mask_int(there);
+      if (RAY_RARE(RAY_COMPONENTS, a->media.components > 1)) {
+        stratus_sample sample;
+        sample.value = sample.weight = v_set(0.0f);
+        sample.lo = s;
+        sample.length = v_set(1.0f);
+        sample.values = values;
+        sample.hidden = hidden;
+        const vmask live = k->live;
+        k->live = there;
+        RAY_NAME(shade_components)(a, table, k, &sample);
+        k->live = live;
+        continue;
+      }
       const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
       const vfloat value = RAY_NAME(ray_value)(a, values, hidden, k->grid, x, there);
       const vmask valid = there & v_finite(value);
       vfloat layer[4];
       gather_four((GLOBAL const float*)table, table_entry(&a->table, table, value), valid, layer);
       composite(a, k, valid, layer, s);
-      k->samples -= mask_int(there);
     }
   }
   k->live = m_none();

@@ -51,9 +51,12 @@ INLINE void RAY_NAME(ray_shade)(
   k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
 }
 
-INLINE void RAY_NAME(ray_finish)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, stratus_packet* k)
+INLINE void RAY_NAME(ray_finish)(
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, GLOBAL const void* table, stratus_packet* k)
 {
   (void)a;
+  (void)values;
+  (void)hidden;
   (void)table;
   (void)k;
 }

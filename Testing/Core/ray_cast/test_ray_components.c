@@ -3,6 +3,7 @@
  * function and weight by its effect, and refusals. */
 #include "components_case.h"
 
+#include "ray_modes_render.h"
 #include "ray_shading_table.h"
 #include "reference_modes.h"
 #include "volume.h"
@@ -258,6 +259,181 @@ static void one_value_a_ray_is_found_in_each_component(void** state)
   stratus_context_destroy(context);
 }
 
+/* A surface, or contours, of the case's values. */
+static void set_mode(many* m, stratus_mode mode)
+{
+  const double base = case_type_values[m->c.volume.type].base, scale = case_type_values[m->c.volume.type].scale;
+  m->c.options.mode = mode;
+  m->c.options.sampling.distance = mode < STRATUS_MODE_ISOSURFACE ? 0.1 : 0.0;
+  m->c.options.optics.average_range[0] = base - 0.2 * scale;
+  m->c.options.optics.average_range[1] = base + 0.6 * scale;
+  m->c.options.optics.contour_count = 2;
+  m->c.options.optics.contours[0] = base + 0.4 * scale;
+  m->c.options.optics.contours[1] = base + 0.2 * scale;
+  m->c.options.slice = (stratus_slice){ .linear = { 1, -2, 0.5 }, .center = { 10, 9, 9 } };
+}
+
+/* Compares with the reference, but for rays that graze a surface or what counts, which may meet it in one picture and not in the other. */
+static void check_mode(stratus_context* context, const many* m, const char* what, double wanted)
+{
+  static float expected[4 * CASE_PIXELS], depth[CASE_PIXELS];
+  int grazes = 0;
+  reference_modes_render(&m->c.volume, m->transfers, &m->c.camera, &m->c.options, CASE_WIDTH, CASE_HEIGHT, 0.02, expected, depth);
+  many_draw(context, m, &drawn);
+  for (int i = 0; m->c.options.mode >= STRATUS_MODE_AVERAGE && i < CASE_PIXELS; ++i) {
+    if (fabsf(drawn.rgba[4 * i + 3] - expected[4 * i + 3]) > 0.02f) {
+      memcpy(drawn.rgba + 4 * i, expected + 4 * i, 4 * sizeof *expected);
+      ++grazes;
+    }
+  }
+  const double db = reference_psnr(drawn.rgba, expected, CASE_PIXELS);
+  print_message(
+    "             %s, %s: %.1f dB, %d pixels, %d grazing\n", what, stratus_mode_name(m->c.options.mode), db, case_lit(&drawn), grazes);
+  assert_true(case_lit(&drawn) > 20);
+  assert_true(db >= wanted);
+  assert_in_range(grazes, 0, 6); /* of the 2288 rays */
+}
+
+/* The last component is kept, cut or shown, in the colour of the others; sums are of its opacity and the first one's value. */
+static void dependent_components_are_drawn_in_every_mode(void** state)
+{
+  (void)state;
+  static const stratus_type types[] = { STRATUS_FLOAT32, STRATUS_UINT8, STRATUS_FLOAT64 };
+  static uint8_t mask[22 * 20 * 18];
+  stratus_context* context = case_context("host", 2);
+  for (size_t i = 0; i < sizeof mask; ++i) {
+    mask[i] = (uint8_t)(i % 22 > 5);
+  }
+  for (int t = 0; t < 3; ++t) {
+    for (int mode = STRATUS_MODE_MAXIMUM; mode <= STRATUS_MODE_SLICE; ++mode) {
+      many m;
+      many_create(context, &m, types[t], types[t] == STRATUS_UINT8 ? 4 : 2, 22, 20, 18, 17u + (uint32_t)t);
+      m.c.options.optics.dependent = 1;
+      case_camera(context, &m.c, mode, mode % 2);
+      set_mode(&m, (stratus_mode)mode);
+      /* a colour jumps where the place of an extreme does, between equals that floats separate otherwise */
+      check_mode(context, &m, case_type_names[types[t]], stratus_mode_is_extreme((stratus_mode)mode) ? 55.0 : 60.0);
+      if (mode < STRATUS_MODE_SLICE) {
+        for (int s = STRATUS_STRUCTURE_NONE; s <= STRATUS_STRUCTURE_HYBRID; ++s) {
+          m.c.options.skipping.structure = (stratus_structure)s;
+          m.c.options.skipping.audit = s != STRATUS_STRUCTURE_NONE;
+          many_draw(context, &m, &other);
+          assert_int_equal(other.report.differing_pixels, 0);
+        }
+      }
+      if (t == 1) { /* a mask hides what it hides of other volumes */
+        m.c.options.mask.bytes = mask;
+        check_mode(context, &m, "masked", stratus_mode_is_extreme((stratus_mode)mode) ? 55.0 : 60.0);
+      }
+      many_destroy(&m);
+    }
+  }
+  stratus_context_destroy(context);
+}
+
+/* A slice shows what composite shows of a sample: depths add up, or count by their share. */
+static void components_mix_on_a_slice(void** state)
+{
+  (void)state;
+  static const double flat[4] = { 0, 0, 1e9, 0 };
+  stratus_context* context = case_context("host", 2);
+  for (int count = 2; count <= COMPONENTS; ++count) {
+    many m;
+    many_create(context, &m, count == 3 ? STRATUS_UINT8 : STRATUS_FLOAT64, count, 22, 20, 18, 27u + (uint32_t)count);
+    m.transfers[1].weight = 0.4;
+    m.transfers[0].gradient = flat; /* not read, and neither is light */
+    m.transfers[0].gradient_count = 2;
+    m.c.options.light.shade = 1;
+    set_mode(&m, STRATUS_MODE_SLICE);
+    case_camera(context, &m.c, 6, 0);
+    check_mode(context, &m, "independent", 60.0);
+    m.c.options.optics.mean_components = 1;
+    check_mode(context, &m, "by their share", 60.0);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
+/* The hits and lights of the last component, in the colour of the others at the voxel that the depth leads to. */
+static void first_hits_have_the_colour_of_their_voxel(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  for (int count = 2; count <= 4; count += 2) {
+    many m;
+    int clear = 0, near_faces = 0;
+    many_create(context, &m, count == 4 ? STRATUS_UINT8 : STRATUS_FLOAT32, count, 22, 20, 18, 37u + (uint32_t)count);
+    m.c.options.optics.dependent = 1;
+    m.c.options.mode = STRATUS_MODE_FIRST_HIT;
+    m.c.options.light.shading.on = 0;
+    many_draw(context, &m, &drawn);
+    const stratus_volume all = m.c.volume;
+    m.c.volume = stratus_volume_component(&all, count - 1);
+    m.c.options.optics.dependent = 0;
+    many_draw(context, &m, &other);
+    assert_memory_equal(drawn.depth, other.depth, sizeof drawn.depth);
+    for (int i = 0; i < CASE_PIXELS; ++i) {
+      const double u = (2.0 * (i % CASE_WIDTH) + 1.0) / CASE_WIDTH - 1.0, v = (2.0 * (i / CASE_WIDTH) + 1.0) / CASE_HEIGHT - 1.0;
+      double along[3], length = 0.0, expected[4] = { 0 };
+      int64_t voxel[3];
+      int faces = 0;
+      if (!isfinite(drawn.depth[i])) {
+        continue;
+      }
+      for (int a = 0; a < 3; ++a) {
+        along[a] = m.c.camera.forward[a] + (m.c.camera.parallel ? 0.0 : u * m.c.camera.right[a] + v * m.c.camera.up[a]);
+        length += along[a] * along[a];
+      }
+      for (int a = 0; a < 3; ++a) { /* just behind the face, and a little farther, where a ray may have left the voxel by an edge */
+        const double side = m.c.camera.parallel ? u * m.c.camera.right[a] + v * m.c.camera.up[a] : 0.0;
+        const double start = (m.c.camera.eye[a] + side - all.origin[a]) / all.spacing[a], per = along[a] / sqrt(length) / all.spacing[a];
+        voxel[a] = (int64_t)floor(start + ((double)drawn.depth[i] + 1e-4) * per + 0.5);
+        faces += voxel[a] != (int64_t)floor(start + ((double)drawn.depth[i] + 1e-2) * per + 0.5);
+      }
+      if (faces) {
+        ++near_faces;
+        continue;
+      }
+      for (int c = 0; c < 3; ++c) {
+        const stratus_volume part = stratus_volume_component(&all, count == 4 ? c : 0);
+        const double value = reference_value(&part, voxel[0], voxel[1], voxel[2]);
+        stratus_transfer_at(m.transfers, value, expected);
+        assert_true(fabs((double)drawn.rgba[4 * i + c] - (count == 4 ? value / 255.0 : expected[c])) < 1e-6);
+      }
+      ++clear;
+    }
+    print_message("             %d: %d hits, %d near edges\n", count, clear, near_faces);
+    assert_true(clear > 200 && near_faces < clear / 20);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
+/* A caster goes from mode to mode, by dependent and independent components, and draws what a new one draws. */
+static void a_caster_changes_what_it_follows(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  stratus_ray_caster* caster = NULL;
+  many m;
+  many_create(context, &m, STRATUS_UINT8, 4, 16, 15, 14, 3);
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
+  uint32_t random = 5;
+  for (int turn = 0; turn < 24; ++turn) {
+    const int mode = (int)(case_random(&random) % 8);
+    set_mode(&m, (stratus_mode)mode);
+    m.c.options.optics.dependent = mode == STRATUS_MODE_FIRST_HIT || mode == STRATUS_MODE_ISOSURFACE || case_random(&random) % 3 > 0;
+    m.c.options.sampling.distance = 0.5;
+    assert_int_equal(stratus_ray_caster_render(caster, &m.c.volume, m.transfers, &m.c.camera, &m.c.options, &image, NULL), STRATUS_OK);
+    many_draw(context, &m, &other);
+    assert_memory_equal(drawn.rgba, other.rgba, sizeof other.rgba);
+  }
+  stratus_ray_caster_destroy(caster);
+  many_destroy(&m);
+  stratus_context_destroy(context);
+}
+
 static void a_function_or_weight_edited_is_seen(void** state)
 {
   (void)state;
@@ -295,9 +471,10 @@ static void what_it_cannot_show_is_refused(void** state)
   static const double backwards[4] = { 1, 1, 0, 1 };
   stratus_context* context = case_context("host", 1);
   many m;
-  many_create(context, &m, STRATUS_FLOAT32, 4, 6, 6, 6, 3);
+  many_create(context, &m, STRATUS_FLOAT64, 4, 6, 6, 6, 3);
   m.c.options.optics.dependent = 1;
-  assert_int_equal(many_status(context, &m, &drawn), STRATUS_UNSUPPORTED); /* 4 of floats */
+  assert_int_equal(many_status(context, &m, &drawn), STRATUS_UNSUPPORTED);
+  assert_non_null(strstr(stratus_context_message(context), "up to 16 bits"));
   m.c.options.optics.dependent = 0;
   m.transfers[2].weight = 1.5;
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
@@ -308,15 +485,12 @@ static void what_it_cannot_show_is_refused(void** state)
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "gradient"));
   m.transfers[3].gradient_count = 0;
-  for (int mode = STRATUS_MODE_FIRST_HIT; mode <= STRATUS_MODE_SLICE; ++mode) {
-    const bool surfaces = mode == STRATUS_MODE_FIRST_HIT || mode >= STRATUS_MODE_ISOSURFACE;
+  for (int mode = STRATUS_MODE_FIRST_HIT; mode <= STRATUS_MODE_ISOSURFACE; mode += STRATUS_MODE_ISOSURFACE - STRATUS_MODE_FIRST_HIT) {
     m.c.options.mode = (stratus_mode)mode;
-    m.c.options.optics.dependent = !surfaces;
     m.c.options.optics.contour_count = 1;
     assert_int_equal(many_status(context, &m, &drawn), STRATUS_UNSUPPORTED);
-    assert_non_null(strstr(stratus_context_message(context), surfaces ? "surfaces" : "dependent"));
+    assert_non_null(strstr(stratus_context_message(context), "surfaces"));
   }
-  m.c.options.optics.dependent = 0;
   m.c.options.mode = STRATUS_MODE_COMPOSITE;
   m.c.options.optics.gradient_distance = -2.5;
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
@@ -344,6 +518,10 @@ int test_ray_components(void)
     cmocka_unit_test(no_structure_changes_a_bit),
     cmocka_unit_test(each_component_has_a_material_of_its_own),
     cmocka_unit_test(one_value_a_ray_is_found_in_each_component),
+    cmocka_unit_test(dependent_components_are_drawn_in_every_mode),
+    cmocka_unit_test(components_mix_on_a_slice),
+    cmocka_unit_test(first_hits_have_the_colour_of_their_voxel),
+    cmocka_unit_test(a_caster_changes_what_it_follows),
     cmocka_unit_test(a_function_or_weight_edited_is_seen),
     cmocka_unit_test(what_it_cannot_show_is_refused),
   };

@@ -92,7 +92,11 @@ static stratus_ray_cast_options choose_options(fuzz* f, const picture_case* c)
   stratus_ray_cast_options o = stratus_ray_cast_options_default();
   static const int sizes[] = { 0, 2, 4, 8, 16, 32 };
   const fuzz_field* field = &c->field;
-  o.mode = (stratus_mode)(c->components > 1 && !fuzz_odd(f) ? 0 : fuzz_chance(f, 0.4) ? 0 : fuzz_choice(f, STRATUS_MODE_SLICE + 1));
+  o.mode = (stratus_mode)(fuzz_chance(f, 0.4) ? 0 : fuzz_choice(f, STRATUS_MODE_SLICE + 1));
+  o.optics.dependent = (c->components == 2 || (c->components == 4 && !stratus_type_is_wide(field->view.type))) && fuzz_chance(f, 0.5);
+  if (c->components > 1 && !o.optics.dependent && o.mode != STRATUS_MODE_COMPOSITE) { /* other modes draw a picture of each */
+    o.mode = STRATUS_MODE_SLICE;
+  }
   o.skipping.structure = (stratus_structure)fuzz_choice(f, STRATUS_STRUCTURE_HYBRID + 1);
   o.sampling.rule = (stratus_sampling)fuzz_choice(f, STRATUS_SAMPLING_CELLS + 1);
   o.sampling.interpolation = (stratus_interpolation)(o.mode == STRATUS_MODE_ISOSURFACE && !fuzz_odd(f) ? 0 : fuzz_choice(f, 2));
@@ -104,7 +108,6 @@ static stratus_ray_cast_options choose_options(fuzz* f, const picture_case* c)
   o.light.normals = (stratus_normals)fuzz_choice(f, 2);
   fuzz_shading(f, field->bounds, field->edge, &o.light.shading);
   o.light.shade = fuzz_chance(f, 0.25) ? fuzz_flag(f) : 0;
-  o.optics.dependent = (c->components == 2 || (c->components == 4 && field->view.type == STRATUS_UINT8)) && fuzz_chance(f, 0.5);
   if (fuzz_chance(f, 0.5)) {
     o.optics.average_range[0] = fuzz_real(f, field->low, 0.5 * (field->low + field->high));
     o.optics.average_range[1] = fuzz_real(f, 0.5 * (field->low + field->high), field->high);
