@@ -17,7 +17,7 @@ _Static_assert(sizeof(stratus_ray_cast_arguments) ==
     sizeof(stratus_picture_arguments) + sizeof(stratus_ray_camera) + sizeof(stratus_ray_lattice) + sizeof(float) +
       sizeof(stratus_ray_crop) + sizeof(stratus_ray_values) + sizeof(stratus_ray_grid_arguments) + sizeof(stratus_ray_map) +
       sizeof(stratus_ray_rough) + sizeof(stratus_table_arguments) + sizeof(stratus_ray_mode) + sizeof(stratus_light_arguments) +
-      sizeof(stratus_ray_media) + sizeof(stratus_ray_function_2d) + sizeof(stratus_ray_surface),
+      sizeof(stratus_ray_media) + sizeof(stratus_ray_function_2d) + sizeof(stratus_slice_arguments),
   "arguments must have no padding");
 
 void stratus_ray_device_destroy(stratus_ray_caster* caster)

@@ -13,8 +13,8 @@
 #include "ray_probe.h"
 #include "ray_shading_render.h"
 #include "ray_shading_table.h"
-#include "ray_slice_host.h"
 #include "ray_trial.h"
+#include "slices.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -246,7 +246,11 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     stratus_ray_modes_arguments(caster, options, &arguments);
     arguments.mode.kept = caster->keeps;
     stratus_ray_shading_arguments(caster, volume, camera, options, &arguments);
-    stratus_ray_slice_arguments_of(volume, options, &arguments);
+    if (options->mode == STRATUS_MODE_SLICE) {
+      double to_world[16];
+      stratus_volume_index_to_world(volume, to_world);
+      stratus_slice_set(&options->slice, to_world, &arguments.slice);
+    }
     stratus_ray_frame_structures(
       &caster->grid, caster->made.table, stratus_ray_tolerance(options), caster->occupancy, with_map ? caster->map : NULL, &arguments);
     if (found && with_map && tries) {

@@ -5,7 +5,7 @@
 #include "ray_cast_host.h"
 #include "ray_caster.h"
 #include "ray_sampling.h"
-#include "ray_slice_host.h"
+#include "slices.h"
 
 #include <string.h>
 
@@ -59,7 +59,7 @@ stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_r
       options->mask.bytes ? "a mask" : "crop regions other than the inside");
   }
   if (options->mode == STRATUS_MODE_SLICE) {
-    return stratus_ray_slice_check(context, &options->slice);
+    return stratus_slice_check(context, &options->slice);
   }
   return options->mode == STRATUS_MODE_ISOSURFACE ? check_contours(context, options) : STRATUS_OK;
 }

@@ -25,13 +25,16 @@ typedef enum stratus_tetra_mode {
   STRATUS_TETRA_ADDITIVE, /* grey: the integral of opacity times value along the ray, with lengths in unit_distance */
   /* Surfaces where the field has a contour value, in that value's colour and opacity (not per length), at their exact places. Surfaces
    * behind one another are blended. Values of points only. */
-  STRATUS_TETRA_ISOSURFACE
+  STRATUS_TETRA_ISOSURFACE,
+  /* The values on the surface `slice`, in their colour and opacity (not per length). Points behind one another are blended. The surface is
+   * exact, too. */
+  STRATUS_TETRA_SLICE
 } stratus_tetra_mode;
 
 /* Modes average and additive use each value as a fraction of the range of the values that show, and limit the result to 1. They are opaque:
  * additive wherever a ray meets a cell, average wherever a value counts. */
 
-/* Return a mode's name: "composite", "maximum", "minimum", "average", "additive" or "isosurface"; "unknown" for other numbers. */
+/* Return a mode's name: "composite", "maximum", "minimum", "average", "additive", "isosurface" or "slice"; "unknown" for other numbers. */
 STRATUS_API const char* stratus_tetra_mode_name(stratus_tetra_mode mode);
 
 #define STRATUS_TETRA_CLIP_PLANES_MAX 6
@@ -78,6 +81,7 @@ typedef struct stratus_tetra_options {
   double average_range[2];
   int contour_count;                           /* isosurface: 1..16; other modes ignore it. Default 0. */
   double contours[STRATUS_TETRA_CONTOURS_MAX]; /* finite, in any order */
+  stratus_slice slice;                         /* the surface of mode slice. Default: no surface, which mode slice refuses. */
   /* Composite and isosurface, by marching. 1: `shading` lights the samples. Default 0. The gradient of a cell is constant. A point's
    * gradient is the mean over its cells, weighted by their volumes. Between points the gradient is interpolated as values are, so that
    * light is smooth across cells. Values of cells are first averaged at points, in the same way. */
@@ -88,8 +92,8 @@ typedef struct stratus_tetra_options {
    * segment of half a spacing in the world. Finite. A spacing is the edge of a cube that six cells of the mean volume fill. The gradient's
    * magnitude is in values per spacing, whatever the mesh's matrix. */
   double gradient_distance;
-  /* Values of several components, by marching. Isosurface does not draw them, and only composite draws dependent ones: other requests give
-   * STRATUS_UNSUPPORTED. A value that is not finite in any component hides its cells.
+  /* Values of several components, by marching. Isosurface and slice do not draw them, and only composite draws dependent ones: other
+   * requests give STRATUS_UNSUPPORTED. A value that is not finite in any component hides its cells.
    *
    * Composite, 0 (default): each component is a medium with its own transfer function. Optical depths, times the functions' weights, and
    * emitted light add up. In other modes each independent component is drawn by itself. Their premultiplied colours, times the functions'

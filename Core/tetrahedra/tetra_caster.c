@@ -76,9 +76,8 @@ void stratus_tetra_caster_destroy(stratus_tetra_caster* caster)
 
 static stratus_status check_options(stratus_context* context, const stratus_tetra_options* options)
 {
-  if ((unsigned)options->mode > STRATUS_TETRA_ISOSURFACE) {
-    return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_ISOSURFACE);
+  if ((unsigned)options->mode > STRATUS_TETRA_SLICE) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_SLICE);
   }
   if ((unsigned)options->method > STRATUS_TETRA_METHOD_PROJECT) {
     return stratus_fail(
@@ -293,6 +292,7 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   frame.table = caster->look.table;
   frame.march_sums = caster->look.sums;
   stratus_tetra_frame_shade(&frame, options);
+  stratus_tetra_frame_slice(&frame, options);
   stratus_tetra_frame_contours(&frame, caster->mesh, caster->look.transfer, options, caster->keeps);
   stratus_tetra_frame_clip(&frame, mesh, options);
   stratus_tetra_frame_light(&frame, caster, mesh, transfer, options);

@@ -179,8 +179,9 @@ bool stratus_tetra_modes_march(const stratus_tetra_options* options);
  * count. A value is a fraction of the range of `values`. */
 stratus_status stratus_tetra_value_sums(
   stratus_context* context, const stratus_table* table, const stratus_table_values* values, const double range[2], int32_t** sums);
-/* Sets mode, contours and planes of a frame whose table is set. */
+/* Sets mode, slice, contours and planes of a frame whose table is set. */
 void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options);
+void stratus_tetra_frame_slice(stratus_tetra_frame* frame, const stratus_tetra_options* options);
 void stratus_tetra_frame_contours(stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer,
   const stratus_tetra_options* options, bool keeps);
 void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);

@@ -23,8 +23,9 @@ stratus_status stratus_tetra_components_check(
   if (count == 1) {
     return STRATUS_OK;
   }
-  if (options->mode == STRATUS_TETRA_ISOSURFACE) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "isosurfaces of %d components are not supported, only of one", count);
+  if (options->mode >= STRATUS_TETRA_ISOSURFACE) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of %d components is not supported, only of one",
+      stratus_tetra_mode_name(options->mode), count);
   }
   if (options->dependent && options->mode != STRATUS_TETRA_COMPOSITE) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "%d dependent components are not supported in mode %s, only in composite", count,

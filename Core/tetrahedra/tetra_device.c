@@ -69,6 +69,11 @@ static const char* obstacle(const stratus_context* context, const stratus_tetra_
   return NULL;
 }
 
+bool stratus_tetra_device_packets(const stratus_context* context)
+{
+  return stratus_device_is_cpu(context->device) && stratus_device_has_double(context->device);
+}
+
 stratus_status stratus_tetra_device_begin(
   stratus_context* context, stratus_tetra_device** device, const stratus_tetra_device_source* source, size_t cell_bytes, bool* can)
 {
@@ -127,10 +132,11 @@ stratus_status stratus_tetra_device_receive_picture(stratus_context* context, st
 stratus_status stratus_tetra_device_launch(stratus_context* context, stratus_tetra_device* device, const char* source, const char* name,
   bool packets, bool lit, const stratus_tetra_slot* order, unsigned parameters, const size_t global[2], const size_t local[2])
 {
-  char defines[112];
+  char defines[144];
   cl_kernel kernel;
-  (void)snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_ARGUMENTS_BYTES=%zu%s", packets ? 16 : 1,
-    sizeof(stratus_tetra_arguments), lit ? " -DTETRA_LIT=1" : "");
+  (void)snprintf(defines, sizeof defines, "-DSTRATUS_DEVICE=1 -DSTRATUS_WIDTH=%d -DSTRATUS_ARGUMENTS_BYTES=%zu%s%s", packets ? 16 : 1,
+    sizeof(stratus_tetra_arguments), lit ? " -DTETRA_LIT=1" : "",
+    stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   TRY(stratus_device_kernel(context, source, defines, name, &kernel));
   for (unsigned i = 0; i < parameters; ++i) {
     TRY(stratus_device_argument(context, kernel, i, sizeof(cl_mem), &device->slots[order[i]].memory));

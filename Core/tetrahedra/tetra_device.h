@@ -73,6 +73,9 @@ void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device
 
 /* ---- steps of both */
 
+/* Whether a work item does a packet of 16 rays; else it does one. */
+bool stratus_tetra_device_packets(const stratus_context* context);
+
 /* Whether the device can draw a mesh; a warning says why not. Makes *device if that is NULL. cell_bytes: of the largest buffer of
  * cells. */
 stratus_status stratus_tetra_device_begin(

@@ -137,7 +137,7 @@ stratus_status stratus_tetra_march_device(stratus_context* context, stratus_tetr
     return STRATUS_OK;
   }
   const size_t tiles = (size_t)frame->columns * (size_t)frame->rows;
-  device_march m = { context, *device, (*device)->slots, frame, stratus_device_is_cpu(context->device), tiles, tiles * PIXELS };
+  device_march m = { context, *device, (*device)->slots, frame, stratus_tetra_device_packets(context), tiles, tiles * PIXELS };
   const stratus_status status = draw(&m, source, buffers, counts, entries_ms, march_ms);
   stratus_slots_return(context, m.slots, TETRA_SLOTS);
   TRY(status);

@@ -15,7 +15,7 @@
 static stratus_tetra_view view_of(const stratus_tetra_frame* frame)
 {
   return (stratus_tetra_view){ .scene = { frame->cells, frame->places, frame->march_sums, frame->cell_values, frame->gradients,
-                                 frame->factors, frame->components, frame->media },
+                                 frame->factors, frame->components, frame->media, frame->table->rgba },
     .lines = frame->us,
     .ends = frame->ends,
     .faces = (const int32_t*)frame->faces,
@@ -23,7 +23,6 @@ static stratus_tetra_view view_of(const stratus_tetra_frame* frame)
     .bins = frame->bins,
     .first = frame->first,
     .entries = frame->entries,
-    .colors = frame->table->rgba,
     .picture = { frame->image.rgba, frame->image.rgba8, frame->image.depth, frame->image.samples } };
 }
 

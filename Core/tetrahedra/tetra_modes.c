@@ -4,6 +4,7 @@
 
 #include "matrix.h"
 #include "mesh.h"
+#include "slices.h"
 #include "vector.h"
 
 #include <string.h>
@@ -15,7 +16,7 @@ _Static_assert(STRATUS_TETRA_CLIP_PLANES_MAX + 6 == TETRA_PLANES, "as many as th
 
 const char* stratus_tetra_mode_name(stratus_tetra_mode mode)
 {
-  static const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface" };
+  static const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice" };
   return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
 }
 
@@ -74,6 +75,9 @@ stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s cannot be projected, only marched: take the method march or auto",
       stratus_tetra_mode_name(options->mode));
   }
+  if (options->mode == STRATUS_TETRA_SLICE) {
+    return stratus_slice_check(context, &options->slice);
+  }
   return options->mode == STRATUS_TETRA_ISOSURFACE ? check_contours(context, options, mesh) : STRATUS_OK;
 }
 
@@ -109,9 +113,23 @@ stratus_status stratus_tetra_value_sums(
 void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options)
 {
   stratus_tetra_arguments* a = &frame->arguments;
-  static const int modes[] = { TETRA_LIGHT, TETRA_EXTREMES, TETRA_EXTREMES, TETRA_ADD, TETRA_ADD, TETRA_SURFACES };
+  static const int modes[] = { TETRA_LIGHT, TETRA_EXTREMES, TETRA_EXTREMES, TETRA_ADD, TETRA_ADD, TETRA_SURFACES, TETRA_SLICE };
   a->mode = modes[options->mode];
   a->sign = options->mode == STRATUS_TETRA_MINIMUM ? -1.0f : 1.0f;
+}
+
+void stratus_tetra_frame_slice(stratus_tetra_frame* frame, const stratus_tetra_options* options)
+{
+  double to_world[16] = { [15] = 1.0 };
+  for (int axis = 0; axis < 3 && options->mode == STRATUS_TETRA_SLICE; ++axis) {
+    for (int column = 0; column < 3; ++column) {
+      to_world[4 * axis + column] = frame->basis[column][axis];
+    }
+    to_world[4 * axis + 3] = frame->camera.eye[axis] + frame->middle * frame->camera.forward[axis];
+  }
+  if (options->mode == STRATUS_TETRA_SLICE) {
+    stratus_slice_set(&options->slice, to_world, &frame->arguments.slice);
+  }
 }
 
 void stratus_tetra_frame_contours(stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer,

@@ -10,7 +10,7 @@
 
 bool stratus_tetra_draws_parts(const stratus_mesh* mesh, const stratus_tetra_options* options)
 {
-  return stratus_tetra_component_count(mesh) > 1 && options->mode != STRATUS_TETRA_COMPOSITE && options->mode != STRATUS_TETRA_ISOSURFACE;
+  return stratus_tetra_component_count(mesh) > 1 && options->mode != STRATUS_TETRA_COMPOSITE && options->mode < STRATUS_TETRA_ISOSURFACE;
 }
 
 void stratus_tetra_parts_drop(stratus_tetra_caster* caster)

@@ -120,7 +120,7 @@ stratus_status stratus_tetra_project_device(stratus_context* context, stratus_te
   if (!can) {
     return STRATUS_OK;
   }
-  device_projection p = { context, *device, (*device)->slots, projection, stratus_device_is_cpu(context->device),
+  device_projection p = { context, *device, (*device)->slots, projection, stratus_tetra_device_packets(context),
     (size_t)projection->columns * (size_t)projection->rows };
   const stratus_status status = draw(&p, source, counts);
   stratus_slots_return(context, p.slots, TETRA_SLOTS);

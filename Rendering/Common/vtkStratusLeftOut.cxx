@@ -2,6 +2,7 @@
 #include "vtkStratusLeftOut.h"
 
 #include "vtkAbstractMapper.h"
+#include "vtkImplicitFunction.h"
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
 
@@ -10,8 +11,11 @@ void vtkStratusLeftOut::AddUnused(const char* setting, const char* mode)
   this->Add(std::string(setting) + ", which mode " + mode + " does not use");
 }
 
-void vtkStratusLeftOut::AddTransforms(vtkAbstractMapper* mapper)
+void vtkStratusLeftOut::AddTransforms(vtkAbstractMapper* mapper, vtkImplicitFunction* slice)
 {
+  if (slice && slice->GetTransform()) {
+    this->Add("the transform of SliceFunction, which is used as it is");
+  }
   vtkPlaneCollection* planes = mapper->GetClippingPlanes();
   for (int p = 0; planes && p < planes->GetNumberOfItems(); ++p) {
     if (planes->GetItem(p)->GetTransform()) {

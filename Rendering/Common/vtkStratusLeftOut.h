@@ -11,6 +11,7 @@
 #include <vector>
 
 class vtkAbstractMapper;
+class vtkImplicitFunction;
 class vtkObject;
 
 class VTK_STRATUS_PRIVATE vtkStratusLeftOut
@@ -22,8 +23,8 @@ public:
   void Add(const std::string& what) { this->Now.push_back(what); }
   // Adds a setting that the mode does not use.
   void AddUnused(const char* setting, const char* mode);
-  // Adds the transforms of clipping planes, of which origin and normal are used as they are.
-  void AddTransforms(vtkAbstractMapper* mapper);
+  // Adds the transforms of clipping planes, and of a slice's function (nullptr: there is none), which are used as they are.
+  void AddTransforms(vtkAbstractMapper* mapper, vtkImplicitFunction* slice);
   // Raises a warning of `object`, unless it has been raised before.
   void WarnOnce(vtkObject* object, const std::string& warning);
   // Raises one warning of `object` about all settings that no earlier warning named.

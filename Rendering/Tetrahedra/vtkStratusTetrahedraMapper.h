@@ -30,8 +30,9 @@
  *   leaves 2 to 4 components to mix; of more components only the first is drawn;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
  * - the blend modes composite, maximum and minimum intensity (the largest or smallest value on a ray, at the opacity of one unit distance),
- *   average and additive intensity, and isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
- *   tetrahedron). All but composite and maximum are marched: PROJECT_METHOD refuses them, AUTO_METHOD marches;
+ *   average and additive intensity, isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
+ *   tetrahedron), and slices (SliceFunction of the property, as vtkStratusVolumeMapper takes it). All but composite and maximum are
+ *   marched: PROJECT_METHOD refuses them, AUTO_METHOD marches;
  * - light (Shade; the renderer's lights and TwoSidedLighting), in composite and isosurface, as vtkStratusVolumeMapper takes it. In a
  *   tetrahedron the field's gradient is constant; each point has the mean of its tetrahedra's, weighted by volume, and between points it is
  *   interpolated, so that light is smooth across cells. Cell scalars are averaged at points for it. Independent components are lit and
@@ -46,9 +47,11 @@
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
  * A setting that has no meaning here is left out, as VTK's mappers leave it out, and one warning a mapper says so: Shade outside of
- * composite and isosurface, gradient opacity outside of composite, functions of two variables and of labels, transforms of clipping planes.
+ * composite and isosurface, gradient opacity outside of composite, functions of two variables and of labels, transforms of clipping planes
+ * and of SliceFunction.
  *
- * All else (isosurfaces of several, dependent ones in other modes than composite, slices) is refused by an error, and nothing is drawn.
+ * All else (isosurfaces and slices of several components, dependent ones in other modes than composite) is refused by an error, and nothing
+ * is drawn.
  *
  * Volumes of one renderer are drawn by depth, as vtkStratusVolumeMapper describes. A mesh is mixed with the volumes that overlap it if one
  * of them has a vtkStratusVolumeMapper, by method auto or march and without light.
@@ -100,11 +103,12 @@ public:
   /**
    * Set the blend mode, which SetBlendMode() takes as a number, too. They have vtkVolumeMapper's numbers.
    */
-  enum MoreBlendModes { MINIMUM_INTENSITY_BLEND = 2, AVERAGE_INTENSITY_BLEND, ADDITIVE_BLEND, ISOSURFACE_BLEND };
+  enum MoreBlendModes { MINIMUM_INTENSITY_BLEND = 2, AVERAGE_INTENSITY_BLEND, ADDITIVE_BLEND, ISOSURFACE_BLEND, SLICE_BLEND };
   void SetBlendModeToMinimumIntensity() { this->SetBlendMode(MINIMUM_INTENSITY_BLEND); }
   void SetBlendModeToAverageIntensity() { this->SetBlendMode(AVERAGE_INTENSITY_BLEND); }
   void SetBlendModeToAdditive() { this->SetBlendMode(ADDITIVE_BLEND); }
   void SetBlendModeToIsoSurface() { this->SetBlendMode(ISOSURFACE_BLEND); }
+  void SetBlendModeToSlice() { this->SetBlendMode(SLICE_BLEND); }
   //@}
 
   //@{

@@ -2,6 +2,7 @@
 #include "vtkStratusTetrahedraMapperInternals.h"
 
 #include "vtkStratusLights.h"
+#include "vtkStratusSlice.h"
 
 #include "vtkCommand.h"
 #include "vtkContourValues.h"
@@ -44,9 +45,8 @@ bool vtkStratusTetrahedraMapper::Internals::OnProgress(double fraction)
 
 bool vtkStratusTetrahedraMapper::Internals::CheckMapper(std::string& error) const
 {
-  if (this->Mapper->BlendMode < COMPOSITE_BLEND || this->Mapper->BlendMode > ISOSURFACE_BLEND) {
-    error = "blend mode " + std::to_string(this->Mapper->BlendMode) +
-      " is not supported, only composite (0), maximum (1), minimum (2), average (3), additive (4) and isosurface (5) are";
+  if (this->Mapper->BlendMode < COMPOSITE_BLEND || this->Mapper->BlendMode > SLICE_BLEND) {
+    error = "blend mode " + std::to_string(this->Mapper->BlendMode) + " is not supported, only composite (0) to slice (6) are";
   } else if (!std::isfinite(this->Mapper->GradientOpacityDistance)) {
     error = "GradientOpacityDistance is " + std::to_string(this->Mapper->GradientOpacityDistance) +
       ", it must be finite: 0 for optical depths, below 0 for half of the mean spacing";
@@ -64,7 +64,7 @@ void vtkStratusTetrahedraMapper::Internals::NoteLeftOut(vtkVolumeProperty* prope
   if (property->GetNumberOfLabels() > 0) {
     this->LeftOut.Add("functions of labels, which meshes do not use");
   }
-  this->LeftOut.AddTransforms(this->Mapper);
+  this->LeftOut.AddTransforms(this->Mapper, this->Mapper->BlendMode == SLICE_BLEND ? property->GetSliceFunction() : nullptr);
 }
 
 bool vtkStratusTetrahedraMapper::Internals::SetClipPlanes(stratus_tetra_options& options, std::string& error) const
@@ -106,7 +106,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
 
 bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
 {
-  options.mode = static_cast<stratus_tetra_mode>(this->Mapper->BlendMode); // both count from composite to isosurface alike
+  options.mode = static_cast<stratus_tetra_mode>(this->Mapper->BlendMode); // both count from composite to slice alike
   std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.average_range);
   vtkContourValues* contours = options.mode == STRATUS_TETRA_ISOSURFACE ? property->GetIsoSurfaceValues() : nullptr;
   const int count = contours ? contours->GetNumberOfContours() : 0;
@@ -118,7 +118,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property,
   for (int n = 0; n < count; ++n) {
     options.contours[n] = contours->GetValue(n);
   }
-  return true;
+  return options.mode != STRATUS_TETRA_SLICE || vtkStratusSetSlice(property, options.slice, error);
 }
 
 // Finds a grid's values, one for each tuple where the colour function says so. Without a property, as in a question for bounds before the

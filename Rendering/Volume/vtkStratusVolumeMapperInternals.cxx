@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusVolumeMapperInternals.h"
 
+#include "vtkStratusSlice.h"
+
 #include "vtkCommand.h"
 #include "vtkContourValues.h"
 #include "vtkDataArray.h"
@@ -131,7 +133,8 @@ bool vtkStratusVolumeMapper::Internals::IsSupported(vtkVolumeProperty* property)
     return false;
   }
   options.mode = this->GetMode();
-  return this->SetContours(property, options, unused) && this->SetSlice(property, options, unused);
+  return this->SetContours(property, options, unused) &&
+    (options.mode != STRATUS_MODE_SLICE || vtkStratusSetSlice(property, options.slice, unused));
 }
 
 // Notes the settings that the picture does not use. SetTransfers() notes gradient opacity.
@@ -155,10 +158,7 @@ void vtkStratusVolumeMapper::Internals::NoteLeftOut(vtkVolumeProperty* property)
   if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D && !this->HasTransfer2D(property)) {
     this->LeftOut.AddUnused("TransferFunction2D", name);
   }
-  if (mode == STRATUS_MODE_SLICE && property->GetSliceFunction() && property->GetSliceFunction()->GetTransform()) {
-    this->LeftOut.Add("the transform of SliceFunction, which is used as it is");
-  }
-  this->LeftOut.AddTransforms(this->Mapper);
+  this->LeftOut.AddTransforms(this->Mapper, mode == STRATUS_MODE_SLICE ? property->GetSliceFunction() : nullptr);
 }
 
 // Warns where the inside of the cropping planes misses a turned or mirrored image, which is then not shown at all.
@@ -374,6 +374,6 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
   options.sampling.jitter = mapper->UseJittering ? 1 : 0;
   options.sampling.jitter_seed = mapper->JitterSeed;
   return this->SetMask(property, options, error) && this->SetContours(property, options, error) &&
-    this->SetSlice(property, options, error) &&
+    (options.mode != STRATUS_MODE_SLICE || vtkStratusSetSlice(property, options.slice, error)) &&
     vtkStratusClipPlanes(this->Mapper, STRATUS_CLIP_PLANES_MAX, options.clipping.clip_planes, options.clipping.clip_plane_count, error);
 }

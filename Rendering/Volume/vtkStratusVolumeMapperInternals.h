@@ -104,13 +104,12 @@ private:
   bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
   bool SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options);
   bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
-  // Functions of two variables and slices (vtkStratusVolumeMapperLookup.cxx).
+  // Functions of two variables (vtkStratusVolumeMapperLookup.cxx).
   bool HasTransfer2D(vtkVolumeProperty* property) const; // whether the function is drawn
   bool PrepareTransfer2D(vtkVolume* prop, vtkDataSet* image, vtkDataArray* array, bool cells, int component, std::string& error);
   vtkDataArray* FindSecond(vtkDataSet* image, bool cells, std::string& error) const;
   vtkDataArray* Pair(vtkDataArray* array, int component, vtkDataArray* second);
   bool SetTransfer2D(vtkVolumeProperty* property, vtkDataArray* array, int component, vtkDataArray* second, std::string& error);
-  bool SetSlice(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   bool SetContours(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error) const;
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);

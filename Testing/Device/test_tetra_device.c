@@ -58,7 +58,18 @@ static void make_case(stratus_context* context, tetra_case* c, uint32_t seed, co
     c->camera.right[axis] *= wider;
     c->camera.up[axis] *= wider;
   }
-  c->options.mode = seed % 6 == 4 ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
+  static const stratus_tetra_mode modes[12] = { [2] = STRATUS_TETRA_SLICE,
+    [4] = STRATUS_TETRA_MAXIMUM,
+    [5] = STRATUS_TETRA_AVERAGE,
+    [8] = STRATUS_TETRA_ADDITIVE,
+    [10] = STRATUS_TETRA_ISOSURFACE,
+    [11] = STRATUS_TETRA_MINIMUM };
+  const bool marched = tetra_method == STRATUS_TETRA_METHOD_MARCH;
+  c->options.mode = marched ? modes[seed % 12] : seed % 6 == 4 ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
+  c->options.contour_count = 2;
+  c->options.contours[0] = 0.6;
+  c->options.contours[1] = 0.4;
+  c->options.slice = (stratus_slice){ .center = { 0.4 * edge, 0.5 * edge, 0.6 * edge }, .square = { 1, 1, -0.5, 0.1 }, .constant = -0.3 };
   c->options.termination = seed & 2 ? 0.9 : 1.0;
   c->mesh.cell_values = seed % 6 == 5;
   if (seed % 4 == 3) {
@@ -78,13 +89,7 @@ static void make_case(stratus_context* context, tetra_case* c, uint32_t seed, co
     memcpy(c->options.crop_bounds, bounds, sizeof bounds);
     c->options.clip_plane_count = c->options.crop = 1;
   }
-  if (seed % 3 == 2 && c->options.mode == STRATUS_TETRA_COMPOSITE && tetra_method == STRATUS_TETRA_METHOD_MARCH) {
-    c->options.mode = (stratus_tetra_mode)(STRATUS_TETRA_MINIMUM + seed / 3 % (c->mesh.cell_values ? 3 : 4));
-    c->options.contour_count = 2;
-    c->options.contours[0] = 0.6;
-    c->options.contours[1] = 0.4;
-  }
-  if (seed % 4 >= 2 && tetra_method == STRATUS_TETRA_METHOD_MARCH) { /* lit, thinned, or both; other modes are neither */
+  if (seed % 4 >= 2 && marched) { /* lit, thinned, or both; other modes are neither */
     static const double thin[4] = { 0.1, 0.0, 0.6, 1.0 };
     c->options.shade = seed % 5 != 0;
     c->options.shading.specular = 0.4;

@@ -176,7 +176,7 @@ void WhatIsRefused()
   };
   scene.Tetrahedra->SetBlendModeToIsoSurface();
   scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, 0.5);
-  refuses("isosurfaces of 3 components");
+  refuses("mode isosurface of 3 components");
   scene.Tetrahedra->SetBlendModeToAverageIntensity();
   scene.Volume->GetProperty()->IndependentComponentsOff();
   refuses("3 dependent components are not supported in mode average");

@@ -5,6 +5,7 @@
 
 #include "vtkContourValues.h"
 #include "vtkPlane.h"
+#include "vtkSphere.h"
 
 namespace {
 // Sets the same on both mappers.
@@ -16,8 +17,8 @@ template <typename Function> void Both(GridScene& scene, Function&& function)
 
 void Modes()
 {
-  const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface" };
-  for (int mode = 1; mode <= vtkStratusTetrahedraMapper::ISOSURFACE_BLEND; ++mode) {
+  const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice" };
+  for (int mode = 1; mode <= vtkStratusTetrahedraMapper::SLICE_BLEND; ++mode) {
     for (int view = 0; view < 3; ++view) {
       GridScene scene;
       vtkVolumeProperty* look = scene.Volume->GetProperty();
@@ -28,6 +29,10 @@ void Modes()
       look->SetScalarOpacityUnitDistance(4.0);
       look->GetIsoSurfaceValues()->SetValue(0, 0.31);
       look->GetIsoSurfaceValues()->SetValue(1, 0.52);
+      vtkNew<vtkSphere> sphere;
+      sphere->SetCenter(scene.Volume->GetCenter());
+      sphere->SetRadius(2.5);
+      look->SetSliceFunction(sphere);
       scene.Look(35 + 130 * view, 20 - 30 * view);
       scene.Mapper->SetSampleDistance(0.005);
       const double psnr = scene.Psnr();
@@ -86,8 +91,10 @@ void WhatIsRefused()
   refuses("0 contour values");
   scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetNumberOfContours(17);
   refuses("17 isosurface values");
-  scene.Tetrahedra->SetBlendMode(6);
-  refuses("blend mode 6");
+  scene.Tetrahedra->SetBlendMode(7);
+  refuses("blend mode 7");
+  scene.Tetrahedra->SetBlendModeToSlice();
+  refuses("needs a SliceFunction");
   scene.Tetrahedra->SetBlendModeToAverageIntensity();
   scene.Tetrahedra->SetAverageIPScalarRange(2, 1);
   refuses("average_range 2 .. 1");

@@ -525,6 +525,49 @@ static inline void tetra_contours(const tetra_case* c, const tetra_stretch* s, d
   }
 }
 
+/* The slice's function at a point of a ray. */
+static inline double tetra_slice_at(const stratus_slice* f, const double origin[3], const double along[3], double t)
+{
+  double d[3], sum = f->constant;
+  for (int a = 0; a < 3; ++a) {
+    d[a] = origin[a] + t * along[a] - f->center[a];
+  }
+  for (int a = 0; a < 3; ++a) {
+    sum += d[a] * (f->linear[a] + f->square[a] * d[a] + f->square[3 + a] * d[(a + 1) % 3]);
+  }
+  return sum;
+}
+
+/* The values on the slice that a stretch of a ray shows. Along it the function is a parabola, which is cut at its vertex and bisected. */
+static inline void tetra_slices(
+  const tetra_case* c, const tetra_stretch* s, const double origin[3], const double along[3], double length, double rgba[4], double* depth)
+{
+  const stratus_slice* f = &c->options.slice;
+  const double middle = 0.5 * (s->from + s->to), half = 0.5 * (s->to - s->from);
+  const double a = tetra_slice_at(f, origin, along, s->from), b = tetra_slice_at(f, origin, along, middle),
+               e = tetra_slice_at(f, origin, along, s->to), bend = a - 2.0 * b + e;
+  const double vertex = fmin(fmax(bend == 0.0 ? s->from : middle + 0.5 * half * (a - e) / bend, s->from), s->to);
+  const double ends[3] = { s->from, vertex, s->to };
+  for (int part = 0; part < 2; ++part) {
+    double lo = ends[part], hi = ends[part + 1];
+    const int below = tetra_slice_at(f, origin, along, lo) < 0.0;
+    if (!(lo < hi) || below == (tetra_slice_at(f, origin, along, hi) < 0.0)) {
+      continue;
+    }
+    for (int step = 0; step < 60; ++step) {
+      const double at = 0.5 * (lo + hi);
+      *((tetra_slice_at(f, origin, along, at) < 0.0) == below ? &lo : &hi) = at;
+    }
+    const double x = s->first + (lo - s->from) / (s->to - s->from) * (s->last - s->first);
+    const double alpha = linear_between(c->transfer.opacity, c->transfer.opacity_count, 2, 1, x);
+    for (size_t k = 0; k < 3; ++k) {
+      rgba[k] += (1.0 - rgba[3]) * alpha * linear_between(c->transfer.color, c->transfer.color_count, 4, k + 1, x);
+    }
+    rgba[3] += (1.0 - rgba[3]) * alpha;
+    *depth = alpha > 0.0 && isinf(*depth) ? lo * length : *depth;
+  }
+}
+
 /* Draws the reference. rgba: 4*TETRA_PIXELS; depth: TETRA_PIXELS or NULL. */
 static inline void tetra_reference(const tetra_case* c, double* rgba, double* depth)
 {
@@ -564,6 +607,9 @@ static inline void tetra_reference(const tetra_case* c, double* rgba, double* de
       largest = fmax(largest, fmax(sign * met[i].first, sign * met[i].last));
       if (c->options.mode == STRATUS_TETRA_ISOSURFACE) {
         tetra_contours(c, met + i, length, out, &first);
+      }
+      if (c->options.mode == STRATUS_TETRA_SLICE) {
+        tetra_slices(c, met + i, origin, along, length, out, &first);
       }
       if (c->options.mode == STRATUS_TETRA_COMPOSITE) {
         tetra_integrate(c, met + i, length, out, &first);

@@ -11,6 +11,7 @@
 
 #include "ray_crop.h"
 #include "ray_composite.h"
+#include "slice.h"
 #include "tree_map.h"
 
 #ifndef STRATUS_RAY_MODE

@@ -6,7 +6,7 @@
 
 #include "light_arguments.h"
 #include "picture_arguments.h"
-#include "real.h"
+#include "slice_arguments.h"
 #include "table_arguments.h"
 
 #define STRATUS_CLIP_MAX 6
@@ -193,12 +193,6 @@ typedef struct stratus_ray_function_2d {
   float reach;                      /* a sample's length in the lengths that opacities are of */
 } stratus_ray_function_2d;
 
-/* A surface where a function of second degree is 0. With d = x - center, in index coordinates, the function is the sum of square[0..2]
- * times dx dx, dy dy, dz dz, of square[3..5] times dx dy, dy dz, dx dz, of linear times d, and of level. */
-typedef struct stratus_ray_surface {
-  stratus_pair center[3], square[6], linear[3], level;
-} stratus_ray_surface;
-
 typedef struct stratus_ray_cast_arguments {
   stratus_picture_arguments picture;
   stratus_ray_camera camera;
@@ -214,7 +208,7 @@ typedef struct stratus_ray_cast_arguments {
   stratus_light_arguments light; /* places are index coordinates; `place` takes them to units of the shortest voxel edge */
   stratus_ray_media media;
   stratus_ray_function_2d transfer_2d;
-  stratus_ray_surface slice;
+  stratus_slice_arguments slice; /* in index coordinates */
 } stratus_ray_cast_arguments;
 
 #endif

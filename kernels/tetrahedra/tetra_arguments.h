@@ -10,6 +10,7 @@
 
 #include "light_arguments.h"
 #include "picture_arguments.h"
+#include "slice_arguments.h"
 #include "table_arguments.h"
 
 /* 1: the variant whose light and opacity depend on the gradient. */
@@ -30,6 +31,7 @@
 #define TETRA_EXTREMES 1 /* the largest or smallest value */
 #define TETRA_ADD 2      /* the mean or the sum of values */
 #define TETRA_SURFACES 3 /* surfaces of contour values, light behind light */
+#define TETRA_SLICE 4    /* the values on a surface of the world, light behind light */
 #define TETRA_PLANES 12  /* of clip planes and the sides of a box */
 #define TETRA_CONTOURS 16
 
@@ -79,6 +81,7 @@ typedef struct stratus_tetra_arguments {
   float kept;
   int contour_count;
   float contour[TETRA_CONTOURS][5]; /* sorted by value: value, colour times opacity, opacity */
+  stratus_slice_arguments slice;    /* in (a, b, z) */
   int plane_count;
   float plane[TETRA_PLANES][6];        /* a ray is seen where [0] + u [1] + v [2] + ([3] + u [4] + v [5]) z >= 0 */
   int steps_most;                      /* the most cells that a ray can pass from one border face to the next */

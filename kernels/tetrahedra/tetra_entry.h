@@ -17,8 +17,7 @@ typedef struct stratus_tetra_view {
   GLOBAL const uint* bin_begin; /* faces that may cover tile t: bins[bin_begin[t]] .. bins[bin_begin[t + 1] - 1] */
   GLOBAL const int* bins;
   GLOBAL const uint* first;
-  GLOBAL int* entries;        /* two ints an entry: the bits of its z, and the face; nearest first */
-  GLOBAL const float* colors; /* maximum: colours of the table's entries */
+  GLOBAL int* entries; /* two ints an entry: the bits of its z, and the face; nearest first */
   stratus_tetra_picture picture;
 } stratus_tetra_view;
 

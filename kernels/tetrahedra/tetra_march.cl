@@ -59,7 +59,7 @@ PACKET_KERNEL void tetra_march(
   __global const float *gradients = 0, *factors = 0, *components = 0;
   __global const int* media = 0;
 #endif
-  const stratus_tetra_view view = { .scene = { cells, points, sums, cell_values, gradients, factors, components, media },
+  const stratus_tetra_view view = { .scene = { cells, points, sums, cell_values, gradients, factors, components, media, colors },
     .lines = lines,
     .ends = ends,
     .faces = faces,
@@ -67,7 +67,6 @@ PACKET_KERNEL void tetra_march(
     .bins = bins,
     .first = first,
     .entries = entries,
-    .colors = colors,
     .picture = { rgba, rgba8, depth, samples } };
   int tile, from, beyond;
   if (my_pixels(a, &tile, &from, &beyond)) {

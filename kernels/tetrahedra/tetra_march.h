@@ -25,6 +25,7 @@ typedef struct stratus_tetra_scene {
   GLOBAL const float* factors;    /* the gradient opacities of components */
   GLOBAL const float* components; /* of points or cells, four floats each: places in the components' tables */
   GLOBAL const int* media;        /* their sums */
+  GLOBAL const float* colors;     /* extremes and slices: colours of the table's entries */
 } stratus_tetra_scene;
 
 typedef struct stratus_tetra_ray {
@@ -37,6 +38,7 @@ typedef struct stratus_tetra_ray {
   vint cell;                 /* as in stratus_tetra_face; negative: the ray is outside */
   vfloat at, value;          /* z where the ray entered the cell, and the field there */
   stratus_tetra_place place; /* place of that value in the table */
+  vfloat slice[2];           /* z where the ray meets the slice, the nearer one first */
 } stratus_tetra_ray;
 
 /* The passage of one cell: where the ray leaves it, and the field there. */
@@ -224,6 +226,22 @@ INLINE void tetra_extreme(stratus_tetra_light* light, vmask mask, vfloat first, 
   light->depth = v_select(more, v_select(v_lt(first, last), far, near), light->depth);
 }
 
+/* Composites the values that the part begin..end of a cell shows on the slice. */
+INLINE void tetra_slice(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask)
+{
+  const vfloat slope = (passage->last - passage->first) * v_reciprocal(v_max(passage->to - passage->from, v_set(1e-30f)));
+  for (int n = 0; n < 2; ++n) {
+    const vmask met = mask & v_le(begin, r->slice[n]) & v_lt(r->slice[n], end);
+    if (m_any(met)) {
+      const vfloat z = v_select(met, r->slice[n], begin), value = v_fma(slope, z - passage->from, passage->first);
+      vfloat color[4];
+      gather_four(scene->colors, table_entry(&a->table, scene->colors, value), met, color);
+      tetra_surface(a, light, 0, met, color, v_fma(z, r->length, r->offset));
+    }
+  }
+}
+
 #if TETRA_LIT
 /* Floats of points, `count` of four, where a ray passes a face, as tetra_cross() has the value. */
 INLINE void tetra_face_floats(GLOBAL const float* floats, int count, const vint name[3], const vfloat edge[3], vmask mask, vfloat g[4])
@@ -335,6 +353,8 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
 #else
     tetra_surfaces(a, 0, light, mask, first, last, near, (end - begin) * r->length);
 #endif
+  } else if (a->mode == TETRA_SLICE) {
+    tetra_slice(a, scene, r, light, passage, begin, end, mask);
   } else {
     stratus_tetra_place from = r->place, to;
     r->place = to = tetra_place(a, scene->sums, passage->last, passage->seen);

@@ -38,12 +38,24 @@ INLINE void tetra_add(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sum
   }
 }
 
+/* Composite a surface, whose colour is multiplied by its opacity, at a world distance. lit: NULL where it is not lit. */
+INLINE void tetra_surface(CONSTANT stratus_tetra_arguments* a, stratus_tetra_light* light, const stratus_tetra_lit* lit, vmask mask,
+  const vfloat color[4], vfloat distance)
+{
+  const vfloat zero = v_set(0.0f), opacity = v_select(mask, color[3], zero);
+  tetra_gather(light, lit, v_select(mask, light->transparency, zero), color);
+  light->transparency = v_fma(zero - light->transparency, opacity, light->transparency);
+  if (a->picture.want_depth) {
+    const vmask hit = mask & v_lt(zero, opacity) & v_le(v_set(LARGEST_FLOAT), light->depth);
+    light->depth = v_select(hit, distance, light->depth);
+  }
+}
+
 /* Composite the surfaces that a stretch passes, in their order along it. A surface is where the field passes its value upwards or
  * downwards, so that one on the border of two cells counts once. stretch: its light, read only by the variant TETRA_LIT. */
 INLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_stretch* stretch, stratus_tetra_light* light,
   vmask mask, vfloat first, vfloat last, vfloat near, vfloat length)
 {
-  const vfloat zero = v_set(0.0f);
   const vmask rises = v_lt(first, last);
   for (int n = 0; n < a->contour_count; ++n) {
     CONSTANT float *up = a->contour[n], *down = a->contour[a->contour_count - 1 - n];
@@ -53,24 +65,17 @@ INLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_te
     if (!m_any(met)) {
       continue;
     }
-    const vfloat opacity = v_select(met, v_select(rises, v_set(up[4]), v_set(down[4])), zero),
-                 scale = v_select(met, light->transparency, zero);
     const vfloat part = (value - first) * v_reciprocal(v_select(met, last - first, v_set(1.0f)));
     const vfloat color[4] = { v_select(rises, v_set(up[1]), v_set(down[1])), v_select(rises, v_set(up[2]), v_set(down[2])),
-      v_select(rises, v_set(up[3]), v_set(down[3])), opacity };
+      v_select(rises, v_set(up[3]), v_set(down[3])), v_select(rises, v_set(up[4]), v_set(down[4])) };
 #if TETRA_LIT
     stratus_tetra_lit lit;
-    tetra_light_at(a, 0, 0, stretch, part, zero, met, &lit);
-    tetra_gather(light, &lit, scale, color);
+    tetra_light_at(a, 0, 0, stretch, part, v_set(0.0f), met, &lit);
+    tetra_surface(a, light, &lit, met, color, v_fma(part, length, near));
 #else
     (void)stretch;
-    tetra_gather(light, 0, scale, color);
+    tetra_surface(a, light, 0, met, color, v_fma(part, length, near));
 #endif
-    light->transparency = v_fma(zero - light->transparency, opacity, light->transparency);
-    if (a->picture.want_depth) {
-      const vmask hit = met & v_lt(zero, opacity) & v_le(v_set(LARGEST_FLOAT), light->depth);
-      light->depth = v_select(hit, v_fma(part, length, near), light->depth);
-    }
   }
 }
 

@@ -4,6 +4,7 @@
 #ifndef STRATUS_TETRA_TILE_H
 #define STRATUS_TETRA_TILE_H
 
+#include "slice.h"
 #include "tetra_entry.h"
 
 /* How many lanes wait before new rays are loaded: loading costs as much for one lane as for all. */
@@ -31,6 +32,32 @@ typedef struct stratus_tetra_walk {
   ushort pixels[STRATUS_WIDTH > 1 ? TETRA_PIXELS : 1]; /* pixels of the tile that have an entry */
 } stratus_tetra_walk;
 
+/* Finds where rays meet the slice, and ends them behind it. */
+INLINE void lanes_meet_slice(CONSTANT stratus_tetra_arguments* a, stratus_tetra_ray* r, vmask mask)
+{
+  float line[4][STRATUS_WIDTH], at[2][STRATUS_WIDTH];
+  v_store(line[0], r->us);
+  v_store(line[1], r->uw);
+  v_store(line[2], r->vs);
+  v_store(line[3], r->vw);
+  for (int part = 0; part < STRATUS_WIDTH; part += REAL_WIDTH) {
+    const real steps[3] = { r_load(line[0] + part), r_load(line[2] + part), r_number(1.0f) };
+    const real from[3] = { r_sub(r_load(line[1] + part), r_of(a->slice.center[0])), r_sub(r_load(line[3] + part), r_of(a->slice.center[1])),
+      r_neg(r_of(a->slice.center[2])) };
+    real degree[3], roots[2];
+    slice_along(&a->slice, from, steps, degree);
+    slice_roots(degree, roots);
+    r_store(at[0] + part, roots[0]);
+    r_store(at[1] + part, roots[1]);
+  }
+  const vfloat first = v_load(at[0]), second = v_load(at[1]), none = v_set(LARGEST_FLOAT);
+  const vfloat last = v_select(v_lt(second, none), second, v_select(v_lt(first, none), first, v_set(-LARGEST_FLOAT)));
+  r->slice[0] = v_select(mask, first, r->slice[0]);
+  r->slice[1] = v_select(mask, second, r->slice[1]);
+  /* a hair farther: what is at the end of a stretch belongs to the next */
+  r->end = v_select(mask, v_min(r->end, v_fma(v_abs(last), v_set(1e-6f), last) + v_set(1e-30f)), r->end);
+}
+
 /* Loads the rays of lanes that have a new pixel. */
 INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask, vint pixel)
 {
@@ -49,6 +76,9 @@ INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
   r->offset = v_select(mask, sight.offset, r->offset);
   r->begin = v_select(mask, sight.begin, r->begin);
   r->end = v_select(mask, sight.end, r->end);
+  if (a->mode == TETRA_SLICE) {
+    lanes_meet_slice(a, r, mask);
+  }
   const vint place = pixel + vi_set(TETRA_PIXELS * t->tile);
   k->pixel = vi_select(mask, pixel, k->pixel);
   k->entry = vi_select(mask, v_gather_ints((GLOBAL const int*)v->first, place, mask), k->entry);
@@ -110,7 +140,7 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
   vi_store(segments, k->segments);
   CONSTANT stratus_tetra_arguments* a = t->arguments;
   if (a->mode == TETRA_EXTREMES) {
-    vi_store(entry, table_entry(&a->table, t->view->colors, v_set(a->sign) * k->light.most));
+    vi_store(entry, table_entry(&a->table, t->view->scene.colors, v_set(a->sign) * k->light.most));
   }
   if (a->mode == TETRA_ADD) { /* grey and opaque wherever something was added */
     const vmask counts = v_lt(v_set(0.0f), k->light.green);
@@ -133,7 +163,7 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
     for (int c = 0; c < 4; ++c) {
       rgba[c] = channel[c][lane];
       if (a->mode == TETRA_EXTREMES) {
-        rgba[c] = largest[lane] > -LARGEST_FLOAT ? t->view->colors[4 * entry[lane] + c] : 0.0f;
+        rgba[c] = largest[lane] > -LARGEST_FLOAT ? t->view->scene.colors[4 * entry[lane] + c] : 0.0f;
       }
     }
     if (a->mode == TETRA_EXTREMES && a->kept > 0.0f) {
@@ -188,7 +218,7 @@ INLINE void lanes_begin(stratus_tetra_walk* t, stratus_tetra_lanes* k)
   const vfloat zero = v_set(0.0f);
   const vint none = vi_set(0), outside = vi_set(-1);
   stratus_tetra_ray* r = &k->ray;
-  r->us = r->uw = r->vs = r->vw = r->begin = r->end = r->length = r->offset = r->at = r->value = zero;
+  r->us = r->uw = r->vs = r->vw = r->begin = r->end = r->length = r->offset = r->at = r->value = r->slice[0] = r->slice[1] = zero;
   for (int i = 0; i < 3; ++i) {
     r->x[i] = r->y[i] = r->z[i] = r->s[i] = r->edge[i] = zero;
     r->name[i] = none;

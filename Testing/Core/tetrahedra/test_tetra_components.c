@@ -463,7 +463,7 @@ static void lattices_threads_and_sets_agree(void** state)
 
 static void wrong_components_are_refused(void** state)
 {
-  static const char* const words[] = { "components 5 outside 1..4", "must be at least its 3 components", "isosurfaces of 2 components",
+  static const char* const words[] = { "components 5 outside 1..4", "must be at least its 3 components", "mode isosurface of 2 components",
     "cannot be projected", "dependent components", "material of component 1 has (0.4, nan", "ambient is nan",
     "2 dependent components are not supported in mode maximum" };
   stratus_tetra_caster* caster = NULL;

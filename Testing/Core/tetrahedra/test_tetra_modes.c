@@ -16,6 +16,16 @@ static void set_contours(tetra_case* c)
   c->opacity[1] = 0.3; /* no value is transparent */
 }
 
+/* A plane, a sphere, a cone or a saddle through the mesh. */
+static void set_slice(tetra_case* c, uint32_t kind)
+{
+  static const stratus_slice kinds[4] = { { .linear = { 1, -2, 0.5 } }, { .square = { 1, 1, 1 }, .constant = -1.7 },
+    { .square = { 1, 1, -0.5 } }, { .square = { 0.05, -0.05, 0, 0.02, 0.01, -0.03 }, .linear = { 0.1, 0.2, 1 } } };
+  c->options.slice = kinds[kind % 4];
+  c->options.slice.center[0] = c->options.slice.center[1] = 2.1;
+  c->options.slice.center[2] = 1.9;
+}
+
 static void set_planes(tetra_case* c, int planes, int crop)
 {
   const double all[2][4] = { { 0.3, -0.5, 0.8, -0.9 }, { -1.0, 0.1, -0.2, 3.1 } }, bounds[6] = { 0.4, 3.3, -INFINITY, 2.9, 0.6, 3.6 };
@@ -50,10 +60,11 @@ static void is_right(stratus_context* context, const tetra_case* c, double limit
 /* Values are rounded to the table's 32768 entries: a fraction of a step of 255 in sums, none to speak of in surfaces. */
 static void modes_are_right(void** state)
 {
-  for (uint32_t seed = 0; seed < 20; ++seed) {
+  for (uint32_t seed = 0; seed < 30; ++seed) {
     tetra_case c;
     tetra_create(&c, 4, 0.2, seed % 3 == 0 ? 0.25 : 0.0, seed);
-    c.options.mode = (stratus_tetra_mode)(STRATUS_TETRA_MAXIMUM + seed % 5);
+    c.options.mode = seed < 20 ? (stratus_tetra_mode)(STRATUS_TETRA_MAXIMUM + seed % 5) : STRATUS_TETRA_SLICE;
+    set_slice(&c, seed);
     c.mesh.cell_values = seed % 4 == 3 && c.options.mode != STRATUS_TETRA_ISOSURFACE;
     set_contours(&c);
     set_planes(&c, (int)(seed % 3), seed % 2 == 1);
@@ -67,7 +78,7 @@ static void modes_are_right(void** state)
     c.transfer.unit_distance = 8.0; /* sums below 1 */
     tetra_camera(*state, &c, 4, (int)(seed % 8), seed & 1);
     is_right(*state, &c, 0.1, "random mesh");
-    for (int i = 0; i < TETRA_PIXELS && c.options.mode == STRATUS_TETRA_ISOSURFACE; ++i) {
+    for (int i = 0; i < TETRA_PIXELS && c.options.mode >= STRATUS_TETRA_ISOSURFACE; ++i) {
       const double known = depth[i];
       assert_true(isinf(known) || isinf((double)picture.depth[i]) || fabs((double)picture.depth[i] - known) < 1e-3 * known);
     }
@@ -158,18 +169,23 @@ static void wrong_options_are_refused(void** state)
   tetra_camera(*state, &c, 2, 1, 0);
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
   assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
-  for (int wrong = 0; wrong < 9; ++wrong) {
+  for (int wrong = 0; wrong < 11; ++wrong) {
     stratus_tetra_options o = c.options;
     static const char* const words[] = { "clip_plane_count 7 outside 0..6", "clip_planes[0][2] is nan", "crop_bounds 2 .. 1 along axis 1",
-      "average_range 1 .. 0", "0 contour values", "17 contour values", "contour 0 has value inf", "cannot be projected",
-      "values of cells" };
+      "average_range 1 .. 0", "0 contour values", "17 contour values", "contour 0 has value inf", "cannot be projected", "values of cells",
+      "slice is no surface", "slice's center has inf" };
     stratus_mesh mesh = c.mesh;
     o.clip_plane_count = wrong == 0 ? 7 : wrong == 1 ? 1 : 0;
     o.clip_planes[0][2] = wrong == 1 ? NAN : 0.0;
     o.crop = wrong == 2;
     o.crop_bounds[2] = 2.0;
     o.crop_bounds[3] = 1.0;
-    o.mode = wrong == 3 ? STRATUS_TETRA_AVERAGE : wrong > 3 ? STRATUS_TETRA_ISOSURFACE : STRATUS_TETRA_COMPOSITE;
+    o.slice.linear[0] = wrong == 10;
+    o.slice.center[1] = wrong == 10 ? (double)INFINITY : 0.0;
+    o.mode = wrong == 3 ? STRATUS_TETRA_AVERAGE
+      : wrong > 8       ? STRATUS_TETRA_SLICE
+      : wrong > 3       ? STRATUS_TETRA_ISOSURFACE
+                        : STRATUS_TETRA_COMPOSITE;
     o.average_range[0] = wrong == 3 ? 1.0 : 0.0;
     o.average_range[1] = 0.0;
     o.contour_count = wrong == 4 ? 0 : wrong == 5 ? 17 : 1;
@@ -177,7 +193,7 @@ static void wrong_options_are_refused(void** state)
     o.method = wrong == 7 ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_AUTO;
     mesh.cell_values = wrong == 8;
     assert_int_equal(stratus_tetra_caster_render(caster, &mesh, &c.transfer, &c.camera, &o, &image, NULL),
-      wrong < 7 ? STRATUS_INVALID_ARGUMENT : STRATUS_UNSUPPORTED);
+      wrong < 7 || wrong > 8 ? STRATUS_INVALID_ARGUMENT : STRATUS_UNSUPPORTED);
     if (!strstr(stratus_context_message(*state), words[wrong])) {
       print_error("%s\n", stratus_context_message(*state));
     }

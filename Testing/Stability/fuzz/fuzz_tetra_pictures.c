@@ -18,16 +18,17 @@ typedef struct tetra_case {
   stratus_leaves leaves;
 } tetra_case;
 
-/* Returns whether the gradient affects the picture; only the march draws such pictures. */
-static bool is_lit(const tetra_case* c)
+/* Returns whether only the march draws the picture: of a slice, or one that the gradient affects. */
+static bool is_marched(const tetra_case* c)
 {
-  return c->options.shade || (c->transfer->gradient_count > 0 && c->options.mode == STRATUS_TETRA_COMPOSITE);
+  return c->options.mode == STRATUS_TETRA_SLICE || c->options.shade ||
+    (c->transfer->gradient_count > 0 && c->options.mode == STRATUS_TETRA_COMPOSITE);
 }
 
 static void choose_view(fuzz* f, tetra_case* c)
 {
   stratus_tetra_options o = CALL(stratus_tetra_options_default());
-  o.mode = (stratus_tetra_mode)(fuzz_chance(f, 0.7) ? 0 : fuzz_choice(f, 2));
+  o.mode = (stratus_tetra_mode)(fuzz_chance(f, 0.7) ? 0 : fuzz_chance(f, 0.3) ? STRATUS_TETRA_SLICE : fuzz_choice(f, 2));
   o.method = (stratus_tetra_method)fuzz_choice(f, STRATUS_TETRA_METHOD_PROJECT + 1);
   o.termination = fuzz_chance(f, 0.6) ? o.termination : fuzz_real(f, 0.0, 1.0);
   o.tolerance = fuzz_chance(f, 0.6) ? o.tolerance : fuzz_real(f, 0.0, 0.1);
@@ -41,6 +42,11 @@ static void choose_view(fuzz* f, tetra_case* c)
     o.crop_bounds[side] = c->mesh.bounds[side] + (side & 1 ? -0.2 : 0.2) * fuzz_real(f, 0.0, 1.0) * c->mesh.edge;
   }
   o.crop = o.crop && o.crop_bounds[0] <= o.crop_bounds[1] && o.crop_bounds[2] <= o.crop_bounds[3] && o.crop_bounds[4] <= o.crop_bounds[5];
+  for (int i = 0; i < 6; ++i) {
+    o.slice.square[i] = fuzz_chance(f, 0.5) ? 0.0 : fuzz_real(f, -1.0, 1.0);
+    o.slice.linear[i % 3] = fuzz_real(f, 0.1, 1.0);
+    o.slice.center[i % 3] = c->mesh.bounds[i % 3 * 2] + fuzz_real(f, 0.0, 1.0) * c->mesh.edge;
+  }
   o.shade = o.mode == STRATUS_TETRA_COMPOSITE && fuzz_chance(f, 0.2);
   fuzz_shading(f, c->mesh.bounds, c->mesh.edge, &o.shading);
   o.gradient_distance = fuzz_chance(f, 0.6) ? 0.0 : fuzz_real(f, -1.0, 1.0);
@@ -48,7 +54,7 @@ static void choose_view(fuzz* f, tetra_case* c)
   c->options = c->no_options ? stratus_tetra_options_default() : o;
   c->camera = fuzz_camera(f, c->mesh.bounds);
   c->transfer = fuzz_transfers(f, 1, c->mesh.low, c->mesh.high, c->mesh.edge);
-  if (fuzz_is_tame(f) && c->options.method == STRATUS_TETRA_METHOD_PROJECT && is_lit(c)) {
+  if (fuzz_is_tame(f) && c->options.method == STRATUS_TETRA_METHOD_PROJECT && is_marched(c)) {
     c->options.method = STRATUS_TETRA_METHOD_AUTO;
   }
 }
@@ -150,7 +156,7 @@ static void compare(fuzz* f, const tetra_case* c, const stratus_image* image, st
     EXPECT(status == STRATUS_OK, "a new caster draws it otherwise: %s", stratus_context_message(context));
     fuzz_check_same(f, image, &picture, true, "on a new caster");
   }
-  if (!is_lit(c)) {
+  if (!is_marched(c)) {
     compare_methods(f, context, caster, &other, image);
   }
   CALL(stratus_tetra_caster_destroy(caster));

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Slices: checks the surface, and takes it from the world to index coordinates, where rays are. */
-#include "ray_slice_host.h"
+ * Slices: checks the surface, and takes it from the world to the coordinates of rays. */
+#include "slices.h"
 
 #include "matrix.h"
-#include "volume.h"
 
 #include <math.h>
 
@@ -12,7 +11,7 @@ static double coefficient(const stratus_slice* slice, int i)
   return i < 6 ? slice->square[i] : i < 9 ? slice->linear[i - 6] : i < 10 ? slice->constant : slice->center[i - 10];
 }
 
-stratus_status stratus_ray_slice_check(stratus_context* context, const stratus_slice* slice)
+stratus_status stratus_slice_check(stratus_context* context, const stratus_slice* slice)
 {
   bool any = false;
   for (int i = 0; i < 13; ++i) {
@@ -30,7 +29,7 @@ stratus_status stratus_ray_slice_check(stratus_context* context, const stratus_s
   return any ? STRATUS_OK : stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the slice is no surface: all of its square and linear are 0");
 }
 
-/* Transforms the form d.Q d + b.d of world displacements M d to one of index displacements d. */
+/* Transforms the form d.Q d + b.d of world displacements M d to one of displacements d. */
 static void transform(const stratus_slice* slice, const double m[16], double square[6], double linear[3])
 {
   const double* s = slice->square;
@@ -56,18 +55,13 @@ static void transform(const stratus_slice* slice, const double m[16], double squ
   }
 }
 
-void stratus_ray_slice_arguments_of(const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
+void stratus_slice_set(const stratus_slice* slice, const double to_world[16], stratus_slice_arguments* a)
 {
-  const stratus_slice* slice = &options->slice;
-  double to_world[16], to_index[16], center[3], square[6], linear[3], largest = 0.0;
-  if (options->mode != STRATUS_MODE_SLICE) {
-    return;
+  double from_world[16], center[3], square[6], linear[3], largest = 0.0;
+  if (!stratus_matrix_invert_affine(to_world, from_world)) {
+    return; /* the frame's set-up has refused it */
   }
-  stratus_volume_index_to_world(volume, to_world);
-  if (!stratus_matrix_invert_affine(to_world, to_index)) {
-    return; /* stratus_ray_frame_arguments() has refused it */
-  }
-  stratus_matrix_point(to_index, slice->center, center);
+  stratus_matrix_point(from_world, slice->center, center);
   transform(slice, to_world, square, linear);
   for (int i = 0; i < 6; ++i) {
     largest = fmax(largest, fmax(fabs(square[i]), fabs(linear[i % 3])));
@@ -75,11 +69,11 @@ void stratus_ray_slice_arguments_of(const stratus_volume* volume, const stratus_
   /* Only the ratios count. Scaled, they stay within the range of floats. */
   const double scale = largest > 0.0 ? 1.0 / largest : 0.0;
   for (int i = 0; i < 6; ++i) {
-    a->slice.square[i] = stratus_pair_of(square[i] * scale);
+    a->square[i] = stratus_pair_of(square[i] * scale);
   }
   for (int i = 0; i < 3; ++i) {
-    a->slice.center[i] = stratus_pair_of(center[i]);
-    a->slice.linear[i] = stratus_pair_of(linear[i] * scale);
+    a->center[i] = stratus_pair_of(center[i]);
+    a->linear[i] = stratus_pair_of(linear[i] * scale);
   }
-  a->slice.level = stratus_pair_of(slice->constant * scale);
+  a->level = stratus_pair_of(slice->constant * scale);
 }
