@@ -7,6 +7,17 @@
 
 namespace cli {
 
+stratus_slice slice_of(const options& o, int up)
+{
+  stratus_slice slice = {};
+  for (size_t a = 0; a < 3 && !o.slice.empty(); ++a) {
+    const double scale = static_cast<int>(a) == up ? o.exaggeration : 1.0;
+    slice.center[a] = o.slice[a] * scale;
+    slice.linear[a] = o.slice[3 + a] / scale;
+  }
+  return slice;
+}
+
 stratus_ray_cast_options casting_of(const options& o, int up)
 {
   stratus_ray_cast_options cast = stratus_ray_cast_options_default();
@@ -15,11 +26,7 @@ stratus_ray_cast_options casting_of(const options& o, int up)
   std::copy(o.average.begin(), o.average.end(), cast.optics.average_range);
   cast.optics.contour_count = static_cast<int>(o.contours.size());
   std::copy(o.contours.begin(), o.contours.end(), cast.optics.contours);
-  for (size_t a = 0; a < 3 && !o.slice.empty(); ++a) {
-    const double scale = static_cast<int>(a) == up ? o.exaggeration : 1.0;
-    cast.slice.center[a] = o.slice[a] * scale;
-    cast.slice.linear[a] = o.slice[3 + a] / scale;
-  }
+  cast.slice = slice_of(o, up);
   cast.sampling.jitter = o.jitter < 0 ? 0 : 1;
   cast.sampling.jitter_seed = static_cast<uint32_t>(std::max(0, o.jitter));
   cast.skipping.structure = o.structure;

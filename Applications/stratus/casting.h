@@ -11,6 +11,8 @@
 
 namespace cli {
 
+// The plane of --slice; no surface where there is none.
+stratus_slice slice_of(const options& o, int up);
 // All that the options say but for the parts of the volume. `up` is the axis of heights, 0 to 2.
 stratus_ray_cast_options casting_of(const options& o, int up);
 

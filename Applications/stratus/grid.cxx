@@ -2,6 +2,7 @@
 #include "grid.h"
 
 #include "camera.h"
+#include "casting.h"
 #include "drawing.h"
 #include "mesh.h"
 
@@ -11,8 +12,7 @@
 
 namespace {
 
-// The mode of meshes of the same name. Modes that meshes lack, and options for regular grids only, are refused, so that none is ignored
-// silently.
+// The mode of meshes of the same name. Options for regular grids only are refused, so that none is ignored silently.
 stratus_tetra_mode mode_of(const cli::options& o)
 {
   if (o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest || o.audit || o.sample_distance != 0.0 ||
@@ -21,13 +21,13 @@ stratus_tetra_mode mode_of(const cli::options& o)
       "' is a grid of cells: structure, sampling, interpolation, sample distance, cell error, crop regions, mask, jitter and " +
       "audit are for images");
   }
-  for (int i = STRATUS_TETRA_COMPOSITE; i <= STRATUS_TETRA_ISOSURFACE; ++i) {
+  for (int i = STRATUS_TETRA_COMPOSITE; i <= STRATUS_TETRA_FIRST_HIT; ++i) {
     const auto mode = static_cast<stratus_tetra_mode>(i);
     if (std::string(stratus_tetra_mode_name(mode)) == stratus_mode_name(o.mode)) {
       return mode;
     }
   }
-  throw cli::usage("'" + o.source + "' is a grid of cells: --mode " + stratus_mode_name(o.mode) + " is for images");
+  return STRATUS_TETRA_COMPOSITE; // there is no mode that meshes lack
 }
 } // namespace
 
@@ -121,7 +121,9 @@ void grid_drawing::draw(const stratus_image& image)
   std::copy(o.average.begin(), o.average.end(), how.average_range);
   how.contour_count = static_cast<int>(o.contours.size());
   std::copy(o.contours.begin(), o.contours.end(), how.contours);
-  how.shade = o.shade;
+  how.slice = cli::slice_of(o, o.up.empty() ? 2 : o.up[0] - 'x');
+  how.shade = o.shade || o.mode == STRATUS_MODE_FIRST_HIT;
+  how.normals = o.normals;
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(
     stratus_tetra_caster_render(this->Caster, &this->Mesh.view(), &view, &this->Camera, &how, &image, &this->Report), "render");

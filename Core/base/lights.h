@@ -14,4 +14,17 @@ stratus_status stratus_shading_check(stratus_context* context, const stratus_sha
 void stratus_lights_set(
   const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit, stratus_light_arguments* a);
 
+/* The lights of first hits, which are solids. */
+typedef struct stratus_lamps {
+  const stratus_shading* shading;
+  stratus_light lights[STRATUS_LIGHTS_MAX]; /* directions have length 1 */
+  int count;
+} stratus_lamps;
+
+/* lamps.c: sets the lights; the shading is borrowed. */
+void stratus_lamps_set(const stratus_camera* camera, const stratus_shading* shading, stratus_lamps* lamps);
+/* Lights the colour of a solid at a point. normal, and the ray's direction: of length 1. */
+void stratus_lamps_shine(
+  const stratus_lamps* lamps, const double point[3], const double normal[3], const double direction[3], double rgb[3]);
+
 #endif

@@ -4,6 +4,7 @@
 #ifndef STRATUS_FIRST_HIT_PICTURE_H
 #define STRATUS_FIRST_HIT_PICTURE_H
 
+#include "lights.h"
 #include "ray_caster.h"
 #include "tree.h"
 #include "voxels.h"
@@ -71,8 +72,7 @@ typedef struct stratus_shader {
   double index_to_world[16], world_to_index[16];
   double face[3][3];                        /* world normal of a voxel's upper face along each index axis */
   double plane[STRATUS_CLIP_PLANES_MAX][3]; /* world normals, pointing away from the kept side */
-  stratus_light lights[STRATUS_LIGHTS_MAX]; /* directions have length 1 */
-  int light_count;
+  stratus_lamps lamps;
 } stratus_shader;
 
 /* first_hit_shading.c; volume: of one component; borders: as in stratus_shader */

@@ -10,27 +10,6 @@
 
 /* ---- set-up */
 
-static void set_lights(stratus_shader* shader, const stratus_camera* camera, const stratus_shading* shading)
-{
-  shader->light_count = shading->light_count;
-  for (int i = 0; i < shader->light_count; ++i) {
-    shader->lights[i] = shading->lights[i];
-  }
-  if (shading->light_count < 0) {
-    stratus_light* light = &shader->lights[0];
-    *light = (stratus_light){ .color = { 1.0, 1.0, 1.0 }, .positional = !camera->parallel };
-    for (int axis = 0; axis < 3; ++axis) {
-      light->vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
-    }
-    shader->light_count = 1;
-  }
-  for (int i = 0; i < shader->light_count; ++i) {
-    if (!shader->lights[i].positional) {
-      (void)stratus_vector_normalize(shader->lights[i].vector);
-    }
-  }
-}
-
 void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, const stratus_voxel_borders* borders,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const double index_to_world[16],
   const double world_to_index[16])
@@ -54,7 +33,7 @@ void stratus_shader_set(stratus_shader* shader, const stratus_volume* volume, co
     (void)stratus_vector_normalize(shader->plane[p]);
   }
   if (options->light.shading.on) {
-    set_lights(shader, camera, &options->light.shading);
+    stratus_lamps_set(camera, &options->light.shading, &shader->lamps);
   }
 }
 
@@ -173,55 +152,6 @@ static double entry(const stratus_voxel_borders* borders, const stratus_ray* ray
   return fmin(t, ray->t_max);
 }
 
-/* ---- light */
-
-/* Return the fraction of the light that reaches a point. `to` leads from the point to the light, whose distance is `distance`. */
-static double reaching(const stratus_light* light, const double to[3], double distance)
-{
-  const double* a = light->attenuation;
-  double part = a[0] == 0.0 && a[1] == 0.0 && a[2] == 0.0 ? 1.0 : 1.0 / fmax(a[0] + distance * (a[1] + distance * a[2]), 1e-35);
-  if (light->cone_angle > 0.0 && light->cone_angle < 90.0) {
-    double axis[3] = { -light->axis[0], -light->axis[1], -light->axis[2] };
-    (void)stratus_vector_normalize(axis);
-    const double cosine = stratus_vector_dot(axis, to);
-    part *= cosine >= cos(light->cone_angle * 0.017453292519943295) ? pow(cosine, light->cone_exponent) : 0.0;
-  }
-  return part;
-}
-
-static void illuminate(
-  const stratus_shader* shader, const double point[3], const double normal[3], const double direction[3], double rgb[3])
-{
-  const stratus_shading* shading = &shader->options->light.shading;
-  double light[3] = { shading->ambient, shading->ambient, shading->ambient }, gloss[3] = { 0.0, 0.0, 0.0 };
-  for (int i = 0; i < shader->light_count; ++i) {
-    double to[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      to[axis] = shader->lights[i].vector[axis] - (shader->lights[i].positional ? point[axis] : 0.0);
-    }
-    const double distance = shader->lights[i].positional ? stratus_vector_normalize(to) : 1.0;
-    if (distance == 0.0) {
-      memcpy(to, normal, sizeof to); /* the light is at the hit */
-    }
-    const double cosine = stratus_vector_dot(normal, to);
-    if (!(cosine > 0.0)) {
-      continue;
-    }
-    const double mirrored =
-      stratus_vector_dot(to, direction) - 2.0 * cosine * stratus_vector_dot(normal, direction); /* R . V, with V = -direction */
-    const double shine = shading->specular > 0.0 && mirrored > 0.0 ? shading->specular * pow(mirrored, shading->specular_power) : 0.0;
-    const double part = shader->lights[i].positional ? reaching(&shader->lights[i], to, distance) : 1.0;
-    const double* specular_color = shader->lights[i].separate_specular ? shader->lights[i].specular_color : shader->lights[i].color;
-    for (int c = 0; c < 3; ++c) {
-      light[c] += part * shading->diffuse * cosine * shader->lights[i].color[c];
-      gloss[c] += part * shine * specular_color[c];
-    }
-  }
-  for (int c = 0; c < 3; ++c) {
-    rgb[c] = rgb[c] * light[c] + gloss[c];
-  }
-}
-
 void stratus_shader_apply(
   const stratus_shader* shader, const stratus_ray* ray, uint32_t cut, const int32_t voxel[3], float rgba[4], float* depth)
 {
@@ -245,7 +175,7 @@ void stratus_shader_apply(
         normal[axis] = (face & 1 ? 1.0 : -1.0) * shader->face[face / 2][axis];
       }
     }
-    illuminate(shader, point, normal, direction, shown);
+    stratus_lamps_shine(&shader->lamps, point, normal, direction, shown);
   }
   for (int c = 0; c < 3; ++c) {
     rgba[c] = (float)fmin(fmax(shown[c], 0.0), 1.0);

@@ -17,7 +17,7 @@ bool stratus_kept_is(stratus_mode mode)
 stratus_mode stratus_kept_mode(const stratus_ray_cast_input* input)
 {
   static const stratus_mode of_mesh[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
-    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE, STRATUS_MODE_SLICE };
+    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE, STRATUS_MODE_SLICE, STRATUS_MODE_FIRST_HIT };
   if (!input->tetra) {
     return input->options ? input->options->mode : STRATUS_MODE_COMPOSITE;
   }

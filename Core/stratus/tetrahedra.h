@@ -28,13 +28,17 @@ typedef enum stratus_tetra_mode {
   STRATUS_TETRA_ISOSURFACE,
   /* The values on the surface `slice`, in their colour and opacity (not per length). Points behind one another are blended. The surface is
    * exact, too. */
-  STRATUS_TETRA_SLICE
+  STRATUS_TETRA_SLICE,
+  /* The first place along a ray where the field's opacity is above 0, as a lit, opaque solid. Values of cells: the first such cell. Values
+   * of points: the place within a cell where its linear field begins to show. */
+  STRATUS_TETRA_FIRST_HIT
 } stratus_tetra_mode;
 
 /* Modes average and additive use each value as a fraction of the range of the values that show, and limit the result to 1. They are opaque:
  * additive wherever a ray meets a cell, average wherever a value counts. */
 
-/* Return a mode's name: "composite", "maximum", "minimum", "average", "additive", "isosurface" or "slice"; "unknown" for other numbers. */
+/* Return a mode's name: "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice" or "first-hit"; "unknown" for other
+ * numbers. */
 STRATUS_API const char* stratus_tetra_mode_name(stratus_tetra_mode mode);
 
 #define STRATUS_TETRA_CLIP_PLANES_MAX 6
@@ -82,18 +86,22 @@ typedef struct stratus_tetra_options {
   int contour_count;                           /* isosurface: 1..16; other modes ignore it. Default 0. */
   double contours[STRATUS_TETRA_CONTOURS_MAX]; /* finite, in any order */
   stratus_slice slice;                         /* the surface of mode slice. Default: no surface, which mode slice refuses. */
-  /* Composite and isosurface, by marching. 1: `shading` lights the samples. Default 0. The gradient of a cell is constant. A point's
-   * gradient is the mean over its cells, weighted by their volumes. Between points the gradient is interpolated as values are, so that
-   * light is smooth across cells. Values of cells are first averaged at points, in the same way. */
+  /* Composite, isosurface and first hits, by marching. 1: `shading` lights the samples or solids. Default 0. The gradient of a cell is
+   * constant. A point's gradient is the mean over its cells, weighted by their volumes. Between points the gradient is interpolated as
+   * values are, so that light is smooth across cells. Values of cells are first averaged at points, in the same way. */
   int shade;
   stratus_shading shading; /* `on` is not read */
+  /* First hits, if `shade` is 1; default faces: the normal of the cell's face by which the ray enters, or of the surface on which the field
+   * of values of points begins to show, which is flat in each cell. Gradient: the interpolated gradient, or that normal where the gradient
+   * is 0. Where a clip plane or the crop cuts the hit cell, the hit has the normal of the plane that cuts. */
+  stratus_normals normals;
   /* Composite, with a gradient opacity F, by marching. 0 (default): F multiplies the optical depth; a value of opacity 1 stays opaque if F
    * is above 0. Greater than 0: F multiplies the opacity of a segment of this world length. Less than 0: F multiplies the opacity of a
    * segment of half a spacing in the world. Finite. A spacing is the edge of a cube that six cells of the mean volume fill. The gradient's
    * magnitude is in values per spacing, whatever the mesh's matrix. */
   double gradient_distance;
-  /* Values of several components, by marching. Isosurface and slice do not draw them, and only composite draws dependent ones: other
-   * requests give STRATUS_UNSUPPORTED. A value that is not finite in any component hides its cells.
+  /* Values of several components, by marching. Isosurface, slice and first hits do not draw them, and only composite draws dependent ones:
+   * other requests give STRATUS_UNSUPPORTED. A value that is not finite in any component hides its cells.
    *
    * Composite, 0 (default): each component is a medium with its own transfer function. Optical depths, times the functions' weights, and
    * emitted light add up. In other modes each independent component is drawn by itself. Their premultiplied colours, times the functions'

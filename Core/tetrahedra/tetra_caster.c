@@ -76,8 +76,12 @@ void stratus_tetra_caster_destroy(stratus_tetra_caster* caster)
 
 static stratus_status check_options(stratus_context* context, const stratus_tetra_options* options)
 {
-  if ((unsigned)options->mode > STRATUS_TETRA_SLICE) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_SLICE);
+  if ((unsigned)options->mode > STRATUS_TETRA_FIRST_HIT) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_FIRST_HIT);
+  }
+  if ((unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "normals %d outside 0..%d", (int)options->normals, STRATUS_NORMALS_GRADIENT);
   }
   if ((unsigned)options->method > STRATUS_TETRA_METHOD_PROJECT) {
     return stratus_fail(
@@ -287,8 +291,13 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
     return STRATUS_OK;
   }
   TRY(stratus_tetra_choose(caster, mesh, transfer, camera, options, image, report));
-  const bool marches = report->method == STRATUS_TETRA_METHOD_MARCH;
-  TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, image, marches, &caster->buffers, &frame));
+  const bool marches = report->method == STRATUS_TETRA_METHOD_MARCH, hits = options->mode == STRATUS_TETRA_FIRST_HIT;
+  stratus_image marched = *image;
+  if (hits) { /* rays store cells in place of colours */
+    marched.depth = NULL;
+    marched.rgba8 = NULL;
+  }
+  TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, &marched, marches, &caster->buffers, &frame));
   frame.table = caster->look.table;
   frame.march_sums = caster->look.sums;
   stratus_tetra_frame_shade(&frame, options);
@@ -298,7 +307,11 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   stratus_tetra_frame_light(&frame, caster, mesh, transfer, options);
   stratus_tetra_frame_components(&frame, caster, options);
   report->transform_ms = stratus_now_ms() - start;
-  return marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report);
+  TRY(marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report));
+  if (hits) {
+    stratus_tetra_hits_shade(&frame, caster, mesh, transfer, options, image);
+  }
+  return STRATUS_OK;
 }
 
 static stratus_status draw_component(stratus_tetra_caster* caster, int component, const stratus_mesh* mesh,

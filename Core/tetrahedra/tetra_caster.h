@@ -179,6 +179,14 @@ bool stratus_tetra_modes_march(const stratus_tetra_options* options);
  * count. A value is a fraction of the range of `values`. */
 stratus_status stratus_tetra_value_sums(
   stratus_context* context, const stratus_table* table, const stratus_table_values* values, const double range[2], int32_t** sums);
+/* Numbers of entries for first hits, where stratus_tetra_sums() has those of opaque entries: the next that shows upwards, or the table's
+ * size; the next downwards, or -1. The rest is 0. */
+stratus_status stratus_tetra_shown_sums(stratus_context* context, const stratus_table* table, int32_t** sums);
+/* Get the planes that cut rays, in the world: clip planes, and the finite sides of the crop's box. Returns their number. */
+int stratus_tetra_planes(const stratus_mesh* mesh, const stratus_tetra_options* options, double planes[TETRA_PLANES][4]);
+/* tetra_first_hit.c: turns the cells that rays have stored in the image into the colours and depths of their hits. */
+void stratus_tetra_hits_shade(const stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh,
+  const stratus_transfer* transfer, const stratus_tetra_options* options, const stratus_image* image);
 /* Sets mode, slice, contours and planes of a frame whose table is set. */
 void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options);
 void stratus_tetra_frame_slice(stratus_tetra_frame* frame, const stratus_tetra_options* options);

@@ -25,7 +25,7 @@ static stratus_material material_of(const stratus_mesh* mesh, const stratus_tetr
 
 static bool lights(const stratus_tetra_options* options)
 {
-  return options->mode == STRATUS_TETRA_COMPOSITE || options->mode == STRATUS_TETRA_ISOSURFACE;
+  return options->mode == STRATUS_TETRA_COMPOSITE || options->mode == STRATUS_TETRA_ISOSURFACE || options->mode == STRATUS_TETRA_FIRST_HIT;
 }
 
 static bool thins(const stratus_transfer* transfer, const stratus_tetra_options* options)
@@ -40,7 +40,8 @@ bool stratus_tetra_light_wanted(const stratus_transfer* transfer, const stratus_
 
 unsigned stratus_tetra_light_mask(const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options)
 {
-  const int count = lights(options) ? stratus_tetra_component_count(mesh) : 0;
+  const bool faces = options->mode == STRATUS_TETRA_FIRST_HIT && options->normals != STRATUS_NORMALS_GRADIENT;
+  const int count = lights(options) && !faces ? stratus_tetra_component_count(mesh) : 0;
   unsigned mask = 0;
   for (int c = options->dependent && count > 0 ? count - 1 : 0; c < count; ++c) {
     const bool counts = material_of(mesh, options, c).shade || thins(transfers + (options->dependent ? 0 : c), options);
@@ -232,7 +233,7 @@ void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_c
   stratus_tetra_arguments* a = &frame->arguments;
   const stratus_tetra_gradients* g = &caster->gradients;
   const unsigned mask = stratus_tetra_light_mask(mesh, transfers, options);
-  frame->lit = mask != 0;
+  frame->lit = mask != 0 && options->mode != STRATUS_TETRA_FIRST_HIT; /* hits are lit afterwards */
   if (!frame->lit) {
     return;
   }

@@ -46,8 +46,9 @@ stratus_status stratus_tetra_look_make(stratus_context* context, const stratus_t
   TRY_CLEANUP(stratus_table_create_fine(context, transfer, values,
     mode == STRATUS_TETRA_COMPOSITE ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT,
     mode == STRATUS_TETRA_COMPOSITE ? 1.0 : transfer->unit_distance, ENTRIES, &made->table));
-  TRY_CLEANUP(adds ? stratus_tetra_value_sums(context, made->table, values, range, &made->sums)
-                   : stratus_tetra_sums(context, made->table, &made->sums));
+  TRY_CLEANUP(adds                      ? stratus_tetra_value_sums(context, made->table, values, range, &made->sums)
+      : mode == STRATUS_TETRA_FIRST_HIT ? stratus_tetra_shown_sums(context, made->table, &made->sums)
+                                        : stratus_tetra_sums(context, made->table, &made->sums));
   return STRATUS_OK;
 cleanup:
   stratus_tetra_look_drop(context, made);

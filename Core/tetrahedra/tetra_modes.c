@@ -16,7 +16,7 @@ _Static_assert(STRATUS_TETRA_CLIP_PLANES_MAX + 6 == TETRA_PLANES, "as many as th
 
 const char* stratus_tetra_mode_name(stratus_tetra_mode mode)
 {
-  static const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice" };
+  static const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice", "first-hit" };
   return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
 }
 
@@ -108,12 +108,27 @@ stratus_status stratus_tetra_value_sums(
   return STRATUS_OK;
 }
 
+stratus_status stratus_tetra_shown_sums(stratus_context* context, const stratus_table* table, int32_t** sums)
+{
+  const size_t size = (size_t)table->size;
+  void* memory = NULL;
+  TRY(stratus_allocate_zero(context, STRATUS_TETRA_SUMS * size, sizeof(int32_t), &memory));
+  *sums = memory;
+  int32_t *up = *sums + 8 * size, *down = up + size, last = -1;
+  for (int32_t entry = 0; entry < table->size; ++entry) {
+    up[entry] = table->next_shown[entry];
+    last = up[entry] == entry ? entry : last;
+    down[entry] = last;
+  }
+  return STRATUS_OK;
+}
+
 /* ---- arguments */
 
 void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options)
 {
   stratus_tetra_arguments* a = &frame->arguments;
-  static const int modes[] = { TETRA_LIGHT, TETRA_EXTREMES, TETRA_EXTREMES, TETRA_ADD, TETRA_ADD, TETRA_SURFACES, TETRA_SLICE };
+  static const int modes[] = { TETRA_LIGHT, TETRA_EXTREMES, TETRA_EXTREMES, TETRA_ADD, TETRA_ADD, TETRA_SURFACES, TETRA_SLICE, TETRA_HITS };
   a->mode = modes[options->mode];
   a->sign = options->mode == STRATUS_TETRA_MINIMUM ? -1.0f : 1.0f;
 }
@@ -180,21 +195,30 @@ static void add_plane(stratus_tetra_frame* frame, const double n[3], double d)
   ++frame->arguments.plane_count;
 }
 
-void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options)
+int stratus_tetra_planes(const stratus_mesh* mesh, const stratus_tetra_options* options, double planes[TETRA_PLANES][4])
 {
+  int count = options->clip_plane_count;
   double inverse[16];
-  frame->arguments.plane_count = 0;
-  for (int p = 0; p < options->clip_plane_count; ++p) {
-    add_plane(frame, options->clip_planes[p], options->clip_planes[p][3]);
-  }
+  memcpy(planes, options->clip_planes, (size_t)count * sizeof *planes);
   if (!options->crop || !stratus_matrix_invert_affine(mesh->matrix, inverse)) {
-    return; /* stratus_mesh_check() refuses such a matrix */
+    return count; /* stratus_mesh_check() refuses such a matrix */
   }
   for (int side = 0; side < 6; ++side) {
     const double *row = inverse + 4 * (side / 2), sign = side % 2 == 0 ? 1.0 : -1.0, bound = options->crop_bounds[side];
-    const double normal[3] = { sign * row[0], sign * row[1], sign * row[2] };
+    const double plane[4] = { sign * row[0], sign * row[1], sign * row[2], sign * (row[3] - bound) };
     if (isfinite(bound)) {
-      add_plane(frame, normal, sign * (row[3] - bound));
+      memcpy(planes[count++], plane, sizeof plane);
     }
+  }
+  return count;
+}
+
+void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options)
+{
+  double planes[TETRA_PLANES][4];
+  const int count = stratus_tetra_planes(mesh, options, planes);
+  frame->arguments.plane_count = 0;
+  for (int p = 0; p < count; ++p) {
+    add_plane(frame, planes[p], planes[p][3]);
   }
 }

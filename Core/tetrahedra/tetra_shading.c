@@ -38,6 +38,15 @@ void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_o
   arguments->picture.want_samples = image->samples != NULL;
   arguments->picture.want_bytes = image->rgba8 != NULL;
   stratus_tetra_frame_mode(frame, options);
-  const bool gathers = arguments->mode == TETRA_LIGHT || arguments->mode == TETRA_SURFACES || arguments->mode == TETRA_SLICE;
-  arguments->termination = gathers ? (float)termination_of(options) : 0.0f;
+  switch (arguments->mode) {
+    case TETRA_EXTREMES:
+    case TETRA_ADD:
+      arguments->termination = 0.0f;
+      break;
+    case TETRA_HITS:
+      arguments->termination = (float)TERMINATION_MOST;
+      break;
+    default:
+      arguments->termination = (float)termination_of(options);
+  }
 }

@@ -74,8 +74,7 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
                    Or a bar of tqdm's protocol
 
     Cells of unstructured and structured grids have no interpolation, structure, sampling, sample_distance, jitter, audit, labels, looks,
-    function_2d and surface, and no modes first-hit and slice, but a method: auto, march or project. A picture that shows
-    nothing gives one warning, NothingShown, that names the reason.
+    and function_2d, but a method: auto, march or project. A picture that shows nothing gives one warning, NothingShown, that names the reason.
     """
     drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix)
     return drawn.render(opacity, color, size, camera, **options)

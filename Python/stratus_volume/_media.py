@@ -194,6 +194,16 @@ def surface_of(surface):
     return result
 
 
+def set_surface(options, mode, surface, opacity):
+    """Sets the surface of mode slice. Returns the opacity: of mode slice 1 for all values, unless it is given."""
+    if mode == "slice":
+        options.slice = surface_of(surface)
+        return [(0, 1)] if opacity is None else opacity
+    if surface is not None:
+        raise ValueError(f"surface is of mode slice, the mode is {mode}")
+    return opacity
+
+
 def _direction(vector, name):
     own = numbers(vector, 3, name)
     length = length_of(own)

@@ -10,7 +10,7 @@ from . import _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library, type_of
 from ._grid import affine, chosen, of_package
 from ._look import Image, crop_box, set_contours, set_planes, value_interval
-from ._media import explain_each, functions_of, materials_of
+from ._media import explain_each, functions_of, materials_of, set_surface
 from ._values import (Spread, explain, length_of, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled,
                       unit_length, visible, warn)
 
@@ -145,17 +145,17 @@ class Tetrahedra:
 
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", method="auto", tolerance=None,
                shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, opaque_depth=None, progress=None,
-               dependent=False, weights=None, mean_components=False):
+               dependent=False, weights=None, mean_components=False, surface=None):
         """Draws a picture and returns a Rendering: rgba, depth, counters. See `render` for the parameters.
 
         method  march from cell to cell, project sorted cells, or auto: the method of the lower expected cost
-        mode    composite, maximum, minimum, average, additive or isosurface
+        mode    composite, maximum, minimum, average, additive, isosurface, slice or first-hit
         """
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_tetra_report()
         with self.context.lock:
             asked = AskedOfCells(self, opacity, color, unit_distance, mode, method, tolerance, shade, gradient_opacity, contours, crop, clip_planes,
-                                 average_range, dependent, weights, mean_components)
+                                 average_range, dependent, weights, mean_components, surface)
             if not self.nothing:
                 view = _view.make(self.context, camera, self.bounds, size)
                 self.context.call(library.stratus_tetra_caster_render, self._caster.pointer, ctypes.byref(asked.mesh), asked.functions,
@@ -169,7 +169,7 @@ class AskedOfCells:
 
     def __init__(self, drawn, opacity=None, color=None, unit_distance=None, mode="composite", method="auto", tolerance=None, shade=False,
                  gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, dependent=False, weights=None,
-                 mean_components=False):
+                 mean_components=False, surface=None):
         self.drawn, self.mode, self.options = drawn, mode, library.stratus_tetra_options_default()
         options = self.options
         options.mode = choice(mode, "stratus_tetra_mode", "STRATUS_TETRA_", "mode")
@@ -177,7 +177,8 @@ class AskedOfCells:
         if tolerance is not None:
             options.tolerance = number(tolerance, "tolerance")
         options.dependent, options.mean_components = int(bool(dependent)), int(bool(mean_components))
-        self._materials = materials_of(options, shade, drawn.components)
+        self._materials = materials_of(options, True if mode == "first-hit" and shade is False else shade, drawn.components)
+        opacity = set_surface(options, mode, surface, opacity)
         set_planes(options, clip_planes, c.CONSTANTS["STRATUS_TETRA_CLIP_PLANES_MAX"])
         if crop is not None:
             options.crop, options.crop_bounds[:] = 1, crop_box(crop)

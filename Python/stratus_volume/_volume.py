@@ -7,7 +7,7 @@ from . import _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library
 from ._grid import affine, grid_of
 from ._look import Image, crop_box, set_contours, set_planes, set_shading, value_interval
-from ._media import Function2D, Labels, explain_each, functions_of, looks_of, materials_of, surface_of
+from ._media import Function2D, Labels, explain_each, functions_of, looks_of, materials_of, set_surface
 from ._values import explain, length_of, number, own_points, pixels, positive, unit_length, warn
 
 
@@ -95,11 +95,7 @@ class Asked:
             options.clipping.crop, options.clipping.crop_bounds[:] = 1, grid.crop(crop_box(crop))
         if unit_distance is not None:
             positive(unit_distance, "unit_distance")
-        if mode == "slice":
-            options.slice = surface_of(surface)
-            opacity = [(0, 1)] if opacity is None else opacity
-        elif surface is not None:
-            raise ValueError(f"surface is of mode slice, the mode is {mode}")
+        opacity = set_surface(options, mode, surface, opacity)
         looks = looks_of(labels, looks)
         self._labels = None if labels is None else Labels(labels, grid)
         if looks:

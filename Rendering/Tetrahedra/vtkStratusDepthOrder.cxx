@@ -68,8 +68,8 @@ private:
 
 Kind FindKind(vtkVolume* volume)
 {
-  if (vtkStratusTetrahedraMapper::SafeDownCast(volume->GetMapper())) {
-    return vtkStratusDepthOrder::MEDIUM;
+  if (auto* mesh = vtkStratusTetrahedraMapper::SafeDownCast(volume->GetMapper())) {
+    return mesh->GetRenderMode() == vtkStratusTetrahedraMapper::FIRST_HIT_MODE ? vtkStratusDepthOrder::SOLID : vtkStratusDepthOrder::MEDIUM;
   }
   const Kind kind = TheMixer ? TheMixer->GetKind(volume) : vtkStratusDepthOrder::OTHER;
   return kind == vtkStratusDepthOrder::OTHER && !volume->GetMapper() ? vtkStratusDepthOrder::NOTHING : kind;

@@ -240,6 +240,8 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   const stratus_tetra_report& report = this->Internal->Report;
+  os << indent << "RenderMode: " << (this->RenderMode == FIRST_HIT_MODE ? "FirstHit" : "Composite") << "\n";
+  os << indent << "Normals: " << (this->Normals == GRADIENT_NORMALS ? "Gradient" : "Faces") << "\n";
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "ComponentMixing: " << this->ComponentMixing << "\n";

@@ -33,9 +33,10 @@
  *   average and additive intensity, isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
  *   tetrahedron), and slices (SliceFunction of the property, as vtkStratusVolumeMapper takes it). All but composite and maximum are
  *   marched: PROJECT_METHOD refuses them, AUTO_METHOD marches;
- * - light (Shade; the renderer's lights and TwoSidedLighting), in composite and isosurface, as vtkStratusVolumeMapper takes it. In a
- *   tetrahedron the field's gradient is constant; each point has the mean of its tetrahedra's, weighted by volume, and between points it is
- *   interpolated, so that light is smooth across cells. Cell scalars are averaged at points for it. Independent components are lit and
+ * - first hits (RenderModeToFirstHit): lit, opaque solids, which write their depth. They are marched;
+ * - light (Shade; the renderer's lights and TwoSidedLighting), in composite, isosurface and first hits, as vtkStratusVolumeMapper takes it.
+ * In a tetrahedron the field's gradient is constant; each point has the mean of its tetrahedra's, weighted by volume, and between points it
+ * is interpolated, so that light is smooth across cells. Cell scalars are averaged at points for it. Independent components are lit and
  *   thinned each by its own gradient, and have a Shade and a material of their own; dependent ones by the last one's;
  * - gradient opacity in composite, in values per mean spacing: the edge of a cube that six tetrahedra of the mean volume fill. It
  * multiplies the optical depth, or the opacity (GradientOpacityDistance). Light and gradient opacity are marched;
@@ -47,11 +48,11 @@
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
  * A setting that has no meaning here is left out, as VTK's mappers leave it out, and one warning a mapper says so: Shade outside of
- * composite and isosurface, gradient opacity outside of composite, functions of two variables and of labels, transforms of clipping planes
- * and of SliceFunction.
+ * composite, isosurface and first hits, gradient opacity outside of composite, functions of two variables and of labels, transforms of
+ * clipping planes and of SliceFunction.
  *
- * All else (isosurfaces and slices of several components, dependent ones in other modes than composite) is refused by an error, and nothing
- * is drawn.
+ * All else (isosurfaces, slices and first hits of several components, dependent ones in other modes than composite) is refused by an error,
+ * and nothing is drawn.
  *
  * Volumes of one renderer are drawn by depth, as vtkStratusVolumeMapper describes. A mesh is mixed with the volumes that overlap it if one
  * of them has a vtkStratusVolumeMapper, by method auto or march and without light.
@@ -97,6 +98,31 @@ public:
    */
   vtkSetClampMacro(Termination, double, 0.0, 1.0);
   vtkGetMacro(Termination, double);
+  //@}
+
+  enum RenderModeType { COMPOSITE_MODE, FIRST_HIT_MODE };
+  //@{
+  /**
+   * Set/Get the render mode. COMPOSITE_MODE draws by the blend mode. FIRST_HIT_MODE shows the first place of opacity > 0 on each ray as a
+   * lit, opaque solid: of cell scalars the first cell that shows, of point scalars the place where the linear field begins to show. Default
+   * COMPOSITE_MODE.
+   */
+  vtkSetClampMacro(RenderMode, int, COMPOSITE_MODE, FIRST_HIT_MODE);
+  vtkGetMacro(RenderMode, int);
+  void SetRenderModeToComposite() { this->SetRenderMode(COMPOSITE_MODE); }
+  void SetRenderModeToFirstHit() { this->SetRenderMode(FIRST_HIT_MODE); }
+  //@}
+
+  enum NormalsType { FACE_NORMALS, GRADIENT_NORMALS };
+  //@{
+  /**
+   * Set/Get the normals of first hits: of the cell's face by which a ray enters and, where a field of points begins to show within a cell,
+   * of the flat surface on which it does; or the gradient between points, which is smooth across cells. Default FACE_NORMALS.
+   */
+  vtkSetClampMacro(Normals, int, FACE_NORMALS, GRADIENT_NORMALS);
+  vtkGetMacro(Normals, int);
+  void SetNormalsToFaces() { this->SetNormals(FACE_NORMALS); }
+  void SetNormalsToGradient() { this->SetNormals(GRADIENT_NORMALS); }
   //@}
 
   //@{
@@ -305,6 +331,8 @@ protected:
   ~vtkStratusTetrahedraMapper() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
 
+  int RenderMode = COMPOSITE_MODE;
+  int Normals = FACE_NORMALS;
   double ImageErrorTolerance = 0.001;
   double Termination = 0.0;
   double GradientOpacityDistance = 0.0;

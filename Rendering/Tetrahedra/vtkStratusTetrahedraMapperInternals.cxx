@@ -47,6 +47,8 @@ bool vtkStratusTetrahedraMapper::Internals::CheckMapper(std::string& error) cons
 {
   if (this->Mapper->BlendMode < COMPOSITE_BLEND || this->Mapper->BlendMode > SLICE_BLEND) {
     error = "blend mode " + std::to_string(this->Mapper->BlendMode) + " is not supported, only composite (0) to slice (6) are";
+  } else if (this->Mapper->RenderMode == FIRST_HIT_MODE && this->Mapper->BlendMode != COMPOSITE_BLEND) {
+    error = "blend mode " + std::to_string(this->Mapper->BlendMode) + " is not supported in first hits, only composite (0) is";
   } else if (!std::isfinite(this->Mapper->GradientOpacityDistance)) {
     error = "GradientOpacityDistance is " + std::to_string(this->Mapper->GradientOpacityDistance) +
       ", it must be finite: 0 for optical depths, below 0 for half of the mean spacing";
@@ -94,7 +96,9 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
   }
   bool alike = true;
   const bool lit = vtkStratusSetMaterials(property, media, this->Materials.data(), alike);
-  if (lit && options.mode != STRATUS_TETRA_COMPOSITE && options.mode != STRATUS_TETRA_ISOSURFACE) {
+  options.normals = static_cast<stratus_normals>(this->Mapper->Normals);
+  if (lit && options.mode != STRATUS_TETRA_COMPOSITE && options.mode != STRATUS_TETRA_ISOSURFACE &&
+    options.mode != STRATUS_TETRA_FIRST_HIT) {
     this->LeftOut.AddUnused("Shade", stratus_tetra_mode_name(options.mode));
     options.shade = 0;
     return true;
@@ -106,7 +110,9 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
 
 bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
 {
-  options.mode = static_cast<stratus_tetra_mode>(this->Mapper->BlendMode); // both count from composite to slice alike
+  options.mode = this->Mapper->RenderMode == FIRST_HIT_MODE
+    ? STRATUS_TETRA_FIRST_HIT
+    : static_cast<stratus_tetra_mode>(this->Mapper->BlendMode); // both count from composite to slice alike
   std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.average_range);
   vtkContourValues* contours = options.mode == STRATUS_TETRA_ISOSURFACE ? property->GetIsoSurfaceValues() : nullptr;
   const int count = contours ? contours->GetNumberOfContours() : 0;
@@ -363,6 +369,7 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   pixels.Window[1] = this->Picture.Size[0];
   pixels.Window[3] = this->Picture.Size[1];
   pixels.Depth = &this->Depth;
+  pixels.WritesDepth = this->Options.mode == STRATUS_TETRA_FIRST_HIT;
   if (renderer->GetSelector()) {
     this->Finder.Set(this->Mapper->GetDataObjectInput(), prop->GetMatrix());
     pixels.Finder = &this->Finder;

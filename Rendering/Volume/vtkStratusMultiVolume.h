@@ -17,8 +17,7 @@
  * vtkStratusVolumeMapper. Where there is a mesh the host draws.
  *
  * In maximum, minimum, average and additive intensity and in first hits, which all volumes must then have, each volume is drawn by itself,
- * and the picture shows the best of the values that show, the sum, the mean over the lengths in all volumes, or the nearest hit. Meshes
- * have no first hits.
+ * and the picture shows the best of the values that show, the sum, the mean over the lengths in all volumes, or the nearest hit.
  *
  * In composite mode volumes support one to four components, point and cell data, functions of two variables (TF_2D), light, gradient
  * opacity, binary masks and label maps, crop boxes (the inside region, or all) and up to six clipping planes a volume. The prop supports

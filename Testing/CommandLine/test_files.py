@@ -183,14 +183,13 @@ def test_kinds():
 def test_modes_of_grids():
     seen = {picture("stretched.vts")}
     for words in (("maximum",), ("minimum",), ("average",), ("additive",), ("isosurface", "--contours", "12,20"),
-                  ("average", "--average-range", "5,9")):
+                  ("average", "--average-range", "5,9"), ("slice", "--slice", "1,1,2,0,0.2,1"), ("first-hit",)):
         expect(0, f"mode +{words[0]}$", "render", "stretched.vts", "-o", "out.png", *LOOK, "--mode", *words)
         seen.add(open("out.png", "rb").read())
     seen.add(picture("stretched.vts", "--crop", "1,3,0,3,0,5"))
     seen.add(picture("stretched.vts", "--shade"))
-    if len(seen) != 9:
-        fail(f"of 9 pictures in other modes, cropped and lit, {len(seen)} differ")
-    expect(2, "--mode first-hit is for images", "render", "stretched.vts", "-o", "no.png", "--mode", "first-hit")
+    if len(seen) != 11:
+        fail(f"of 11 pictures in other modes, cropped and lit, {len(seen)} differ")
     for words in (("--audit",), ("--nearest",), ("--crop", "1,3,0,3,0,5", "--crop-regions", "1")):
         expect(2, "are for images", "render", "stretched.vts", "-o", "no.png", *words)
 

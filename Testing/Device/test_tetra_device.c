@@ -59,6 +59,7 @@ static void make_case(stratus_context* context, tetra_case* c, uint32_t seed, co
     c->camera.up[axis] *= wider;
   }
   static const stratus_tetra_mode modes[12] = { [2] = STRATUS_TETRA_SLICE,
+    [3] = STRATUS_TETRA_FIRST_HIT,
     [4] = STRATUS_TETRA_MAXIMUM,
     [5] = STRATUS_TETRA_AVERAGE,
     [8] = STRATUS_TETRA_ADDITIVE,

@@ -4,6 +4,7 @@
 #include "tetrahedra_scene.h"
 
 #include "vtkContourValues.h"
+#include "vtkMatrix4x4.h"
 #include "vtkPlane.h"
 #include "vtkSphere.h"
 
@@ -71,6 +72,59 @@ void PlanesAndBoxes()
   }
 }
 
+// First hits are solids: opaque, lit, at their depth, which ends what is behind.
+void FirstHits()
+{
+  GridScene scene;
+  vtkVolumeProperty* look = scene.Volume->GetProperty();
+  scene.Opacity->RemoveAllPoints(); // the field 0.1 x + 0.05 z shows from 0.4 on
+  scene.Opacity->AddPoint(0.4, 0.0);
+  scene.Opacity->AddPoint(1.0, 0.5);
+  scene.Tetrahedra->SetRenderModeToFirstHit();
+  look->ShadeOn();
+  scene.Look(215, 20); // from where the field does not show
+  const std::vector<float> faces = scene.GridPicture();
+  scene.Tetrahedra->SetNormalsToGradient();
+  const std::vector<float> smooth = scene.GridPicture();
+  vtkFloatArray* depth = vtkFloatArray::SafeDownCast(scene.Tetrahedra->GetLastImage()->GetPointData()->GetArray("Depth"));
+  const stratus_camera camera = ReferenceCamera(scene.Renderer);
+  const int width = scene.Renderer->GetSize()[0], height = scene.Renderer->GetSize()[1];
+  int inside = 0, wrong = 0;
+  for (size_t p = 0; 4 * p < faces.size(); ++p) {
+    const double u = (2.0 * (p % width) + 1.0) / width - 1.0, v = (2.0 * (p / width) + 1.0) / height - 1.0;
+    double along[3], length = 0.0, local[4] = { 0, 0, 0, 1 };
+    CHECK(faces[4 * p + 3] == 0.0f || faces[4 * p + 3] == 1.0f, "alpha %g", faces[4 * p + 3]);
+    for (int a = 0; a < 3; ++a) {
+      along[a] = camera.forward[a] + u * camera.right[a] + v * camera.up[a];
+      length += along[a] * along[a];
+    }
+    if (faces[4 * p + 3] == 0.0f) {
+      continue;
+    }
+    for (int a = 0; a < 3; ++a) {
+      local[a] = camera.eye[a] + depth->GetValue(static_cast<vtkIdType>(p)) * along[a] / std::sqrt(length);
+    }
+    vtkNew<vtkMatrix4x4> inverse;
+    vtkMatrix4x4::Invert(scene.Volume->GetMatrix(), inverse);
+    inverse->MultiplyPoint(local, local);
+    const double value = 0.1 * local[0] + 0.05 * local[2];
+    const bool on = std::fabs(value - 0.4) < 1e-3;
+    inside += on;
+    bool side = false;
+    for (int a = 0; a < 3; ++a) {
+      side = side || std::fabs(local[a]) < 1e-3 || std::fabs(local[a] - Boxes) < 1e-3;
+    }
+    wrong += !(on || (side && value > 0.4));
+    // a linear field's gradient is the same by either kind of normals
+    for (size_t c = 0; on && !side && c < 3; ++c) {
+      CHECK(
+        std::fabs(faces[4 * p + c] - smooth[4 * p + c]) < 1e-3f, "light by cells %g, by points %g", faces[4 * p + c], smooth[4 * p + c]);
+    }
+  }
+  CHECK(inside > 500 && wrong == 0, "%d hits within cells, %d nowhere", inside, wrong);
+  CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
+}
+
 void WhatIsRefused()
 {
   GridScene scene;
@@ -91,6 +145,9 @@ void WhatIsRefused()
   refuses("0 contour values");
   scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetNumberOfContours(17);
   refuses("17 isosurface values");
+  scene.Tetrahedra->SetRenderModeToFirstHit();
+  refuses("blend mode 5 is not supported in first hits");
+  scene.Tetrahedra->SetRenderModeToComposite();
   scene.Tetrahedra->SetBlendMode(7);
   refuses("blend mode 7");
   scene.Tetrahedra->SetBlendModeToSlice();
@@ -111,6 +168,7 @@ int main()
 {
   Modes();
   PlanesAndBoxes();
+  FirstHits();
   WhatIsRefused();
   return Failures ? 1 : 0;
 }

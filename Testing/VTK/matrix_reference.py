@@ -100,9 +100,10 @@ class Mesh:
         for corner in range(4):
             numpy.add.at(sums, cells[:, corner], slopes * volume[:, None, None])
             numpy.add.at(weights, cells[:, corner], volume)
-        self.slopes = sums / weights[:, None, None]
+        self.slopes, self.own_slopes = sums / weights[:, None, None], slopes
 
-    def mix(self, table, points):
+    def find(self, points):
+        """The cell of each point, and the weights of its corners."""
         cube = numpy.clip(numpy.floor(points).astype(int), 0, scenes.POINTS - 2)
         choices = self.of[(cube[:, 2] * (scenes.POINTS - 1) + cube[:, 1]) * (scenes.POINTS - 1) + cube[:, 0]]
         best, kept, weights = numpy.full(len(points), -numpy.inf), numpy.zeros(len(points), int), numpy.zeros((len(points), 4))
@@ -112,7 +113,14 @@ class Mesh:
             w = numpy.concatenate([1 - last.sum(-1, keepdims=True), last], -1)
             better = (cell >= 0) & (w.min(-1) > best)
             best, kept, weights = numpy.where(better, w.min(-1), best), numpy.where(better, cell, kept), numpy.where(better[:, None], w, weights)
-        return numpy.einsum("pc,pc...->p...", weights, table[self.cells[kept]])
+        return kept, weights
+
+    def mix(self, table, points):
+        cell, weights = self.find(points)
+        return numpy.einsum("pc,pc...->p...", weights, table[self.cells[cell]])
+
+    def slope(self, points, component):
+        return self.own_slopes[self.find(points)[0], :, component]
 
     holds = Lattice.holds
 
@@ -423,15 +431,45 @@ def slices(layers, eyes, ways):
     return blend(len(eyes), *[numpy.concatenate(f) for f in zip(*found)])
 
 
+def solid_mesh(layer, m, eyes, ways):
+    """For each ray the first place where a mesh's field shows, and its colour. Samples find it roughly, bisection exactly. There the normal
+    is the cell's gradient or, where the ray's seen part begins, that of the box's side or the plane."""
+    ray, s, values = along([layer], eyes, ways)
+    at = numpy.flatnonzero(numpy.isfinite(values[0][:, m]) & (layer.look(values[0], m)[1] > 0))
+    at = at[numpy.unique(ray[at], return_index=True)[1]]
+    ray, high = ray[at], s[at].copy()
+    eyes, ways = eyes[ray], ways[ray]
+
+    def shows(s):
+        value = layer.value_at(eyes + s[:, None] * ways)
+        return numpy.isfinite(value[:, m]) & (layer.look(value, m)[1] > 0)
+
+    low = high - STEP
+    for _ in range(40):
+        middle = (low + high) / 2
+        seen = shows(middle)
+        low, high = numpy.where(seen, low, middle), numpy.where(seen, middle, high)
+    points = eyes + high[:, None] * ways
+    rgb = layer.look(layer.field.at(points), m)[0]
+    if "light" in layer.features:
+        normal = layer.field.slope(points + 1e-6 * ways, m)
+        corners = [layer.field.low, layer.field.high] + [numpy.full(3, c) for c in scenes.CROP if "crop" in layer.features]
+        planes = [(abs(points[:, axis] - corner[axis]), numpy.eye(3)[axis]) for corner in corners for axis in range(3)]
+        if "clip" in layer.features:
+            planes.append((abs((points - scenes.CLIP[0]) @ scenes.CLIP[1]), scenes.CLIP[1]))
+        for distance, plane in planes:
+            normal[distance < 1e-6] = plane
+        rgb = layer.lit_solid(ways, rgb, normal / numpy.linalg.norm(normal, axis=-1, keepdims=True))
+    return ray, high, numpy.ones(len(ray), bool), rgb
+
+
 def first_hits(layers, eyes, ways):
     """The box about the first value of opacity above 0, or of tetrahedra the first place of such a value."""
     light, nearest = numpy.zeros((len(eyes), 3)), numpy.full(len(eyes), numpy.inf)
     for layer in layers:
         field, m = layer.field, layer.media()[0]
         if isinstance(field, Mesh):
-            ray, s, values = along([layer], eyes, ways)
-            shows = numpy.isfinite(values[0][:, m]) & (layer.look(values[0], m)[1] > 0)
-            rgb = layer.look(values[0], m)[0]
+            ray, s, shows, rgb = solid_mesh(layer, m, eyes, ways)
         else:
             borders = [numpy.concatenate([[a[0] - (a[1] - a[0]) / 2], (a[1:] + a[:-1]) / 2, [a[-1] + (a[-1] - a[-2]) / 2]]) for a in field.axes]
             if layer.grid == "amr":

@@ -46,10 +46,10 @@ typedef struct stratus_tetra_passage {
   vfloat to, last;
   vmask seen; /* lanes that found a face to leave by */
   vfloat from, first;
+  vint name[3], fourth; /* of the face by which the ray entered, in the variant TETRA_LIT and of hits; of hits what they store last */
 #if TETRA_LIT
-  vfloat edge[3]; /* of the face by which the ray entered, as the next */
-  vint name[3];
-  vint cell; /* the one that was passed */
+  vfloat edge[3]; /* of that face */
+  vint cell;      /* the one that was passed */
 #endif
 } stratus_tetra_passage;
 
@@ -199,9 +199,14 @@ INLINE stratus_tetra_passage tetra_pass(
   passage.cell = r->cell;
   for (int i = 0; i < 3; ++i) {
     passage.edge[i] = r->edge[i];
-    passage.name[i] = r->name[i];
   }
 #endif
+  if (TETRA_LIT || a->mode == TETRA_HITS) {
+    for (int i = 0; i < 3; ++i) {
+      passage.name[i] = r->name[i];
+    }
+    passage.fourth = a->cell_values ? r->cell >> vi_set(3) : r->fourth;
+  }
   tetra_turn(r, drop, d, e);
   tetra_cross(r->edge, r->z, r->s, &passage.to, &passage.last);
   if (a->cell_values) {
@@ -240,6 +245,22 @@ INLINE void tetra_slice(CONSTANT stratus_tetra_arguments* a, const stratus_tetra
       tetra_surface(a, light, 0, met, color, v_fma(z, r->length, r->offset));
     }
   }
+}
+
+/* Ends rays at a cell of which a part from value `first` to `last` shows, and keeps the names of its points, first those of the face by
+ * which the ray entered. Of values of cells the last is the cell's number. */
+INLINE void tetra_hit(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_light* light,
+  const stratus_tetra_passage* passage, vfloat first, vfloat last, vmask mask)
+{
+  vint entry;
+  const vint from = table_entry(&a->table, scene->colors, first), to = table_entry(&a->table, scene->colors, last);
+  const vmask met = opaque_on_the_way(&a->table, scene->sums + 8 * a->table.entries, from, to, mask, &entry);
+  const vint plus = vi_set(TETRA_HIT_NAME);
+  light->red = v_select(met, v_from_bits(passage->name[0] + plus), light->red);
+  light->green = v_select(met, v_from_bits(passage->name[1] + plus), light->green);
+  light->blue = v_select(met, v_from_bits(passage->name[2] + plus), light->blue);
+  light->most = v_select(met, v_from_bits(passage->fourth + plus), light->most);
+  light->transparency = v_select(met, v_set(0.0f), light->transparency);
 }
 
 #if TETRA_LIT
@@ -355,6 +376,8 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
 #endif
   } else if (a->mode == TETRA_SLICE) {
     tetra_slice(a, scene, r, light, passage, begin, end, mask);
+  } else if (a->mode == TETRA_HITS) {
+    tetra_hit(a, scene, light, passage, first, last, mask);
   } else {
     stratus_tetra_place from = r->place, to;
     r->place = to = tetra_place(a, scene->sums, passage->last, passage->seen);

@@ -166,6 +166,9 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
         rgba[c] = largest[lane] > -LARGEST_FLOAT ? t->view->scene.colors[4 * entry[lane] + c] : 0.0f;
       }
     }
+    if (a->mode == TETRA_HITS) {
+      rgba[3] = rgba[3] > 0.0f ? largest[lane] : 0.0f;
+    }
     if (a->mode == TETRA_EXTREMES && a->kept > 0.0f) {
       const int found = largest[lane] > -LARGEST_FLOAT;
       rgba[0] = found ? a->sign * largest[lane] : 0.0f;
