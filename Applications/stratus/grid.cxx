@@ -16,10 +16,9 @@ namespace {
 stratus_tetra_mode mode_of(const cli::options& o)
 {
   if (o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest || o.audit || o.sample_distance != 0.0 ||
-    o.cell_error != 0.0 || o.crop_regions != STRATUS_CROP_INSIDE || !o.mask.empty() || o.jitter >= 0) {
+    o.cell_error != 0.0 || !o.mask.empty() || o.jitter >= 0) {
     throw cli::usage("'" + o.source +
-      "' is a grid of cells: structure, sampling, interpolation, sample distance, cell error, crop regions, mask, jitter and " +
-      "audit are for images");
+      "' is a grid of cells: structure, sampling, interpolation, sample distance, cell error, mask, jitter and " + "audit are for images");
   }
   for (int i = STRATUS_TETRA_COMPOSITE; i <= STRATUS_TETRA_FIRST_HIT; ++i) {
     const auto mode = static_cast<stratus_tetra_mode>(i);
@@ -117,6 +116,7 @@ void grid_drawing::draw(const stratus_image& image)
   how.method = o.tetra_method;
   how.tolerance = o.tolerance;
   how.crop = o.crop.empty() ? 0 : 1;
+  how.crop_regions = static_cast<uint32_t>(o.crop_regions);
   std::copy(o.crop.begin(), o.crop.end(), how.crop_bounds);
   std::copy(o.average.begin(), o.average.end(), how.average_range);
   how.contour_count = static_cast<int>(o.contours.size());

@@ -186,6 +186,7 @@ void several_drawing::draw(const stratus_image& image)
       one.tetra_options.tolerance = this->Options.tolerance;
       one.tetra_options.crop = n == 0 && !this->Options.crop.empty();
       std::copy(this->Options.crop.begin(), this->Options.crop.end(), one.tetra_options.crop_bounds);
+      one.tetra_options.crop_regions = static_cast<uint32_t>(this->Options.crop_regions);
       inputs[n].tetra = one.tetra;
       inputs[n].mesh = &one.mesh->view();
       inputs[n].tetra_options = &one.tetra_options;

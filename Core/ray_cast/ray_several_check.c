@@ -73,6 +73,10 @@ stratus_status stratus_several_check_mesh(stratus_context* context, int n, const
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has mode %s, which does not mix with composite, or at all", n,
       stratus_tetra_mode_name(options->mode));
   }
+  if (stratus_tetra_modes_regions(options)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several shows crop regions 0x%x, must be the inside (0x%x) or all", n,
+      (unsigned)options->crop_regions, (unsigned)STRATUS_CROP_INSIDE);
+  }
   if (options->method == STRATUS_TETRA_METHOD_PROJECT) {
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "mesh %d of several is to be projected, which draws whole pictures: its rays can only be marched", n);

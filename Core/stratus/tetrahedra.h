@@ -79,8 +79,10 @@ typedef struct stratus_tetra_options {
   /* Rays are cut exactly where they pass a plane: cells are cut, not left out. */
   int clip_plane_count;                                 /* 0..6 */
   double clip_planes[STRATUS_TETRA_CLIP_PLANES_MAX][4]; /* world coordinates: points with a x + b y + c z + d >= 0 show */
-  int crop;                                             /* 1: only the part within crop_bounds shows. Default 0. */
+  int crop;                                             /* 1: only the regions of crop_regions show. Default 0. */
   double crop_bounds[6];                                /* xmin xmax ymin ymax zmin zmax, local coordinates; infinities allowed */
+  /* Regions that show, as in stratus_ray_clipping_options. Default STRATUS_CROP_INSIDE: between all planes. Others, by marching. */
+  uint32_t crop_regions;
   /* Average: the values that count, ends included, first <= last, infinities allowed. Default: all. */
   double average_range[2];
   int contour_count;                           /* isosurface: 1..16; other modes ignore it. Default 0. */

@@ -15,9 +15,10 @@
 
 stratus_tetra_options stratus_tetra_options_default(void)
 {
-  return (stratus_tetra_options){
-    .tolerance = 0.001, .average_range = { -(double)INFINITY, (double)INFINITY }, .shading = stratus_shading_default()
-  };
+  return (stratus_tetra_options){ .tolerance = 0.001,
+    .crop_regions = STRATUS_CROP_INSIDE,
+    .average_range = { -(double)INFINITY, (double)INFINITY },
+    .shading = stratus_shading_default() };
 }
 
 stratus_status stratus_tetra_caster_create(stratus_context* context, stratus_tetra_caster** out)
@@ -284,7 +285,8 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   const double start = stratus_now_ms();
   const bool adds = options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE; /* black where nothing shows */
   const bool shows = stratus_tetra_mixes(mesh, options) ? caster->components.shown : caster->look.table->shown > 0;
-  if ((!shows && !adds && options->mode != STRATUS_TETRA_ISOSURFACE) || caster->mesh->face_count == 0) {
+  const bool cropped = stratus_tetra_modes_regions(options) && options->crop_regions == 0;
+  if ((!shows && !adds && options->mode != STRATUS_TETRA_ISOSURFACE) || caster->mesh->face_count == 0 || cropped) {
     report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
     snprintf(report->why, sizeof report->why, "nothing to draw: no cell, or none that shows");
     stratus_image_clear(image);

@@ -173,6 +173,8 @@ stratus_status stratus_tetra_frame_prepare(stratus_context* context, const strat
 void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_options* options);
 /* tetra_modes.c: modes that gather no light. */
 stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus_tetra_options* options, const stratus_mesh* mesh);
+/* Whether crop regions cut rays, other than the inside or all. */
+bool stratus_tetra_modes_regions(const stratus_tetra_options* options);
 /* Whether nothing but marching draws with these options. */
 bool stratus_tetra_modes_march(const stratus_tetra_options* options);
 /* Sums for average and additive in the layout of stratus_tetra_sums(): of opacity times value, of opacity, nothing, and of the entries that
@@ -184,6 +186,9 @@ stratus_status stratus_tetra_value_sums(
 stratus_status stratus_tetra_shown_sums(stratus_context* context, const stratus_table* table, int32_t** sums);
 /* Get the planes that cut rays, in the world: clip planes, and the finite sides of the crop's box. Returns their number. */
 int stratus_tetra_planes(const stratus_mesh* mesh, const stratus_tetra_options* options, double planes[TETRA_PLANES][4]);
+/* Get the six planes between crop regions, the lower and the upper one along each axis, as those of points at or above them. Returns 6, or
+ * 0 if no regions but the inside, or all, are cropped. */
+int stratus_tetra_crop_planes(const stratus_mesh* mesh, const stratus_tetra_options* options, double planes[6][4]);
 /* tetra_first_hit.c: turns the cells that rays have stored in the image into the colours and depths of their hits. */
 void stratus_tetra_hits_shade(const stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_tetra_options* options, const stratus_image* image);

@@ -18,18 +18,29 @@ typedef struct hits {
   const stratus_tetra_caster* caster;
   const stratus_transfer* transfer;
   const stratus_tetra_options* options;
-  double planes[TETRA_PLANES][4]; /* that cut rays, in the world, relative to the eye */
-  int plane_count;
-  double to_normal[9]; /* takes gradients in local coordinates to the world */
-  bool smooth;         /* normals are the gradients of points */
+  double planes[TETRA_PLANES + 6][4]; /* that cut rays, in the world, relative to the eye; then those between crop regions */
+  int plane_count, crop_count;        /* of the first, and of the second */
+  double to_normal[9];                /* takes gradients in local coordinates to the world */
+  bool smooth;                        /* normals are the gradients of points */
   stratus_lamps lamps;
 } hits;
+
+/* Where a part begins or a place is: a plane's number, or one of these. */
+#define CUT_NEAR (-1)
+#define CUT_NONE (-2)
+#define PARTS 4 /* as many as six planes leave of a ray, see crop_pieces() in kernels/base/crop.h */
+
+/* A seen part of a ray. */
+typedef struct hit_part {
+  double begin, end;
+  int cut; /* where it begins */
+} hit_part;
 
 /* Places are relative to the eye; the ray is at from + k along. */
 typedef struct hit_ray {
   double from[3], along[3], length;
-  double begin; /* of its seen part */
-  int cut;      /* the plane at which it begins; -1: the near one */
+  hit_part parts[PARTS];
+  int count;
 } hit_ray;
 
 typedef struct hit_cell {
@@ -40,6 +51,56 @@ typedef struct hit_cell {
 } hit_cell;
 
 /* ---- the ray and its cell */
+
+/* Whether a place of a ray is in a crop region that shows. */
+static bool in_region(const hits* h, const hit_ray* ray, double k)
+{
+  int region = 0;
+  for (int axis = 2; axis >= 0; --axis) {
+    int above = 0; /* how many of the axis's planes the place is above */
+    for (int side = 0; side < 2; ++side) {
+      const double* plane = h->planes[TETRA_PLANES + 2 * axis + side];
+      above += stratus_vector_dot(plane, ray->from) + plane[3] + k * stratus_vector_dot(plane, ray->along) >= 0.0;
+    }
+    region = 3 * region + above;
+  }
+  return h->options->crop_regions >> region & 1;
+}
+
+/* Cuts the seen part of a ray at the planes between crop regions. */
+static void take_parts(const hits* h, hit_part whole, hit_ray* ray)
+{
+  hit_part cuts[7] = { whole };
+  int count = 1;
+  for (int side = 0; side < h->crop_count; ++side) {
+    const double* plane = h->planes[TETRA_PLANES + side];
+    const double start = stratus_vector_dot(plane, ray->from) + plane[3], rise = stratus_vector_dot(plane, ray->along);
+    const double k = rise != 0.0 ? -start / rise : INFINITY;
+    int at = count;
+    if (!(k > whole.begin && k < whole.end)) {
+      continue;
+    }
+    for (; at > 1 && cuts[at - 1].begin > k; --at) {
+      cuts[at] = cuts[at - 1];
+    }
+    cuts[at] = (hit_part){ k, INFINITY, TETRA_PLANES + side };
+    ++count;
+  }
+  ray->count = h->crop_count > 0 ? 0 : 1;
+  ray->parts[0] = whole;
+  bool before = false;
+  for (int i = 0; h->crop_count > 0 && i < count; ++i) {
+    const double end = i + 1 < count ? cuts[i + 1].begin : whole.end, begin = cuts[i].begin;
+    const bool shows = begin < end && in_region(h, ray, end < INFINITY ? 0.5 * (begin + end) : begin + 1.0);
+    if (shows && !before && ray->count < PARTS) {
+      ray->parts[ray->count++] = cuts[i];
+    }
+    if (shows) {
+      ray->parts[ray->count - 1].end = end;
+    }
+    before = begin < end ? shows : before;
+  }
+}
 
 static void take_ray(const hits* h, int x, int y, hit_ray* ray)
 {
@@ -52,15 +113,15 @@ static void take_ray(const hits* h, int x, int y, hit_ray* ray)
     ray->along[axis] = camera->forward[axis] + (camera->parallel ? 0.0 : side);
   }
   ray->length = sqrt(stratus_vector_dot(ray->along, ray->along));
-  ray->begin = camera->near_k;
-  ray->cut = -1;
+  hit_part whole = { camera->near_k, INFINITY, CUT_NEAR };
   for (int p = 0; p < h->plane_count; ++p) {
     const double start = stratus_vector_dot(h->planes[p], ray->from) + h->planes[p][3], rise = stratus_vector_dot(h->planes[p], ray->along);
-    if (rise > 0.0 && -start / rise > ray->begin) {
-      ray->begin = -start / rise;
-      ray->cut = p;
+    if (rise > 0.0 && -start / rise > whole.begin) {
+      whole.begin = -start / rise;
+      whole.cut = p;
     }
   }
+  take_parts(h, whole, ray);
 }
 
 static void take_cell(const hits* h, const float stored[4], hit_cell* cell)
@@ -146,8 +207,8 @@ static double value_at(const hit_ray* ray, const hit_cell* cell, double k)
 
 typedef struct hit_place {
   double k, value;
+  int cut;     /* where the ray's part begins, if that is within the cell, and so is the place; or CUT_NONE */
   bool inside; /* the field begins to show within the cell */
-  bool cut;    /* the ray begins within the cell */
 } hit_place;
 
 static int entry_of(const stratus_table* table, double value)
@@ -155,37 +216,51 @@ static int entry_of(const stratus_table* table, double value)
   return (int)fmin(fmax(floor(value * (double)table->scale + (double)table->offset), 0.0), (double)(table->size - 1));
 }
 
-/* Finds the first place of the seen part of a cell that shows. */
-static hit_place find_place(const hits* h, const hit_ray* ray, const hit_cell* cell)
+/* Finds the first place of a cell that shows on a part of the ray. Returns false if there is none. */
+static bool find_on_part(const hits* h, const hit_ray* ray, const hit_cell* cell, const hit_part* part, hit_place* place)
 {
   const stratus_table* table = h->caster->look.table;
   const double enters = entry(ray, cell);
-  hit_place place = { .k = fmax(enters, ray->begin), .cut = ray->begin > enters };
-  double end = INFINITY;
-  place.value = value_at(ray, cell, place.k);
+  double end = part->end;
+  *place = (hit_place){ .k = fmax(enters, part->begin), .cut = part->begin > enters ? part->cut : CUT_NONE };
+  place->value = value_at(ray, cell, place->k);
   for (int i = 0; i < 4 && !cell->flat; ++i) {
     double weight[4];
     const double fall = stratus_vector_dot(cell->slope[i], ray->along);
-    weigh(ray, cell, place.k, weight);
-    end = fall < 0.0 ? fmin(end, place.k - fmax(weight[i], 0.0) / fall) : end;
+    weigh(ray, cell, enters, weight);
+    end = fall < 0.0 ? fmin(end, enters - fmax(weight[i], 0.0) / fall) : end;
   }
-  if (cell->flat || !(end > place.k) || !(end < INFINITY)) {
-    return place;
+  if (cell->flat || !(end > place->k) || !(end < INFINITY)) {
+    return end > place->k;
   }
   const double last = value_at(ray, cell, end);
-  const bool rises = last > place.value;
-  const int first_entry = entry_of(table, place.value), last_entry = entry_of(table, last);
+  const bool rises = last > place->value;
+  const int first_entry = entry_of(table, place->value), last_entry = entry_of(table, last);
   const int32_t* shown = h->caster->look.sums + (rises ? 8 : 9) * (size_t)table->size;
   const int met = shown[first_entry]; /* the nearest entry that shows in this direction, see stratus_tetra_shown_sums() */
   if (met != first_entry) {
     const int into = rises ? (met < last_entry ? met : last_entry) : (met > last_entry ? met : last_entry);
     const double border = ((double)(rises ? into : into + 1) - (double)table->offset) / (double)table->scale;
-    const double part = last != place.value ? (border - place.value) / (last - place.value) : 0.0;
-    place.k += fmin(fmax(part, 0.0), 1.0) * (end - place.k);
-    place.value = ((double)into + 0.5 - (double)table->offset) / (double)table->scale; /* at its border a function may jump */
-    place.inside = true;
+    const double share = last != place->value ? (border - place->value) / (last - place->value) : 0.0;
+    place->k += fmin(fmax(share, 0.0), 1.0) * (end - place->k);
+    place->value = ((double)into + 0.5 - (double)table->offset) / (double)table->scale; /* at its border a function may jump */
+    place->cut = CUT_NONE;
+    place->inside = true;
+    return into == met;
   }
-  return place;
+  return true;
+}
+
+/* Finds the hit. Where no part shows by these numbers, the march's floats have found another: then the first that meets the cell counts. */
+static hit_place find_place(const hits* h, const hit_ray* ray, const hit_cell* cell)
+{
+  hit_place found, place;
+  bool any = find_on_part(h, ray, cell, ray->parts, &found);
+  for (int part = 1; part < ray->count && !any; ++part) {
+    any = find_on_part(h, ray, cell, ray->parts + part, &place);
+    found = any ? place : found;
+  }
+  return found;
 }
 
 /* ---- its normal and colour */
@@ -219,9 +294,9 @@ static bool facet_normal(const hit_cell* cell, double normal[3])
 
 static void find_normal(const hits* h, const hit_ray* ray, const hit_cell* cell, const hit_place* place, double normal[3])
 {
-  const bool cut = place->cut && !place->inside;
+  const bool cut = place->cut != CUT_NONE;
   if (cut) {
-    memcpy(normal, ray->cut < 0 ? ray->along : h->planes[ray->cut], 3 * sizeof *normal);
+    memcpy(normal, place->cut == CUT_NEAR ? ray->along : h->planes[place->cut], 3 * sizeof *normal);
   }
   if (cut || !((h->smooth && smooth_normal(h, ray, cell, place->k, normal)) || (place->inside && facet_normal(cell, normal)))) {
     memcpy(normal, cut ? normal : cell->slope[3], 3 * sizeof *normal);
@@ -267,7 +342,8 @@ void stratus_tetra_hits_shade(const stratus_tetra_frame* frame, const stratus_te
   hits h = { .frame = frame, .caster = caster, .transfer = transfer, .options = options };
   double inverse[16];
   h.plane_count = stratus_tetra_planes(mesh, options, h.planes);
-  for (int p = 0; p < h.plane_count; ++p) {
+  h.crop_count = stratus_tetra_crop_planes(mesh, options, h.planes + TETRA_PLANES);
+  for (int p = 0; p < TETRA_PLANES + h.crop_count; ++p) {
     h.planes[p][3] += stratus_vector_dot(h.planes[p], frame->camera.eye);
   }
   h.smooth =

@@ -31,6 +31,10 @@ stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const st
     snprintf(report->why, sizeof report->why, "march: mode %s cannot be projected", stratus_tetra_mode_name(options->mode));
     return STRATUS_OK;
   }
+  if (stratus_tetra_modes_regions(options)) {
+    snprintf(report->why, sizeof report->why, "march: crop regions cannot be projected");
+    return STRATUS_OK;
+  }
   if (stratus_tetra_light_mask(mesh, transfer, options)) {
     snprintf(report->why, sizeof report->why, "march: light and gradient opacity cannot be projected");
     return STRATUS_OK;

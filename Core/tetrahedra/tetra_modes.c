@@ -34,6 +34,10 @@ static stratus_status check_planes(stratus_context* context, const stratus_tetra
       }
     }
   }
+  if (options->crop_regions > STRATUS_CROP_ALL) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "crop regions 0x%x, must be 0..0x%x", (unsigned)options->crop_regions, (unsigned)STRATUS_CROP_ALL);
+  }
   for (int axis = 0; options->crop && axis < 3; ++axis) {
     const double* bounds = options->crop_bounds + 2 * axis;
     if (!(bounds[0] <= bounds[1])) {
@@ -59,6 +63,11 @@ static stratus_status check_contours(stratus_context* context, const stratus_tet
                            : STRATUS_OK;
 }
 
+bool stratus_tetra_modes_regions(const stratus_tetra_options* options)
+{
+  return options->crop && options->crop_regions != STRATUS_CROP_INSIDE && options->crop_regions != STRATUS_CROP_ALL;
+}
+
 bool stratus_tetra_modes_march(const stratus_tetra_options* options)
 {
   return options->mode != STRATUS_TETRA_COMPOSITE && options->mode != STRATUS_TETRA_MAXIMUM;
@@ -74,6 +83,11 @@ stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus
   if (options->method == STRATUS_TETRA_METHOD_PROJECT && stratus_tetra_modes_march(options)) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s cannot be projected, only marched: take the method march or auto",
       stratus_tetra_mode_name(options->mode));
+  }
+  if (options->method == STRATUS_TETRA_METHOD_PROJECT && stratus_tetra_modes_regions(options)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "crop regions 0x%x cannot be projected, only marched: take the method march or auto, or the inside (0x%x)",
+      (unsigned)options->crop_regions, (unsigned)STRATUS_CROP_INSIDE);
   }
   if (options->mode == STRATUS_TETRA_SLICE) {
     return stratus_slice_check(context, &options->slice);
@@ -175,8 +189,8 @@ void stratus_tetra_frame_contours(stratus_tetra_frame* frame, const stratus_tetr
   }
 }
 
-/* Adds the plane of points p with n p + d >= 0. Its numbers are scaled so that the largest is 1. */
-static void add_plane(stratus_tetra_frame* frame, const double n[3], double d)
+/* Sets the numbers of the plane of points p with n p + d >= 0, scaled so that the largest is 1. */
+static void set_plane(const stratus_tetra_frame* frame, const double n[3], double d, float numbers[6])
 {
   const stratus_camera* c = &frame->camera;
   const double eye = stratus_vector_dot(n, c->eye) + d, f = stratus_vector_dot(n, c->forward), r = stratus_vector_dot(n, c->right),
@@ -190,9 +204,16 @@ static void add_plane(stratus_tetra_frame* frame, const double n[3], double d)
     largest = fmax(largest, fabs(plane[i]));
   }
   for (int i = 0; i < 6; ++i) {
-    frame->arguments.plane[frame->arguments.plane_count][i] = largest > 0.0 ? (float)(plane[i] / largest) : 0.0f;
+    numbers[i] = largest > 0.0 ? (float)(plane[i] / largest) : 0.0f;
   }
-  ++frame->arguments.plane_count;
+}
+
+/* The plane of points at or above a bound of the crop, in the world. inverse: of the mesh's matrix. */
+static void side_plane(const stratus_tetra_options* options, const double inverse[16], int side, double plane[4])
+{
+  const double* row = inverse + 4 * (side / 2);
+  memcpy(plane, row, 3 * sizeof *plane);
+  plane[3] = row[3] - options->crop_bounds[side];
 }
 
 int stratus_tetra_planes(const stratus_mesh* mesh, const stratus_tetra_options* options, double planes[TETRA_PLANES][4])
@@ -200,25 +221,49 @@ int stratus_tetra_planes(const stratus_mesh* mesh, const stratus_tetra_options* 
   int count = options->clip_plane_count;
   double inverse[16];
   memcpy(planes, options->clip_planes, (size_t)count * sizeof *planes);
-  if (!options->crop || !stratus_matrix_invert_affine(mesh->matrix, inverse)) {
+  if (!options->crop || options->crop_regions != STRATUS_CROP_INSIDE || !stratus_matrix_invert_affine(mesh->matrix, inverse)) {
     return count; /* stratus_mesh_check() refuses such a matrix */
   }
   for (int side = 0; side < 6; ++side) {
-    const double *row = inverse + 4 * (side / 2), sign = side % 2 == 0 ? 1.0 : -1.0, bound = options->crop_bounds[side];
-    const double plane[4] = { sign * row[0], sign * row[1], sign * row[2], sign * (row[3] - bound) };
-    if (isfinite(bound)) {
-      memcpy(planes[count++], plane, sizeof plane);
+    if (isfinite(options->crop_bounds[side])) {
+      side_plane(options, inverse, side, planes[count]);
+      for (int i = 0; i < 4 && side % 2; ++i) {
+        planes[count][i] = -planes[count][i];
+      }
+      ++count;
     }
   }
   return count;
 }
 
+int stratus_tetra_crop_planes(const stratus_mesh* mesh, const stratus_tetra_options* options, double planes[6][4])
+{
+  double inverse[16];
+  if (!stratus_tetra_modes_regions(options) || !stratus_matrix_invert_affine(mesh->matrix, inverse)) {
+    return 0;
+  }
+  for (int side = 0; side < 6; ++side) {
+    side_plane(options, inverse, side, planes[side]);
+  }
+  return 6;
+}
+
 void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options)
 {
   double planes[TETRA_PLANES][4];
-  const int count = stratus_tetra_planes(mesh, options, planes);
-  frame->arguments.plane_count = 0;
-  for (int p = 0; p < count; ++p) {
-    add_plane(frame, planes[p], planes[p][3]);
+  stratus_tetra_arguments* a = &frame->arguments;
+  a->plane_count = stratus_tetra_planes(mesh, options, planes);
+  for (int p = 0; p < a->plane_count; ++p) {
+    set_plane(frame, planes[p], planes[p][3], a->plane[p]);
+  }
+  a->regions = stratus_tetra_crop_planes(mesh, options, planes) > 0 ? (int)options->crop_regions : 0;
+  for (int side = 0; a->regions && side < 6; ++side) {
+    float* numbers = a->crop[side / 2][side % 2];
+    if (isfinite(planes[side][3])) {
+      set_plane(frame, planes[side], planes[side][3], numbers);
+    } else { /* all points are on one side */
+      memset(numbers, 0, sizeof a->crop[0][0]);
+      numbers[0] = planes[side][3] > 0.0 ? 1.0f : -1.0f;
+    }
   }
 }

@@ -118,7 +118,7 @@ std::vector<Entry> FindEntries(vtkRenderer* renderer)
 }
 
 // Sets the part of a box of a grid's coordinates that the regions of cropping planes show. Flag 9 z + 3 y + x shows the region at x, y, z.
-void Crop(vtkVolumeMapper* mapper, double box[6])
+template <class Mapper> void Crop(Mapper* mapper, double box[6])
 {
   const double* planes = mapper->GetCroppingRegionPlanes();
   for (int a = 0, step = 1; a < 3; ++a, step *= 3) {
@@ -160,10 +160,7 @@ void FindBox(vtkAbstractVolumeMapper* mapper, double box[6], vtkMatrix4x4* toWor
   if (images && images->GetCropping() && (image || vtkRectilinearGrid::SafeDownCast(mapper->GetDataObjectInput()))) {
     Crop(images, box);
   } else if (meshes && meshes->GetCropping()) {
-    for (int a = 0; a < 6; a += 2) {
-      box[a] = std::max(box[a], meshes->GetCroppingRegionPlanes()[a]);
-      box[a + 1] = std::min(box[a + 1], meshes->GetCroppingRegionPlanes()[a + 1]);
-    }
+    Crop(meshes, box);
   }
 }
 

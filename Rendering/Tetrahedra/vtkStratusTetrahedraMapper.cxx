@@ -253,6 +253,7 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
     os << " " << plane;
   }
   os << "\n";
+  os << indent << "CroppingRegionFlags: " << this->CroppingRegionFlags << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Device: " << this->GetDevice() << "\n";
   os << indent << "Method: " << this->GetMethodAsString() << "\n";

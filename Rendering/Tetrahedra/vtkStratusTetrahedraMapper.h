@@ -40,7 +40,7 @@
  *   thinned each by its own gradient, and have a Shade and a material of their own; dependent ones by the last one's;
  * - gradient opacity in composite, in values per mean spacing: the edge of a cube that six tetrahedra of the mean volume fill. It
  * multiplies the optical depth, or the opacity (GradientOpacityDistance). Light and gradient opacity are marched;
- * - up to 6 clipping planes (of origin and normal) and a crop box. They cut rays exactly, cells are not left out;
+ * - up to 6 clipping planes (of origin and normal) and cropping to any of the 27 regions. They cut rays exactly, cells are not left out;
  * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes). In composite mode, rays are cast up to each surface, so that the
  *   parts of the volume between surfaces are in depth order. In other modes the whole frame is placed between the surfaces, at its first
  *   depth;
@@ -147,14 +147,23 @@ public:
 
   //@{
   /**
-   * Set/Get whether only the part within CroppingRegionPlanes is drawn, a box of the input's coordinates: xmin, xmax, ymin, ymax, zmin,
-   * zmax. A box whose ends do not rise is refused. Default off, and 0 to 1.
+   * Set/Get whether only some of the 27 regions that CroppingRegionPlanes make in the input's coordinates are drawn: xmin, xmax, ymin,
+   * ymax, zmin, zmax. Planes whose ends do not rise are refused. CroppingRegionFlags are those of vtkVolumeMapper: bit x + 3 y + 9 z shows
+   * the region below (0), between (1) or above (2) the planes of each axis. Regions other than the inside are marched. Default off, 0 to 1,
+   * and the inside (0x2000).
    */
   vtkSetMacro(Cropping, bool);
   vtkGetMacro(Cropping, bool);
   vtkBooleanMacro(Cropping, bool);
   vtkSetVector6Macro(CroppingRegionPlanes, double);
   vtkGetVectorMacro(CroppingRegionPlanes, double, 6);
+  vtkSetClampMacro(CroppingRegionFlags, int, 0, 0x7ffffff);
+  vtkGetMacro(CroppingRegionFlags, int);
+  void SetCroppingRegionFlagsToSubVolume() { this->SetCroppingRegionFlags(0x0002000); }
+  void SetCroppingRegionFlagsToFence() { this->SetCroppingRegionFlags(0x2ebfeba); }
+  void SetCroppingRegionFlagsToInvertedFence() { this->SetCroppingRegionFlags(0x5140145); }
+  void SetCroppingRegionFlagsToCross() { this->SetCroppingRegionFlags(0x0417410); }
+  void SetCroppingRegionFlagsToInvertedCross() { this->SetCroppingRegionFlags(0x7be8bef); }
   //@}
 
   //@{
@@ -342,6 +351,7 @@ protected:
   double AverageIPScalarRange[2] = { VTK_FLOAT_MIN, VTK_FLOAT_MAX };
   bool Cropping = false;
   double CroppingRegionPlanes[6] = { 0, 1, 0, 1, 0, 1 };
+  int CroppingRegionFlags = 0x0002000;
 
 private:
   vtkStratusTetrahedraMapper(const vtkStratusTetrahedraMapper&) = delete;

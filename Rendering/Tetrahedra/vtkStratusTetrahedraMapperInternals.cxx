@@ -75,6 +75,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetClipPlanes(stratus_tetra_options&
     return false;
   }
   options.crop = this->Mapper->Cropping ? 1 : 0;
+  options.crop_regions = static_cast<uint32_t>(this->Mapper->CroppingRegionFlags);
   std::copy_n(this->Mapper->CroppingRegionPlanes, 6, options.crop_bounds);
   return true;
 }

@@ -89,6 +89,7 @@ static void make_case(stratus_context* context, tetra_case* c, uint32_t seed, co
     memcpy(c->options.clip_planes[0], plane, sizeof plane);
     memcpy(c->options.crop_bounds, bounds, sizeof bounds);
     c->options.clip_plane_count = c->options.crop = 1;
+    c->options.crop_regions = marched && seed == 5 ? 0x5a3e9d6 : STRATUS_CROP_INSIDE;
   }
   if (seed % 4 >= 2 && marched) { /* lit, thinned, or both; other modes are neither */
     static const double thin[4] = { 0.1, 0.0, 0.6, 1.0 };

@@ -433,7 +433,7 @@ static inline void tetra_cut_ray(const tetra_case* c, const double origin[3], co
   for (int p = 0; p < c->options.clip_plane_count; ++p) {
     tetra_cut(c->options.clip_planes[p], c->options.clip_planes[p][3], origin, along, from, to);
   }
-  for (int side = 0; c->options.crop && side < 6; ++side) {
+  for (int side = 0; c->options.crop && c->options.crop_regions == STRATUS_CROP_INSIDE && side < 6; ++side) {
     const double *u = axis[(side / 2 + 1) % 3], *v = axis[(side / 2 + 2) % 3], *w = axis[side / 2], bound = c->options.crop_bounds[side];
     double normal[3], across = 0.0, offset = 0.0, n[3];
     for (int a = 0; a < 3; ++a) {
@@ -446,6 +446,67 @@ static inline void tetra_cut_ray(const tetra_case* c, const double origin[3], co
     }
     tetra_cut(n, -offset - (side & 1 ? -1.0 : 1.0) * bound, origin, along, from, to);
   }
+}
+
+/* A place's coordinate along an axis of the mesh, by volumes of the moved axes. */
+static inline double tetra_local(const tetra_case* c, int axis, const double place[3])
+{
+  static const double zero[3] = { 0.0, 0.0, 0.0 };
+  const double* m = c->mesh.matrix;
+  double column[3][3], to[3];
+  for (int a = 0; a < 3; ++a) {
+    for (int i = 0; i < 3; ++i) {
+      column[i][a] = m[4 * a + i];
+    }
+    to[a] = place[a] - m[4 * a + 3];
+  }
+  const double whole = tetra_volume(zero, column[0], column[1], column[2]);
+  memcpy(column[axis], to, sizeof to);
+  return tetra_volume(zero, column[0], column[1], column[2]) / whole;
+}
+
+/* Cuts a stretch at the planes between crop regions. Returns how many of its parts are in regions that show, and stores these. */
+static inline size_t tetra_crop(
+  const tetra_case* c, const double origin[3], const double along[3], const tetra_stretch* whole, tetra_stretch parts[7])
+{
+  double cuts[8] = { 0.0, 1.0 }, ends[2][3], local[2][3];
+  int count = 2;
+  size_t shown = 0;
+  if (!c->options.crop || c->options.crop_regions == STRATUS_CROP_INSIDE) {
+    parts[0] = *whole;
+    return 1;
+  }
+  for (int end = 0; end < 2; ++end) {
+    for (int a = 0; a < 3; ++a) {
+      ends[end][a] = origin[a] + (end ? whole->to : whole->from) * along[a];
+    }
+    for (int a = 0; a < 3; ++a) {
+      local[end][a] = tetra_local(c, a, ends[end]);
+    }
+  }
+  for (int side = 0; side < 6; ++side) {
+    const double a = local[0][side / 2], b = local[1][side / 2], t = (c->options.crop_bounds[side] - a) / (b - a);
+    if (t > 0.0 && t < 1.0) {
+      int at = count++;
+      for (; cuts[at - 1] > t; --at) {
+        cuts[at] = cuts[at - 1];
+      }
+      cuts[at] = t;
+    }
+  }
+  for (int i = 0; i + 1 < count; ++i) {
+    const double middle = 0.5 * (cuts[i] + cuts[i + 1]), extent = whole->to - whole->from, rise = whole->last - whole->first;
+    int region = 0;
+    for (int a = 2; a >= 0; --a) {
+      const double x = local[0][a] + middle * (local[1][a] - local[0][a]), *bounds = c->options.crop_bounds + 2 * a;
+      region = 3 * region + (x < bounds[0] ? 0 : x > bounds[1] ? 2 : 1);
+    }
+    if (cuts[i] < cuts[i + 1] && c->options.crop_regions >> region & 1u) {
+      parts[shown++] = (tetra_stretch){ whole->from + cuts[i] * extent, whole->from + cuts[i + 1] * extent, whole->first + cuts[i] * rise,
+        whole->first + cuts[i + 1] * rise };
+    }
+  }
+  return shown;
 }
 
 /* The least and greatest value of cells that show. */
@@ -571,7 +632,7 @@ static inline void tetra_slices(
 /* Draws the reference. rgba: 4*TETRA_PIXELS; depth: TETRA_PIXELS or NULL. */
 static inline void tetra_reference(const tetra_case* c, double* rgba, double* depth)
 {
-  tetra_stretch* met = calloc((size_t)c->mesh.cell_count + 1, sizeof *met);
+  tetra_stretch *met = calloc(7 * ((size_t)c->mesh.cell_count + 1), sizeof *met), whole;
   double* balls = malloc(((size_t)c->mesh.cell_count + 1) * 4 * sizeof *balls);
   assert_non_null(met);
   assert_non_null(balls);
@@ -594,8 +655,8 @@ static inline void tetra_reference(const tetra_case* c, double* rgba, double* de
     }
     tetra_cut_ray(c, origin, along, &from, &to);
     for (int64_t cell = 0; cell < c->mesh.cell_count; ++cell) {
-      if (!tetra_passes(balls + 4 * cell, origin, along)) {
-        count += (size_t)tetra_meet(c, cell, origin, along, from, to, met + count);
+      if (!tetra_passes(balls + 4 * cell, origin, along) && tetra_meet(c, cell, origin, along, from, to, &whole)) {
+        count += tetra_crop(c, origin, along, &whole, met + count);
       }
     }
     qsort(met, count, sizeof *met, tetra_nearer);

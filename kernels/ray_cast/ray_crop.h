@@ -4,10 +4,8 @@
 #ifndef STRATUS_RAY_CROP_H
 #define STRATUS_RAY_CROP_H
 
+#include "crop.h"
 #include "ray_segment.h"
-
-/* Six planes cut a ray into at most seven parts. Neighbouring parts that are shown are one piece, so that there are at most four. */
-#define CROP_PIECES 4
 
 typedef struct stratus_crop {
   float from[CROP_PIECES][STRATUS_WIDTH], to[CROP_PIECES][STRATUS_WIDTH];
@@ -15,64 +13,13 @@ typedef struct stratus_crop {
   vmask all;
 } stratus_crop;
 
-/* 1 if the ray of `lane` is in a shown region at s. */
-INLINE int crop_shows(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, int lane, float s)
-{
-  int region = 0;
-  for (int axis = 2; axis >= 0; --axis) {
-    const float low = rays->crossing[axis][0][lane], high = rays->crossing[axis][1][lane];
-    const int forward = rays->d[axis][lane] > 0.0f;
-    const int below = forward ? s < low : s > low, above = forward ? s > high : s < high;
-    region = 3 * region + (below ? 0 : above ? 2 : 1);
-  }
-  return a->crop.regions >> region & 1;
-}
-
-/* Finds the pieces of each ray, from..to. Unused pieces are empty and come last. */
-INLINE void crop_pieces(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, float from[CROP_PIECES][STRATUS_WIDTH],
-  float to[CROP_PIECES][STRATUS_WIDTH])
-{
-  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    const float begin = rays->begin[lane], end = rays->end[lane];
-    float cut[8];
-    int cuts = 0, pieces = 0, shown = 0;
-    cut[cuts++] = begin;
-    for (int side = 0; side < 6; ++side) {
-      const float s = rays->crossing[side / 2][side % 2][lane];
-      int at = cuts;
-      if (!(s > begin && s < end)) {
-        continue;
-      }
-      for (; at > 1 && cut[at - 1] > s; --at) {
-        cut[at] = cut[at - 1];
-      }
-      cut[at] = s;
-      ++cuts;
-    }
-    cut[cuts] = end;
-    for (int i = 0; i < cuts; ++i) {
-      const int shows = cut[i] < cut[i + 1] && crop_shows(a, rays, lane, 0.5f * (cut[i] + cut[i + 1]));
-      if (shows && !shown && pieces < CROP_PIECES) {
-        from[pieces++][lane] = cut[i];
-      }
-      if (shows) {
-        to[pieces - 1][lane] = cut[i + 1];
-      }
-      shown = cut[i] < cut[i + 1] ? shows : shown;
-    }
-    for (; pieces < CROP_PIECES; ++pieces) {
-      from[pieces][lane] = to[pieces][lane] = 0.0f;
-    }
-  }
-}
-
 /* Keeps what all pieces of a packet's rays share, and cuts the rays. */
 INLINE void crop_begin(CONSTANT stratus_ray_cast_arguments* a, const stratus_rays* rays, const stratus_packet* k, stratus_crop* crop)
 {
   crop->first = k->i;
   crop->last = k->last;
   crop->all = k->live;
-  crop_pieces(a, rays, crop->from, crop->to);
+  crop_pieces(a->crop.regions, rays->begin, rays->end, rays->crossing, rays->d, crop->from, crop->to);
 }
 
 /* Starts the rays on piece number `piece`, unless they have ended. Not inlined: few frames are cropped so, and the march should be

@@ -87,6 +87,8 @@ typedef struct stratus_tetra_arguments {
   stratus_slice_arguments slice;    /* in (a, b, z) */
   int plane_count;
   float plane[TETRA_PLANES][6];        /* a ray is seen where [0] + u [1] + v [2] + ([3] + u [4] + v [5]) z >= 0 */
+  int regions;                         /* not 0: which crop regions show, of those between these planes */
+  float crop[3][2][6];                 /* along each axis of the mesh, the lower and the upper plane, as `plane` has them */
   int steps_most;                      /* the most cells that a ray can pass from one border face to the next */
   int has_ends;                        /* 1: rays end at opaque geometry, each pixel at a depth of its own */
   stratus_tetra_media_arguments media; /* of the variant TETRA_LIT, as all that follows */

@@ -30,14 +30,20 @@ INLINE vfloat v_root(vfloat a)
   return a * r;
 }
 
+/* A plane's function of z on rays: start + slope z. u, v: as of tetra_clip(). */
+INLINE void tetra_plane(CONSTANT float* c, vfloat u, vfloat v, vfloat* start, vfloat* slope)
+{
+  *start = v_fma(u, v_set(c[1]), v_fma(v, v_set(c[2]), v_set(c[0])));
+  *slope = v_fma(u, v_set(c[4]), v_fma(v, v_set(c[5]), v_set(c[3])));
+}
+
 /* Cuts what rays see at planes. us, uw, vs, vw: as of tetra_sight(). */
 INLINE void tetra_clip(CONSTANT stratus_tetra_arguments* a, vfloat us, vfloat uw, vfloat vs, vfloat vw, stratus_tetra_sight* sight)
 {
   const vfloat zero = v_set(0.0f), u = a->shear > 0.0f ? us : uw, v = a->shear > 0.0f ? vs : vw;
   for (int p = 0; p < a->plane_count; ++p) {
-    CONSTANT float* c = a->plane[p];
-    const vfloat start = v_fma(u, v_set(c[1]), v_fma(v, v_set(c[2]), v_set(c[0])));
-    const vfloat slope = v_fma(u, v_set(c[4]), v_fma(v, v_set(c[5]), v_set(c[3])));
+    vfloat start, slope;
+    tetra_plane(a->plane[p], u, v, &start, &slope);
     const vmask rises = v_lt(zero, slope), falls = v_lt(slope, zero), level = m_andnot(m_andnot(v_le(slope, slope), rises), falls);
     const vfloat at = v_select(falls, start, zero - start) * v_reciprocal(v_max(v_abs(slope), v_set(1e-30f)));
     sight->begin = v_select(rises, v_max(sight->begin, at), sight->begin);

@@ -4,6 +4,7 @@
 #ifndef STRATUS_TETRA_TILE_H
 #define STRATUS_TETRA_TILE_H
 
+#include "crop.h"
 #include "slice.h"
 #include "tetra_entry.h"
 
@@ -20,6 +21,7 @@ typedef struct stratus_tetra_lanes {
   stratus_tetra_ray ray;
   stratus_tetra_light light;
   vint pixel, entry, beyond; /* the next entry of the ray, and the end of its entries */
+  vint piece;                /* of the ray, where crop regions cut it */
   vint steps, segments;      /* cells passed since the last entry; cells passed in all */
   vmask live, done;          /* done: the lane's way has ended; neither live nor done: there is no pixel for it */
 } stratus_tetra_lanes;
@@ -58,14 +60,48 @@ INLINE void lanes_meet_slice(CONSTANT stratus_tetra_arguments* a, stratus_tetra_
   r->end = v_select(mask, v_min(r->end, v_fma(v_abs(last), v_set(1e-6f), last) + v_set(1e-30f)), r->end);
 }
 
-/* Loads the rays of lanes that have a new pixel. */
-INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask, vint pixel)
+/* Shortens the seen part of rays to the piece k->piece of those that crop regions leave. */
+INLINE void lanes_crop(CONSTANT stratus_tetra_arguments* a, stratus_tetra_lanes* k, vmask mask)
+{
+  stratus_tetra_ray* r = &k->ray;
+  float first[STRATUS_WIDTH], last[STRATUS_WIDTH], crossing[3][2][STRATUS_WIDTH], d[3][STRATUS_WIDTH];
+  float from[CROP_PIECES][STRATUS_WIDTH], to[CROP_PIECES][STRATUS_WIDTH];
+  int piece[STRATUS_WIDTH];
+  const vfloat zero = v_set(0.0f), far = v_set(LARGEST_FLOAT), u = a->shear > 0.0f ? r->us : r->uw, v = a->shear > 0.0f ? r->vs : r->vw;
+  for (int axis = 0; axis < 3; ++axis) {
+    vfloat start[2], slope[2];
+    tetra_plane(a->crop[axis][0], u, v, start, slope);
+    tetra_plane(a->crop[axis][1], u, v, start + 1, slope + 1);
+    const vfloat up = slope[0] + slope[1]; /* a plane at infinity has no slope */
+    for (int side = 0; side < 2; ++side) {
+      const vfloat at =
+        v_select(v_lt(slope[side], zero), start[side], zero - start[side]) * v_reciprocal(v_max(v_abs(slope[side]), v_set(1e-30f)));
+      /* a ray that does not meet the plane is always above or below it */
+      const vfloat beyond = v_select(v_lt(zero, start[side]), far, zero - far), never = v_select(v_lt(zero, up), zero - beyond, beyond);
+      v_store(crossing[axis][side], v_select(v_le(v_abs(slope[side]), zero), never, at));
+    }
+    v_store(d[axis], up);
+  }
+  v_store(first, r->begin);
+  v_store(last, r->end);
+  vi_store(piece, k->piece);
+  crop_pieces(a->regions, first, last, (const float(*)[2][STRATUS_WIDTH])crossing, (const float(*)[STRATUS_WIDTH])d, from, to);
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    first[lane] = from[piece[lane]][lane];
+    last[lane] = to[piece[lane]][lane];
+  }
+  r->begin = v_select(mask, v_load(first), r->begin);
+  r->end = v_select(mask, v_load(last), r->end);
+}
+
+/* Loads the rays of lanes, or the next of their pieces, and their entries. */
+INLINE void lanes_load(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask)
 {
   const stratus_tetra_view* v = t->view;
   CONSTANT stratus_tetra_arguments* a = t->arguments;
   stratus_tetra_ray* r = &k->ray;
-  const vint zero = vi_set(0), row = pixel >> vi_set(TETRA_TILE_LOG2);
-  const vint x = pixel - (row << vi_set(TETRA_TILE_LOG2)) + vi_set(t->x0), y = row + vi_set(t->y0);
+  const vint row = k->pixel >> vi_set(TETRA_TILE_LOG2);
+  const vint x = k->pixel - (row << vi_set(TETRA_TILE_LOG2)) + vi_set(t->x0), y = row + vi_set(t->y0);
   GLOBAL const float* rows = v->lines + 2 * (a->picture.width + TETRA_PADDING);
   r->us = v_select(mask, gather_float(v->lines, x, mask), r->us);
   r->uw = v_select(mask, gather_float(v->lines + a->picture.width + TETRA_PADDING, x, mask), r->uw);
@@ -76,21 +112,52 @@ INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
   r->offset = v_select(mask, sight.offset, r->offset);
   r->begin = v_select(mask, sight.begin, r->begin);
   r->end = v_select(mask, sight.end, r->end);
+  if (a->regions) {
+    lanes_crop(a, k, mask);
+  }
   if (a->mode == TETRA_SLICE) {
     lanes_meet_slice(a, r, mask);
   }
-  const vint place = pixel + vi_set(TETRA_PIXELS * t->tile);
-  k->pixel = vi_select(mask, pixel, k->pixel);
+  const vint place = k->pixel + vi_set(TETRA_PIXELS * t->tile);
   k->entry = vi_select(mask, v_gather_ints((GLOBAL const int*)v->first, place, mask), k->entry);
   k->beyond = vi_select(mask, v_gather_ints((GLOBAL const int*)v->first, place + vi_set(1), mask), k->beyond);
-  k->segments = vi_select(mask, zero, k->segments);
+}
+
+/* Begins the rays of lanes that have a new pixel. */
+INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask, vint pixel)
+{
   const vfloat none = v_set(0.0f);
+  k->pixel = vi_select(mask, pixel, k->pixel);
+  k->piece = vi_select(mask, vi_set(0), k->piece);
+  lanes_load(t, k, mask);
+  k->segments = vi_select(mask, vi_set(0), k->segments);
   k->light.red = v_select(mask, none, k->light.red);
   k->light.green = v_select(mask, none, k->light.green);
   k->light.blue = v_select(mask, none, k->light.blue);
   k->light.transparency = v_select(mask, v_set(1.0f), k->light.transparency);
   k->light.depth = v_select(mask, v_set(LARGEST_FLOAT), k->light.depth);
   k->light.most = v_select(mask, v_set(-LARGEST_FLOAT), k->light.most);
+}
+
+/* Moves rays that have ended to the next of their pieces in which they meet the mesh. Returns those that have one. */
+INLINE vmask lanes_next_piece(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask)
+{
+  vmask found = m_none();
+  mask = m_andnot(mask, v_lt(k->light.transparency, v_set(t->arguments->termination)));
+  for (int turn = 1; turn < CROP_PIECES; ++turn) {
+    vint entry[2];
+    mask = mask & vi_lt(k->piece, vi_set(CROP_PIECES - 1));
+    if (!m_any(mask)) {
+      break;
+    }
+    k->piece = vi_select(mask, k->piece + vi_set(1), k->piece);
+    lanes_load(t, k, mask);
+    gather_pair(t->view->entries, k->entry + k->entry, mask, entry);
+    const vmask meets = mask & v_lt(k->ray.begin, k->ray.end) & v_lt(v_from_bits(entry[0]), k->ray.end);
+    found = found | meets;
+    mask = m_andnot(mask, meets);
+  }
+  return found;
 }
 
 /* Starts rays at their next entry. */
@@ -193,6 +260,9 @@ INLINE void lanes_go_on(stratus_tetra_walk* t, stratus_tetra_lanes* k)
     gather_pair(t->view->entries, k->entry + k->entry, again, entry);
     again = again & v_lt(v_from_bits(entry[0]), k->ray.end);
   }
+  if (a->regions) {
+    again = again | lanes_next_piece(t, k, m_andnot(k->done & vi_ge(k->pixel, none), again));
+  }
   const vmask ended = m_andnot(k->done, again);
   vmask taken = m_none();
   if (m_any(ended)) {
@@ -229,7 +299,7 @@ INLINE void lanes_begin(stratus_tetra_walk* t, stratus_tetra_lanes* k)
   r->fourth = r->place.entry = r->place.sum[0] = r->place.sum[1] = r->place.sum[2] = r->place.sum[3] = none;
   r->cell = k->pixel = outside;
   k->light.red = k->light.green = k->light.blue = k->light.transparency = k->light.depth = k->light.most = zero;
-  k->entry = k->beyond = k->steps = k->segments = none;
+  k->entry = k->beyond = k->steps = k->segments = k->piece = none;
   k->live = m_none();
   k->done = vi_ge(none, none);
   lanes_go_on(t, k);

@@ -104,6 +104,28 @@ static void planes_cut_rays(void** state)
   }
 }
 
+/* Any of the 27 regions, in every mode: rays are cut exactly where they pass from one to another. */
+static void regions_cut_rays(void** state)
+{
+  for (uint32_t seed = 0; seed < 21; ++seed) {
+    tetra_case c;
+    tetra_create(&c, 4, 0.2, seed % 3 == 0 ? 0.25 : 0.0, seed);
+    set_contours(&c);
+    set_slice(&c, seed);
+    set_planes(&c, (int)(seed % 2), 1);
+    if (seed % 4 == 2) {
+      set_matrix(&c);
+    }
+    c.options.mode = (stratus_tetra_mode)(seed % 7);
+    c.options.crop_regions =
+      seed == 0 ? STRATUS_CROP_ALL - STRATUS_CROP_INSIDE : ((seed * 2654435761u >> 5) & STRATUS_CROP_ALL) | STRATUS_CROP_INSIDE;
+    c.transfer.unit_distance = c.options.mode == STRATUS_TETRA_COMPOSITE ? 1.0 : 8.0;
+    tetra_camera(*state, &c, 4, (int)(seed % 8), seed % 5 == 3);
+    is_right(*state, &c, 0.15, "regions");
+    tetra_destroy(&c);
+  }
+}
+
 /* A plane that hides all, one that hides nothing, and one without a direction. */
 static void planes_at_their_limits(void** state)
 {
@@ -169,11 +191,12 @@ static void wrong_options_are_refused(void** state)
   tetra_camera(*state, &c, 2, 1, 0);
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
   assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
-  for (int wrong = 0; wrong < 11; ++wrong) {
+  for (int wrong = 0; wrong < 13; ++wrong) {
     stratus_tetra_options o = c.options;
     static const char* const words[] = { "clip_plane_count 7 outside 0..6", "clip_planes[0][2] is nan", "crop_bounds 2 .. 1 along axis 1",
       "average_range 1 .. 0", "0 contour values", "17 contour values", "contour 0 has value inf", "cannot be projected", "values of cells",
-      "slice is no surface", "slice's center has inf" };
+      "slice is no surface", "slice's center has inf", "crop regions 0x8000000, must be 0..0x7ffffff",
+      "crop regions 0x1 cannot be projected" };
     stratus_mesh mesh = c.mesh;
     o.clip_plane_count = wrong == 0 ? 7 : wrong == 1 ? 1 : 0;
     o.clip_planes[0][2] = wrong == 1 ? NAN : 0.0;
@@ -191,9 +214,16 @@ static void wrong_options_are_refused(void** state)
     o.contour_count = wrong == 4 ? 0 : wrong == 5 ? 17 : 1;
     o.contours[0] = wrong == 6 ? (double)INFINITY : 0.5;
     o.method = wrong == 7 ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_AUTO;
+    if (wrong > 10) {
+      o.mode = STRATUS_TETRA_COMPOSITE;
+      o.crop = 1;
+      o.crop_bounds[2] = 0.0;
+      o.crop_regions = wrong == 11 ? STRATUS_CROP_ALL + 1 : 1;
+      o.method = wrong == 12 ? STRATUS_TETRA_METHOD_PROJECT : o.method;
+    }
     mesh.cell_values = wrong == 8;
     assert_int_equal(stratus_tetra_caster_render(caster, &mesh, &c.transfer, &c.camera, &o, &image, NULL),
-      wrong < 7 || wrong > 8 ? STRATUS_INVALID_ARGUMENT : STRATUS_UNSUPPORTED);
+      wrong < 7 || (wrong > 8 && wrong < 12) ? STRATUS_INVALID_ARGUMENT : STRATUS_UNSUPPORTED);
     if (!strstr(stratus_context_message(*state), words[wrong])) {
       print_error("%s\n", stratus_context_message(*state));
     }
@@ -214,6 +244,7 @@ int test_tetra_modes(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test_setup_teardown(modes_are_right, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(planes_cut_rays, tetra_start, tetra_stop),
+    cmocka_unit_test_setup_teardown(regions_cut_rays, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(planes_at_their_limits, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(one_cell_by_hand, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(wrong_options_are_refused, tetra_start, tetra_stop),
