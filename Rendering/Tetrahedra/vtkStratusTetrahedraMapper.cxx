@@ -105,6 +105,20 @@ void vtkStratusTetrahedraMapper::SetDevice(const char* device)
   }
 }
 
+// Not in the header, because VTK 9.2's smart pointers convert to pointers of complete classes only.
+vtkImageData* vtkStratusTetrahedraMapper::GetMaskInput()
+{
+  return this->MaskInput;
+}
+
+void vtkStratusTetrahedraMapper::SetMaskInput(vtkImageData* mask)
+{
+  if (this->MaskInput != mask) {
+    this->MaskInput = mask;
+    this->Modified();
+  }
+}
+
 void vtkStratusTetrahedraMapper::SetImageErrorTolerance(double tolerance)
 {
   if (!(tolerance >= 0.0) || !std::isfinite(tolerance)) {
@@ -254,6 +268,8 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << "\n";
   os << indent << "CroppingRegionFlags: " << this->CroppingRegionFlags << "\n";
+  os << indent << "MaskInput: " << this->MaskInput.GetPointer() << "\n";
+  os << indent << "MaskType: " << (this->MaskType == BinaryMaskType ? "binary" : "label map") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Device: " << this->GetDevice() << "\n";
   os << indent << "Method: " << this->GetMethodAsString() << "\n";

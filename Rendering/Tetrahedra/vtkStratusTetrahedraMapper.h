@@ -44,6 +44,7 @@
  * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes). In composite mode, rays are cast up to each surface, so that the
  *   parts of the volume between surfaces are in depth order. In other modes the whole frame is placed between the surfaces, at its first
  *   depth;
+ * - binary masks (MaskInput), which hide cells;
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
@@ -65,6 +66,7 @@
 #define vtkStratusTetrahedraMapper_h
 
 #include "StratusRenderingTetrahedraModule.h" // For export macro
+#include "vtkSmartPointer.h"                  // For MaskInput
 #include "vtkUnstructuredGridVolumeMapper.h"
 
 #include <memory> // For std::unique_ptr
@@ -164,6 +166,22 @@ public:
   void SetCroppingRegionFlagsToInvertedFence() { this->SetCroppingRegionFlags(0x5140145); }
   void SetCroppingRegionFlagsToCross() { this->SetCroppingRegionFlags(0x0417410); }
   void SetCroppingRegionFlagsToInvertedCross() { this->SetCroppingRegionFlags(0x7be8bef); }
+  //@}
+
+  enum { BinaryMaskType = 0, LabelMapMaskType };
+  //@{
+  /**
+   * Set/Get the mask: an image of the input's coordinates, of any size and spacing, whose point scalars are one unsigned char each. A
+   * tetrahedron, or a cell of a structured grid, has the byte of the point nearest to its middle, and 0 outside the image. A binary mask
+   * hides cells of byte 0, as a ghost array hides cells. A label map is left out, except in composite, which refuses it. Default nullptr
+   * and BinaryMaskType.
+   */
+  virtual void SetMaskInput(vtkImageData* mask);
+  vtkImageData* GetMaskInput();
+  vtkSetClampMacro(MaskType, int, BinaryMaskType, LabelMapMaskType);
+  vtkGetMacro(MaskType, int);
+  void SetMaskTypeToBinary() { this->SetMaskType(BinaryMaskType); }
+  void SetMaskTypeToLabelMap() { this->SetMaskType(LabelMapMaskType); }
   //@}
 
   //@{
@@ -352,6 +370,8 @@ protected:
   bool Cropping = false;
   double CroppingRegionPlanes[6] = { 0, 1, 0, 1, 0, 1 };
   int CroppingRegionFlags = 0x0002000;
+  vtkSmartPointer<vtkImageData> MaskInput;
+  int MaskType = BinaryMaskType;
 
 private:
   vtkStratusTetrahedraMapper(const vtkStratusTetrahedraMapper&) = delete;

@@ -49,6 +49,8 @@ bool vtkStratusTetrahedraMapper::Internals::CheckMapper(std::string& error) cons
     error = "blend mode " + std::to_string(this->Mapper->BlendMode) + " is not supported, only composite (0) to slice (6) are";
   } else if (this->Mapper->RenderMode == FIRST_HIT_MODE && this->Mapper->BlendMode != COMPOSITE_BLEND) {
     error = "blend mode " + std::to_string(this->Mapper->BlendMode) + " is not supported in first hits, only composite (0) is";
+  } else if (this->HasLabelMap() && this->GetMode() == STRATUS_TETRA_COMPOSITE) {
+    error = "a MaskInput of type label map is not supported in composite mode, only a binary mask is";
   } else if (!std::isfinite(this->Mapper->GradientOpacityDistance)) {
     error = "GradientOpacityDistance is " + std::to_string(this->Mapper->GradientOpacityDistance) +
       ", it must be finite: 0 for optical depths, below 0 for half of the mean spacing";
@@ -63,8 +65,10 @@ void vtkStratusTetrahedraMapper::Internals::NoteLeftOut(vtkVolumeProperty* prope
   if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D) {
     this->LeftOut.Add("TransferFunction2D, which meshes do not use");
   }
-  if (property->GetNumberOfLabels() > 0) {
-    this->LeftOut.Add("functions of labels, which meshes do not use");
+  if (this->HasLabelMap()) {
+    this->LeftOut.AddUnused("the label map", stratus_tetra_mode_name(this->GetMode()));
+  } else if (property->GetNumberOfLabels() > 0) {
+    this->LeftOut.Add("functions of labels, which need a MaskInput of type label map");
   }
   this->LeftOut.AddTransforms(this->Mapper, this->Mapper->BlendMode == SLICE_BLEND ? property->GetSliceFunction() : nullptr);
 }
@@ -109,11 +113,16 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
   return !lit || vtkStratusSetShading(renderer, property, options.shading, error);
 }
 
-bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
+stratus_tetra_mode vtkStratusTetrahedraMapper::Internals::GetMode() const
 {
-  options.mode = this->Mapper->RenderMode == FIRST_HIT_MODE
+  return this->Mapper->RenderMode == FIRST_HIT_MODE
     ? STRATUS_TETRA_FIRST_HIT
     : static_cast<stratus_tetra_mode>(this->Mapper->BlendMode); // both count from composite to slice alike
+}
+
+bool vtkStratusTetrahedraMapper::Internals::SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const
+{
+  options.mode = this->GetMode();
   std::copy_n(this->Mapper->AverageIPScalarRange, 2, options.average_range);
   vtkContourValues* contours = options.mode == STRATUS_TETRA_ISOSURFACE ? property->GetIsoSurfaceValues() : nullptr;
   const int count = contours ? contours->GetNumberOfContours() : 0;
@@ -254,7 +263,15 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& 
     vtkWarningWithObjectMacro(this->Mapper, << left << (left.find(" blocks ") == std::string::npos ? " is" : " are") << " not drawn");
   }
   this->LastLeftOut = left;
-  return this->SetMesh(drawn, prop->GetMatrix(), error) && this->SetTransfers(prop->GetProperty(), error);
+  return this->SetMesh(drawn, prop->GetMatrix(), error) && this->SetMask(error) && this->SetTransfers(prop->GetProperty(), error);
+}
+
+bool vtkStratusTetrahedraMapper::Internals::SetMask(std::string& error)
+{
+  const stratus_mesh& mesh = this->Mesh.GetMesh();
+  const bool hides = this->Mapper->MaskInput && !this->HasLabelMap();
+  this->Shown = hides ? this->Mask.Hide(mesh, this->Mapper->MaskInput, error) : &mesh;
+  return this->Shown != nullptr;
 }
 
 bool vtkStratusTetrahedraMapper::Internals::PrepareContext(std::string& error)
@@ -296,7 +313,7 @@ bool vtkStratusTetrahedraMapper::Internals::Describe(vtkVolume* prop, vtkStratus
   }
   this->LeftOut.Warn(this->Mapper);
   if (!empty) {
-    description.Mesh = &this->Mesh.GetMesh();
+    description.Mesh = this->Shown;
     description.Transfer = this->Functions.data();
     description.Box = this->Mesh.GetBox();
   }
@@ -318,7 +335,7 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(
   const auto draw = [&] {
     this->Options = options;
     return stratus_tetra_caster_render(
-      this->Caster, &this->Mesh.GetMesh(), this->Functions.data(), &this->Picture.Camera, &options, &image, &this->Report);
+      this->Caster, this->Shown, this->Functions.data(), &this->Picture.Camera, &options, &image, &this->Report);
   };
   stratus_context_start_build_report(this->Context.Get());
   stratus_status status = draw();
@@ -383,8 +400,8 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
       }
       const stratus_image image = this->Picture.MakeRoom(rgba, this->PartDepth, depths);
       stratus_tetra_report report;
-      return stratus_tetra_caster_render(this->Caster, &this->Mesh.GetMesh(), this->Functions.data(), &this->Picture.Camera, &this->Options,
-               &image, &report) == STRATUS_OK;
+      return stratus_tetra_caster_render(
+               this->Caster, this->Shown, this->Functions.data(), &this->Picture.Camera, &this->Options, &image, &report) == STRATUS_OK;
     };
   }
   return this->Display.Draw(renderer, this->Picture, pixels, error);

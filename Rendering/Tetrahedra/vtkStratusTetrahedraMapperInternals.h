@@ -9,6 +9,7 @@
 #include "vtkStratusDisplay.h"
 #include "vtkStratusLeftOut.h"
 #include "vtkStratusMeshDescription.h"
+#include "vtkStratusMeshMask.h"
 #include "vtkStratusMeshView.h"
 #include "vtkStratusPicture.h"
 #include "vtkStratusTetrahedraMapper.h"
@@ -68,6 +69,9 @@ private:
   bool FindDrawn(Drawn& drawn, std::string& error);
   bool SetMesh(const Drawn& drawn, vtkMatrix4x4* matrix, std::string& error);
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
+  bool SetMask(std::string& error);
+  bool HasLabelMap() const { return this->Mapper->MaskInput && this->Mapper->MaskType == LabelMapMaskType; }
+  stratus_tetra_mode GetMode() const; // by render mode and blend mode
   bool SetTransfers(vtkVolumeProperty* property, std::string& error);
   bool SetClipPlanes(stratus_tetra_options& options, std::string& error) const;
   bool SetOptions(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
@@ -77,6 +81,8 @@ private:
 
   vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusMeshView Mesh;
+  vtkStratusMeshMask Mask;
+  const stratus_mesh* Shown = nullptr;                                  // the mesh without the cells that a mask hides
   std::array<vtkStratusTransferView, STRATUS_COMPONENTS_MAX> Transfers; // of each independent component
   std::array<stratus_transfer, STRATUS_COMPONENTS_MAX> Functions;
   std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusBlockMask.h"
 
+#include "vtkStratusMask.h"
+
 #include "vtkDataArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -8,7 +10,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace {
 
@@ -60,34 +61,25 @@ private:
 
 vtkImageData* vtkStratusBlockMask::Get(vtkImageData* mask, vtkDataSet* block, bool cells, std::string& error)
 {
-  vtkUnsignedCharArray* bytes = vtkUnsignedCharArray::SafeDownCast(mask->GetPointData()->GetScalars());
-  if (!bytes || bytes->GetNumberOfComponents() != 1 || bytes->GetNumberOfTuples() < mask->GetNumberOfPoints()) {
-    error = "MaskInput has no point scalars of one unsigned char each";
+  vtkStratusMask bytes;
+  if (!bytes.Set(mask, error)) {
     return nullptr;
   }
-  const vtkMTimeType time = std::max({ mask->GetMTime(), bytes->GetMTime(), block->GetMTime() });
+  const vtkMTimeType time = std::max(bytes.GetTime(), block->GetMTime());
   if (this->Part && this->Mask == mask && this->Of == block && this->Cells == cells && this->Time == time) {
     return this->Part;
   }
   const Values values(block, cells);
-  int extent[6], at[3];
-  mask->GetExtent(extent);
+  int at[3];
   vtkNew<vtkUnsignedCharArray> part;
   part->SetNumberOfTuples(static_cast<vtkIdType>(values.Counts[0]) * values.Counts[1] * values.Counts[2]);
   unsigned char* to = part->GetPointer(0);
   for (at[2] = 0; at[2] < values.Counts[2]; ++at[2]) {
     for (at[1] = 0; at[1] < values.Counts[1]; ++at[1]) {
       for (at[0] = 0; at[0] < values.Counts[0]; ++at[0]) {
-        double place[3], index[3];
-        int nearest[3];
-        bool inside = true;
+        double place[3];
         values.GetPlace(at, place);
-        mask->TransformPhysicalPointToContinuousIndex(place, index);
-        for (int a = 0; a < 3; ++a) {
-          nearest[a] = static_cast<int>(std::floor(std::min(std::max(index[a], -1e9), 1e9) + 0.5));
-          inside = inside && nearest[a] >= extent[2 * a] && nearest[a] <= extent[2 * a + 1];
-        }
-        *to++ = inside ? bytes->GetValue(mask->ComputePointId(nearest)) : 0;
+        *to++ = bytes.GetAt(place);
       }
     }
   }

@@ -3,10 +3,14 @@
 // Projection refuses the modes that only marching draws.
 #include "tetrahedra_scene.h"
 
+#include "vtkCellData.h"
 #include "vtkContourValues.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPlane.h"
 #include "vtkSphere.h"
+#include "vtkUnsignedCharArray.h"
 
 namespace {
 // Sets the same on both mappers.
@@ -70,6 +74,57 @@ void PlanesAndBoxes()
       CHECK(scene.GridErrors->Count == 0, "%s", scene.GridErrors->Text.c_str());
     }
   }
+}
+
+// A mask hides the cells whose middle is nearest to a point of byte 0, or outside, as a ghost array hides them.
+void Masks()
+{
+  GridScene scene, ghosts;
+  vtkNew<vtkImageData> mask;
+  mask->SetDimensions(5, 9, 8);          // not of the grid's size, nor at its place
+  mask->SetOrigin(0.213, -0.417, 0.331); // so that no middle is half way between points
+  mask->SetSpacing(1.1, 0.7, 0.8);
+  mask->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  auto* bytes = static_cast<unsigned char*>(mask->GetScalarPointer());
+  for (vtkIdType i = 0; i < mask->GetNumberOfPoints(); ++i) {
+    bytes[i] = i % 7 == 0 || i % 5 > 2 ? 0 : 1 + i % 255;
+  }
+  vtkNew<vtkUnsignedCharArray> hidden;
+  hidden->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (vtkIdType cell = 0; cell < ghosts.Grid->GetNumberOfCells(); ++cell) {
+    vtkIdType count;
+    const vtkIdType* ids;
+    double middle[3] = { 0, 0, 0 };
+    ghosts.Grid->GetCellPoints(cell, count, ids);
+    for (vtkIdType i = 0; i < count; ++i) {
+      for (int a = 0; a < 3; ++a) {
+        middle[a] += ghosts.Grid->GetPoint(ids[i])[a] / 4;
+      }
+    }
+    int at[3], dimensions[3];
+    mask->GetDimensions(dimensions);
+    bool inside = true;
+    for (int a = 0; a < 3; ++a) {
+      at[a] = static_cast<int>(std::floor((middle[a] - mask->GetOrigin()[a]) / mask->GetSpacing()[a] + 0.5));
+      inside = inside && at[a] >= 0 && at[a] < dimensions[a];
+    }
+    const bool shows = inside && bytes[(at[2] * dimensions[1] + at[1]) * dimensions[0] + at[0]] > 0;
+    hidden->InsertNextValue(shows ? 0 : vtkDataSetAttributes::HIDDENCELL);
+  }
+  ghosts.Grid->GetCellData()->AddArray(hidden);
+  const double whole = scene.GridLight();
+  scene.Tetrahedra->SetMaskInput(mask);
+  CHECK(scene.GridPicture() == ghosts.GridPicture(), "a mask is not as ghosts");
+  CHECK(scene.GridLight() > 0.0 && scene.GridLight() < whole, "light %g of %g", scene.GridLight(), whole);
+  bytes[3 * 5 * 9 + 4 * 5 + 2] = 0; // near the middle
+  const double before = scene.GridLight();
+  mask->Modified();
+  CHECK(scene.GridLight() < before, "a changed mask changes nothing");
+  scene.Tetrahedra->SetMaskTypeToLabelMap(); // which other modes have no use for
+  scene.Tetrahedra->SetBlendModeToMaximumIntensity();
+  const std::vector<float> labelled = scene.GridPicture();
+  scene.Tetrahedra->SetMaskInput(nullptr);
+  CHECK(labelled == scene.GridPicture() && scene.GridErrors->Count == 0, "a label map in maximum: %s", scene.GridErrors->Text.c_str());
 }
 
 // First hits are solids: opaque, lit, at their depth, which ends what is behind.
@@ -145,6 +200,16 @@ void WhatIsRefused()
   refuses("0 contour values");
   scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetNumberOfContours(17);
   refuses("17 isosurface values");
+  vtkNew<vtkImageData> mask;
+  mask->SetDimensions(3, 3, 3);
+  mask->AllocateScalars(VTK_FLOAT, 1);
+  scene.Tetrahedra->SetMaskInput(mask);
+  refuses("no point scalars of one unsigned char");
+  scene.Tetrahedra->SetMaskTypeToLabelMap();
+  scene.Tetrahedra->SetBlendModeToComposite();
+  refuses("label map is not supported in composite");
+  scene.Tetrahedra->SetMaskInput(nullptr);
+  scene.Tetrahedra->SetBlendModeToIsoSurface();
   scene.Tetrahedra->SetRenderModeToFirstHit();
   refuses("blend mode 5 is not supported in first hits");
   scene.Tetrahedra->SetRenderModeToComposite();
@@ -168,6 +233,7 @@ int main()
 {
   Modes();
   PlanesAndBoxes();
+  Masks();
   FirstHits();
   WhatIsRefused();
   return Failures ? 1 : 0;

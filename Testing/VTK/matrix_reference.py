@@ -74,13 +74,18 @@ class Lattice:
 class Mesh:
     """Tetrahedra within cubes of side 1, linear in each; a point's gradient is the mean of its cells, by volume."""
 
-    def __init__(self, data, values):
+    def __init__(self, data, values, mask):
         points = vtk_to_numpy(data.GetPoints().GetData()).astype(float)
         cells = vtk_to_numpy(data.GetCells().GetConnectivityArray()).reshape(-1, 4)
         self.low, self.high = points.min(0), points.max(0)
-        self.range = values.min(0).astype(float), values.max(0).astype(float)
         self.values, self.cells = values.astype(float), cells
         p = points[cells]
+        # A cell has the byte of the mask's point nearest to its middle. It is hidden where that is 0.
+        at = numpy.floor(p.mean(1) + 0.5).astype(int)
+        self.bytes = numpy.ones(len(cells), int) if mask is None else mask[at[:, 2], at[:, 1], at[:, 0]]
+        self.shown = self.bytes > 0
+        used = self.values[cells[self.shown]]
+        self.range = used.min((0, 1)), used.max((0, 1))
         edges = p[:, 1:] - p[:, :1]
         volume = abs(numpy.linalg.det(edges)) / 6
         self.origin, self.inverse = p[:, 0], numpy.linalg.inv(edges)  # (x - origin) @ inverse: the last three weights
@@ -93,14 +98,14 @@ class Mesh:
         for i in range(self.most):
             some = first[:-1] + i < first[1:]
             self.of[some, i] = order[first[:-1][some] + i]
-        self.spacing = (6 * volume.mean()) ** (1 / 3)
+        self.spacing = (6 * volume[self.shown].mean()) ** (1 / 3)
         v = self.values[cells]
         slopes = numpy.einsum("cij,cjk->cik", self.inverse, v[:, 1:] - v[:, :1])  # cell, axis, component
-        sums, weights = numpy.zeros((len(points), 3, values.shape[1])), numpy.zeros(len(points))
+        sums, weights, share = numpy.zeros((len(points), 3, values.shape[1])), numpy.zeros(len(points)), volume * self.shown
         for corner in range(4):
-            numpy.add.at(sums, cells[:, corner], slopes * volume[:, None, None])
-            numpy.add.at(weights, cells[:, corner], volume)
-        self.slopes, self.own_slopes = sums / weights[:, None, None], slopes
+            numpy.add.at(sums, cells[:, corner], slopes * share[:, None, None])
+            numpy.add.at(weights, cells[:, corner], share)
+        self.slopes, self.own_slopes = sums / numpy.maximum(weights, 1e-300)[:, None, None], slopes
 
     def find(self, points):
         """The cell of each point, and the weights of its corners."""
@@ -125,10 +130,19 @@ class Mesh:
     holds = Lattice.holds
 
     def at(self, points):
-        return numpy.where(self.holds(points)[:, None], self.mix(self.values, points), numpy.nan)
+        cell, weights = self.find(points)
+        there = self.holds(points) & self.shown[cell]
+        return numpy.where(there[:, None], numpy.einsum("pc,pc...->p...", weights, self.values[self.cells[cell]]), numpy.nan)
 
     def gradient(self, points, component):
         return self.mix(self.slopes[..., component], points)
+
+    def face(self, points):
+        """The normal of the face nearest to each point: the gradient of the least weight."""
+        cell, weights = self.find(points)
+        inverse = self.inverse[cell]
+        slopes = numpy.concatenate([-inverse.sum(-1, keepdims=True), inverse], -1)
+        return numpy.take_along_axis(slopes, weights.argmin(-1)[:, None, None], -1)[..., 0]
 
 
 def field_of(grid, features):
@@ -141,7 +155,7 @@ def field_of(grid, features):
     if grid == "tetrahedra":
         data = scenes.mesh(features)
         values = vtk_to_numpy(data.GetPointData().GetScalars())
-        return Mesh(data, values.reshape(len(values), -1))
+        return Mesh(data, values.reshape(len(values), -1), scenes.mask_values(features, grid) if "mask" in features else None)
     fields = scenes.levels(features)
     values = numpy.stack([f.field() for f in fields], -1).transpose(2, 1, 0, 3)
     half = fields[0].spacing / fields[0].scales[-1] / 2
@@ -202,7 +216,7 @@ class Layer:
             kept &= (points - scenes.CLIP[0]) @ numpy.array(scenes.CLIP[1]) >= 0
         if "crop" in self.features:
             kept &= ((points >= scenes.CROP[0]) & (points <= scenes.CROP[1])).all(-1)
-        if "mask" in self.features:
+        if "mask" in self.features and not isinstance(self.field, Mesh):  # whose own cells are hidden
             kept &= self.mask[self.mask_field.nearest(points)] > 0
         return kept
 
@@ -432,19 +446,34 @@ def slices(layers, eyes, ways):
 
 
 def solid_mesh(layer, m, eyes, ways):
-    """For each ray the first place where a mesh's field shows, and its colour. Samples find it roughly, bisection exactly. There the normal
-    is the cell's gradient or, where the ray's seen part begins, that of the box's side or the plane."""
-    ray, s, values = along([layer], eyes, ways)
-    at = numpy.flatnonzero(numpy.isfinite(values[0][:, m]) & (layer.look(values[0], m)[1] > 0))
+    """For each ray the first place where a mesh's field shows, and its colour: between the planes on which the faces of cells are, the field
+    is linear, and shows nowhere if it does at neither end. Bisection finds the place. There the normal is the cell's gradient or, where the
+    ray enters a cell or its seen part begins, that of the face or the plane."""
+    cuts = []
+    for x, y, z in (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 1, 1):
+        way = numpy.array([x, y, z], float)
+        last = scenes.POINTS - 1
+        cuts.append((numpy.arange(last * numpy.minimum(way, 0).sum(), last * numpy.maximum(way, 0).sum() + 1) - eyes @ way[:, None]) / (ways @ way)[:, None])
+    if "crop" in layer.features:
+        cuts += [(numpy.array(scenes.CROP) - eyes[:, a : a + 1]) / ways[:, a : a + 1] for a in range(3)]
+    if "clip" in layer.features:
+        point, way = numpy.array(scenes.CLIP)
+        cuts.append((((point - eyes) @ way) / (ways @ way))[:, None])
+    first, last = through(layer.field.low, layer.field.high, eyes, ways)
+    s = numpy.sort(numpy.concatenate(cuts, -1), -1)
+    s = numpy.stack([s - 1e-7, s + 1e-7], -1).reshape(len(eyes), -1)
+    ray, at = numpy.nonzero((s > first[:, None]) & (s < last[:, None]))
+    before, s = s[ray, numpy.maximum(at - 1, 0)], s[ray, at]
+    value = layer.value_at(eyes[ray] + s[:, None] * ways[ray])
+    at = numpy.flatnonzero(numpy.isfinite(value[:, m]) & (layer.look(value, m)[1] > 0))
     at = at[numpy.unique(ray[at], return_index=True)[1]]
-    ray, high = ray[at], s[at].copy()
+    ray, low, high = ray[at], before[at], s[at].copy()
     eyes, ways = eyes[ray], ways[ray]
 
     def shows(s):
         value = layer.value_at(eyes + s[:, None] * ways)
         return numpy.isfinite(value[:, m]) & (layer.look(value, m)[1] > 0)
 
-    low = high - STEP
     for _ in range(40):
         middle = (low + high) / 2
         seen = shows(middle)
@@ -452,9 +481,9 @@ def solid_mesh(layer, m, eyes, ways):
     points = eyes + high[:, None] * ways
     rgb = layer.look(layer.field.at(points), m)[0]
     if "light" in layer.features:
-        normal = layer.field.slope(points + 1e-6 * ways, m)
-        corners = [layer.field.low, layer.field.high] + [numpy.full(3, c) for c in scenes.CROP if "crop" in layer.features]
-        planes = [(abs(points[:, axis] - corner[axis]), numpy.eye(3)[axis]) for corner in corners for axis in range(3)]
+        enters = ~numpy.isfinite(layer.value_at(points - 1e-6 * ways)[:, m])
+        normal = numpy.where(enters[:, None], layer.field.face(points + 1e-6 * ways), layer.field.slope(points + 1e-6 * ways, m))
+        planes = [(abs(points[:, a] - c), numpy.eye(3)[a]) for c in scenes.CROP if "crop" in layer.features for a in range(3)]
         if "clip" in layer.features:
             planes.append((abs((points - scenes.CLIP[0]) @ scenes.CLIP[1]), scenes.CLIP[1]))
         for distance, plane in planes:
