@@ -308,8 +308,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* w
   if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the volume's matrix has no inverse");
   }
-  TRY(stratus_first_hit_update(
-    caster, volume, transfer, borders, options->skipping.structure, options->skipping.audit != 0, &frame->scene, report));
+  TRY(stratus_first_hit_update(caster, volume, transfer, borders, options, &frame->scene, report));
   const double start = stratus_now_ms();
   stratus_matrix_point(world_to_index, camera->eye, frame->eye);
   stratus_matrix_vector(world_to_index, camera->forward, frame->forward);

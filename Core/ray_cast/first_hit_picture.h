@@ -11,7 +11,10 @@
 
 /* Voxels and tree are in index coordinates, voxel (i,j,k) centred at (i,j,k), so that they stay valid when the geometry changes. */
 struct stratus_first_hit {
-  stratus_volume volume;      /* source of voxels and tree */
+  stratus_volume volume; /* source of voxels and tree */
+  const uint8_t* mask;   /* that hides voxels; NULL: none */
+  uint64_t mask_revision;
+  uint8_t* hidden;            /* ghost flags of the volume's values that say what the mask hides, too; NULL: no mask */
   stratus_transfer* transfer; /* its copied transfer function; NULL: nothing is built */
   stratus_voxels* voxels;     /* may be NULL while an offered tree serves */
   stratus_tree* tree;         /* NULL: not built */
@@ -40,10 +43,10 @@ typedef struct stratus_first_hit_scene {
 stratus_status stratus_first_hit_borders(
   stratus_context* context, const stratus_volume* volume, stratus_voxel_borders* borders, void** memory);
 
-/* Rebuilds only parts whose inputs changed. borders: NULL if the volume has no coordinates. plain: scene->voxels is needed even if an
- * offered tree serves. */
+/* Rebuilds only parts whose inputs changed. borders: NULL if the volume has no coordinates. With an audit, scene->voxels is there even if
+ * an offered tree serves. */
 stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_voxel_borders* borders, stratus_structure structure, bool plain, stratus_first_hit_scene* scene,
+  const stratus_voxel_borders* borders, const stratus_ray_cast_options* options, stratus_first_hit_scene* scene,
   stratus_ray_cast_report* report);
 
 /* The surface at which a ray begins. A voxel that it cuts open takes its normal. */

@@ -22,8 +22,11 @@ void stratus_first_hit_release(stratus_ray_caster* caster)
     drop_tree(kept);
     stratus_voxels_destroy(kept->voxels);
     stratus_release(caster->context, kept->transfer);
+    stratus_release(caster->context, kept->hidden);
     kept->voxels = NULL;
     kept->transfer = NULL;
+    kept->hidden = NULL;
+    kept->mask = NULL;
     stratus_ray_forget_offer(caster, false);
   }
 }
@@ -57,28 +60,60 @@ static stratus_status check_values(stratus_context* context, const stratus_volum
                                                                                        : stratus_volume_check_floats(context, volume, bias);
 }
 
-static stratus_status keep_source(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer)
+/* Makes the flags of values that are hidden, or that the mask hides. NULL: there is no mask. */
+static stratus_status make_hidden(stratus_context* context, const stratus_volume* volume, const uint8_t* mask, uint8_t** hidden)
+{
+  const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
+  const uint8_t* ghosts = volume->cell_centered ? volume->cell_ghosts : volume->point_ghosts;
+  const int flag = volume->cell_centered ? STRATUS_GHOST_HIDDEN_CELL : STRATUS_GHOST_HIDDEN_POINT;
+  void* memory = NULL;
+  *hidden = NULL;
+  if (mask) {
+    TRY(stratus_allocate(context, values, 1, &memory));
+    *hidden = memory;
+    for (size_t i = 0; i < values; ++i) {
+      (*hidden)[i] = (uint8_t)((ghosts ? ghosts[i] : 0) | (mask[i] ? 0 : flag));
+    }
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status keep_source(
+  stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_mask_options* mask)
 {
   struct stratus_first_hit* kept = caster->first_hit;
   stratus_transfer* copy = NULL;
+  uint8_t* hidden = NULL;
   const bool same = kept->transfer && stratus_volume_same_data(&kept->volume, volume);
-  if (same && stratus_transfer_same_opacity(kept->transfer, transfer)) {
+  const bool same_mask = kept->mask == mask->bytes && (!mask->bytes || kept->mask_revision == mask->revision);
+  if (same && same_mask && stratus_transfer_same_opacity(kept->transfer, transfer)) {
     return STRATUS_OK;
   }
   if (!same) {
     TRY(check_values(caster->context, volume));
   }
-  TRY(stratus_transfer_copy(caster->context, transfer, 1, &copy));
+  TRY(make_hidden(caster->context, volume, mask->bytes, &hidden));
+  const stratus_status status = stratus_transfer_copy(caster->context, transfer, 1, &copy);
+  if (status != STRATUS_OK) {
+    stratus_release(caster->context, hidden);
+    return status;
+  }
   stratus_first_hit_release(caster);
   kept->transfer = copy;
   kept->volume = *volume;
+  kept->hidden = hidden;
+  kept->mask = mask->bytes;
+  kept->mask_revision = mask->revision;
   return STRATUS_OK;
 }
 
-/* A view of the volume whose world coordinates are its index coordinates. */
-static stratus_volume in_index_coordinates(const stratus_volume* volume)
+/* A view of the volume whose world coordinates are its index coordinates. hidden: NULL, or flags in place of its own. */
+static stratus_volume in_index_coordinates(const stratus_volume* volume, const uint8_t* hidden)
 {
   stratus_volume plain = *volume;
+  if (hidden) {
+    *(volume->cell_centered ? &plain.cell_ghosts : &plain.point_ghosts) = hidden;
+  }
   const stratus_volume defaults = stratus_volume_default();
   for (int axis = 0; axis < 3; ++axis) {
     plain.origin[axis] = volume->cell_centered ? -0.5 : 0.0;
@@ -214,7 +249,7 @@ static void report_scene(const stratus_first_hit_scene* scene, stratus_structure
 }
 
 stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_voxel_borders* borders, stratus_structure structure, bool plain, stratus_first_hit_scene* scene,
+  const stratus_voxel_borders* borders, const stratus_ray_cast_options* options, stratus_first_hit_scene* scene,
   stratus_ray_cast_report* report)
 {
   static const stratus_tree_method methods[] = { [STRATUS_STRUCTURE_AUTO] = STRATUS_TREE_AUTO,
@@ -222,13 +257,14 @@ stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratu
     [STRATUS_STRUCTURE_DISTANCE] = STRATUS_TREE_DISTANCE,
     [STRATUS_STRUCTURE_OCTANT] = STRATUS_TREE_OCTANT,
     [STRATUS_STRUCTURE_HYBRID] = STRATUS_TREE_HYBRID };
-  const stratus_volume in_index = in_index_coordinates(volume);
+  const stratus_structure structure = options->skipping.structure;
   stratus_criterion criterion = stratus_criterion_default();
   bool offered = false;
 
   TRY(make_kept(caster));
-  TRY(keep_source(caster, volume, transfer));
+  TRY(keep_source(caster, volume, transfer, &options->mask));
   struct stratus_first_hit* kept = caster->first_hit;
+  const stratus_volume in_index = in_index_coordinates(volume, kept->hidden);
   criterion.transfer = transfer;
   memset(scene, 0, sizeof *scene);
   scene->borders = borders;
@@ -237,10 +273,10 @@ stratus_status stratus_first_hit_update(stratus_ray_caster* caster, const stratu
     scene->used = STRATUS_STRUCTURE_OCTANT;
   }
   const stratus_tree_method method = methods[borders ? scene->used : structure];
-  if (scene->used == STRATUS_STRUCTURE_HYBRID) {
+  if (scene->used == STRATUS_STRUCTURE_HYBRID && !kept->mask) { /* an offered tree knows of no mask */
     TRY(stratus_ray_tree_serves_first_hits(caster, &in_index, &criterion, &offered, &report->structure_ms));
   }
-  if (!offered || plain) {
+  if (!offered || options->skipping.audit) {
     TRY(update_voxels(caster, &in_index, &criterion, report));
   }
   scene->voxels = kept->voxels;

@@ -53,10 +53,8 @@ stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_r
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "crop regions 0x%x, must be 0..0x%x", (unsigned)options->clipping.crop_regions,
       (unsigned)STRATUS_CROP_ALL);
   }
-  if (options->mode == STRATUS_MODE_FIRST_HIT &&
-    (options->mask.bytes || (options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE))) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "first hits with %s are not supported",
-      options->mask.bytes ? "a mask" : "crop regions other than the inside");
+  if (options->mode == STRATUS_MODE_FIRST_HIT && options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "first hits with crop regions other than the inside are not supported");
   }
   if (options->mode == STRATUS_MODE_SLICE) {
     return stratus_slice_check(context, &options->slice);

@@ -235,8 +235,8 @@ typedef struct stratus_ray_clipping_options {
 /* Which values show or how they are coloured, by a byte for each value. */
 typedef struct stratus_ray_mask_options {
   /* One byte for each value of the volume; NULL (default): no mask. A sample is transparent if the byte of the nearest value is 0. A
-   * pre-integrated segment is transparent if the byte at either end is 0. First hits with a mask give STRATUS_UNSUPPORTED. The caster
-   * copies the mask when its pointer, its revision or the volume's data changes. */
+   * pre-integrated segment is transparent if the byte at either end is 0. First hits show no voxel whose byte is 0. The caster copies the
+   * mask when its pointer, its revision or the volume's data changes. */
   const uint8_t* bytes;
   uint64_t revision; /* the caller raises it when the bytes change under the same pointer. Default 0. */
   /* Composite, one component. 0 (default): no labels. 1..255, with a mask: its bytes are labels and hide nothing. A sample has the label of

@@ -257,7 +257,7 @@ void Masks()
   CHECK(scene.Light() > 0.9 * whole, "without mask nothing is drawn");
 }
 
-// Of solid voxels the middle region can be shown, other regions and masks are refused, and nothing is drawn.
+// Of solid voxels the middle region and those that a mask keeps can be shown; other regions are refused, and nothing is drawn.
 void FirstHits()
 {
   Scene scene(64, 48);
@@ -279,10 +279,23 @@ void FirstHits()
   vtkNew<vtkImageData> mask;
   mask->CopyStructure(scene.Image);
   mask->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
-  mask->GetPointData()->GetScalars()->Fill(1);
+  const vtkSmartPointer<vtkFloatArray> values = vtkFloatArray::SafeDownCast(scene.Image->GetPointData()->GetScalars());
+  vtkNew<vtkFloatArray> cleared;
+  cleared->DeepCopy(values);
+  for (vtkIdType i = 0; i < mask->GetNumberOfPoints(); ++i) {
+    const bool keeps = i % 33 < 14 || i / 33 % 29 > 16;
+    static_cast<unsigned char*>(mask->GetScalarPointer())[i] = keeps ? 1 : 0;
+    cleared->SetValue(i, keeps ? values->GetValue(i) : 0.0f); // of opacity 0
+  }
   scene.Mapper->SetMaskInput(mask);
-  CHECK(scene.Picture().empty() && scene.Errors->Count == 2 && scene.Errors->Has("mask"), "a mask: '%s'", scene.Errors->Text.c_str());
+  const std::vector<float> masked = scene.Picture();
   scene.Mapper->SetMaskInput(nullptr);
+  scene.Image->GetPointData()->SetScalars(cleared);
+  CHECK(scene.Picture() == masked && scene.Errors->Count == 1, "masked first hits are not those of voxels without opacity: '%s'",
+    scene.Errors->Text.c_str());
+  const double left = scene.Light();
+  CHECK(left > 0.1 * whole && left < 0.95 * whole, "the mask hides nothing, or all: %g of %g", left, whole);
+  scene.Image->GetPointData()->SetScalars(values);
   CHECK(scene.Light() == whole, "first hits after what was refused are others");
 }
 

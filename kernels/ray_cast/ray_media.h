@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What several components show at a sample, and how light and the gradient change it. Included by ray_cast.h once for each STRATUS_TYPE,
+ * Samples of several components, and how light and the gradient change them. Included by ray_cast.h once for each STRATUS_TYPE,
  * where samples are shaded and, for their components, where slices are cut. */
 
 /* How light and the gradient of component c change samples at s on their rays, in the lanes of `mask`. depth: the samples' optical depth

@@ -48,6 +48,7 @@ static void oracle_begin(const picture_case* c, oracle* o)
   for (size_t at = 0; at < (size_t)(n[0] * n[1] * n[2]); ++at) {
     const double value = reference_value_at(&c->volume, (int64_t)at);
     o->effective[at] = isfinite(value) && opacity_of(&c->transfer, value) > 0.0;
+    o->effective[at] &= !c->options.mask.bytes || c->options.mask.bytes[at];
     if (c->cell_ghosts && c->volume.cell_centered) {
       o->effective[at] &= !(c->cell_ghosts[at] & (STRATUS_GHOST_HIDDEN_CELL | STRATUS_GHOST_DUPLICATE));
     }
@@ -251,6 +252,51 @@ static void pixels_show_the_first_voxel_of_brute_force(void** state)
   stratus_context_destroy(context);
 }
 
+/* A mask hides voxels, with ghosts or without, and a caster sees that it has changed, or that there is none any more. */
+static void masks_hide_voxels(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  static uint8_t mask[64 * 64 * 64];
+  int hits = 0, doubts = 0;
+  for (uint32_t seed = 1; seed <= 40; ++seed) {
+    uint32_t random = seed;
+    stratus_ray_caster* caster = NULL;
+    picture_case c;
+    grid_case grid;
+    create_case(context, seed, &c);
+    if (seed % 3 == 0) {
+      grid_case_set_random(context, seed, &c, &grid);
+    }
+    const size_t values = (size_t)(c.volume.dimensions[0] * c.volume.dimensions[1] * c.volume.dimensions[2]);
+    assert_true(values <= sizeof mask);
+    for (size_t i = 0; i < values; ++i) {
+      mask[i] = case_random(&random) % 3 ? 255 : 0;
+    }
+    assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+    c.options.skipping.structure = (stratus_structure)(seed % 6);
+    case_render_with(context, caster, &c, &first);
+    compare(&c, &first, seed, &hits, &doubts);
+    c.options.mask.bytes = mask;
+    case_render_with(context, caster, &c, &first);
+    compare(&c, &first, seed, &hits, &doubts);
+    memset(mask, 0, values / 2);
+    ++c.options.mask.revision;
+    c.options.skipping.audit = 1;
+    case_render_with(context, caster, &c, &first);
+    compare(&c, &first, seed, &hits, &doubts);
+    assert_int_equal(first.report.differing_pixels, 0);
+    c.options.mask.bytes = NULL;
+    case_render_with(context, caster, &c, &first);
+    compare(&c, &first, seed, &hits, &doubts);
+    stratus_ray_caster_destroy(caster);
+    case_destroy(&c);
+  }
+  print_message("             %d hits, %d doubtful\n", hits, doubts);
+  assert_true(hits > 20000 && doubts < hits / 50);
+  stratus_context_destroy(context);
+}
+
 /* Spacings up to 200:1, rising and falling, of values and cells, along one axis or all; in every structure, and the plain walk agrees. */
 static void voxels_of_stretched_grids_are_met_where_they_are(void** state)
 {
@@ -426,6 +472,7 @@ int test_first_hit_picture(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(pixels_show_the_first_voxel_of_brute_force),
+    cmocka_unit_test(masks_hide_voxels),
     cmocka_unit_test(voxels_of_stretched_grids_are_met_where_they_are),
     cmocka_unit_test(equal_coordinates_draw_the_picture_of_the_image),
     cmocka_unit_test(gradients_are_those_of_the_field),

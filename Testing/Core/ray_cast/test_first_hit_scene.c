@@ -217,6 +217,12 @@ static void a_tree_that_comes_with_the_data_is_used(void** state)
   o.c.options.skipping.structure = STRATUS_STRUCTURE_DISTANCE; /* the options request another structure */
   expect_offered(&o, 0);
   o.c.options.skipping.structure = STRATUS_STRUCTURE_HYBRID;
+  static uint8_t mask[14 * 13 * 12];
+  memset(mask + sizeof mask / 3, 1, sizeof mask - sizeof mask / 3);
+  o.c.options.mask.bytes = mask; /* of which the tree knows nothing */
+  expect_offered(&o, 0);
+  o.c.options.mask.bytes = NULL;
+  o.c.options.skipping.structure = STRATUS_STRUCTURE_HYBRID;
   expect_offered(&o, 1);
   stratus_ray_caster_release(o.caster);
   expect_offered(&o, 1);

@@ -118,7 +118,8 @@ static stratus_ray_cast_options choose_options(fuzz* f, const picture_case* c)
   }
   if (o.mode == STRATUS_MODE_FIRST_HIT) {
     o.clipping.crop_regions = STRATUS_CROP_INSIDE;
-  } else if (fuzz_chance(f, 0.2)) {
+  }
+  if (fuzz_chance(f, 0.2)) {
     choose_mask(f, &o, c);
   }
   o.mask.label_count = fuzz_odd(f) ? (fuzz_chance(f, 0.5) ? -1 : 256) : o.mask.label_count;
