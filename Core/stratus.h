@@ -32,6 +32,7 @@
 #include "stratus/mesh.h"
 #include "stratus/visibility.h"
 #include "stratus/tetrahedra.h"
+#include "stratus/quantities.h"
 #include "stratus/scenes.h"
 
 #endif

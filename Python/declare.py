@@ -84,7 +84,8 @@ class Headers:
                 stars, extents = stars + "*", []
             kind = self.kind(match[1] + stars)
             for extent in reversed(extents):
-                kind = f"{kind} * {self.constants[extent] if extent in self.constants else number(extent)}"
+                known = dict(self.constants, **{name: value for entries in self.enums.values() for name, value in entries.items()})
+                kind = f"{kind} * {known[extent] if extent in known else number(extent)}"
                 kind = f"({kind})" if len(extents) > 1 else kind
             result.append((name, kind))
         return result

@@ -27,6 +27,8 @@ public:
   virtual scene_frame place() const = 0;
   virtual const transfer& functions() const = 0;
   virtual void draw(const stratus_image& image) = 0;
+  // Computes numbers of the rays of the picture that was drawn.
+  virtual void measure(const stratus_quantities& wanted) = 0;
   // Prints the last picture's rows: those before and after "a pixel".
   virtual void print_rows() const = 0;
   // Fails where the picture is not what it should be; it has been written.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame.h"
 
-#include "heat.h"
 #include "support.h"
 #ifdef STRATUS_EXR
 #include "vtkStratusEXRFile.h"
@@ -13,7 +12,8 @@ namespace cli {
 
 frame::frame(const options& o)
     : Width(o.width), Height(o.height), Behind(parse_background(o.background)), Color(o.color),
-      Format(format_of_picture(o.frames.empty() ? o.output : o.frames)), IsExr(Format == picture_format::exr), ShowsSamples(o.shows_samples)
+      Format(format_of_picture(o.frames.empty() ? o.output : o.frames)), IsExr(Format == picture_format::exr),
+      ShowsSamples(o.shows_samples), Wanted(o.quantities), Threshold(o.threshold)
 {
   if (this->Behind.transparent && !this->IsExr && this->Format != picture_format::png) {
     throw usage("'" + (o.frames.empty() ? o.output : o.frames) + "': only .png and .exr pictures can be transparent");
@@ -25,7 +25,11 @@ frame::frame(const options& o)
   if (this->IsExr && (o.axes || o.color_bar || !o.caption.empty())) {
     throw usage("an OpenEXR file has only values: leave out --axes, --color-bar and --caption");
   }
+  if (!this->IsExr && this->Wanted.size() > 1) {
+    throw usage("a picture shows one quantity, not " + std::to_string(this->Wanted.size()) + ": give an .exr for all, or one --quantity");
+  }
   const size_t pixels = static_cast<size_t>(o.width) * static_cast<size_t>(o.height);
+  this->Numbers.resize(this->Wanted.size(), std::vector<float>(pixels));
   this->Rgba.resize(4 * pixels);
   this->Depth.resize(this->IsExr ? pixels : 0);
   this->Samples.resize(this->IsExr || this->ShowsSamples ? pixels : 0);
@@ -40,6 +44,29 @@ stratus_image frame::view()
   image.depth = this->Depth.empty() ? nullptr : this->Depth.data();
   image.samples = this->Samples.empty() ? nullptr : this->Samples.data();
   return image;
+}
+
+stratus_quantities frame::numbers()
+{
+  stratus_quantities all = stratus_quantities_default();
+  all.width = this->Width;
+  all.height = this->Height;
+  all.threshold = this->Threshold;
+  for (size_t i = 0; i < this->Wanted.size(); ++i) {
+    all.of[this->Wanted[i]] = this->Numbers[i].data();
+  }
+  return all;
+}
+
+std::vector<std::string> frame::describe_numbers() const
+{
+  std::vector<std::string> lines;
+  for (size_t i = 0; i < this->Wanted.size(); ++i) {
+    const value_range range = range_of(this->Numbers[i]);
+    lines.push_back(std::string(stratus_quantity_name(this->Wanted[i])) +
+      (range.count > 0 ? format(", %.6g .. %.6g in ", range.low, range.high) + grouped(range.count) + " pixels" : ": no ray has one"));
+  }
+  return lines;
 }
 
 std::string frame::describe_samples() const
@@ -75,10 +102,32 @@ std::vector<uint8_t> frame::encode_exr() const
   }
   channels.push_back({ "Z", row_of(this->Depth, 1, 0) });
   channels.push_back({ "Samples", row_of(this->Samples, 1, 0) });
+  for (size_t i = 0; i < this->Wanted.size(); ++i) {
+    channels.push_back({ stratus_quantity_name(this->Wanted[i]), row_of(this->Numbers[i], 1, 0) });
+  }
   return vtkStratusEncodeEXR(this->Width, this->Height, channels);
 #else
   return {};
 #endif
+}
+
+// Sums are shown from 0 on, the transmittance from 0 to 1, and what is of the values, or a depth, over its own range.
+heat_scale frame::scale_of(size_t number) const
+{
+  const stratus_quantity quantity = this->Wanted[number];
+  const value_range range = range_of(this->Numbers[number]);
+  const bool sum = quantity == STRATUS_QUANTITY_INTEGRAL || quantity == STRATUS_QUANTITY_LENGTH || quantity == STRATUS_QUANTITY_CELLS;
+  const bool part = quantity == STRATUS_QUANTITY_TRANSMITTANCE;
+  const double low = part ? 0.0
+    : sum                 ? std::min(0.0, range.low)
+                          : range.low,
+               high = part ? 1.0
+    : sum                  ? std::max(0.0, range.high)
+                           : range.high;
+  const std::string title = quantity == STRATUS_QUANTITY_MAXIMUM_DEPTH ? "depth of max."
+    : quantity == STRATUS_QUANTITY_TRANSMITTANCE_DEPTH                 ? format("depth of %.3g", this->Threshold)
+                                                                       : stratus_quantity_name(quantity);
+  return { low, high > low ? high : low + 1.0, title };
 }
 
 void frame::annotate(const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time)
@@ -93,8 +142,13 @@ void frame::write(output_file& file) const
   if (this->IsExr) {
     file.write(this->encode_exr());
   } else if (this->ShowsSamples) {
+    const std::vector<float> samples(this->Samples.begin(), this->Samples.end());
+    const heat_scale scale = { 0.0, std::max(1.0, range_of(samples).high), "samples a pixel" };
     file.write(
-      encode(this->Format, heat_map(this->Samples, this->Width, this->Height, this->Color), this->Width + heat_bar_width, this->Height));
+      encode(this->Format, heat_map(samples, this->Width, this->Height, scale, this->Color), this->Width + heat_bar_width, this->Height));
+  } else if (!this->Wanted.empty()) {
+    file.write(encode(this->Format, heat_map(this->Numbers[0], this->Width, this->Height, this->scale_of(0), this->Color),
+      this->Width + heat_bar_width, this->Height));
   } else {
     file.write(encode(this->Format, to_bytes(this->Rgba, this->Width, this->Height, this->Behind), this->Width, this->Height));
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "annotation.h"
+#include "heat.h"
 #include "options.h"
 #include "output.h"
 #include "picture.h"
@@ -18,6 +19,11 @@ public:
   explicit frame(const options& o);
   // Borrows the arrays that the options need.
   stratus_image view();
+  // The numbers of rays that the options need; none: nothing is wanted.
+  stratus_quantities numbers();
+  bool has_numbers() const { return !this->Wanted.empty(); }
+  // Describes the range of each of these numbers in a line.
+  std::vector<std::string> describe_numbers() const;
   // Describes the samples per pixel in a line, or returns "" where they were not counted.
   std::string describe_samples() const;
   // Puts annotations around the picture.
@@ -26,6 +32,7 @@ public:
 
 private:
   std::vector<uint8_t> encode_exr() const;
+  heat_scale scale_of(size_t number) const;
 
   int Width, Height;
   background Behind;
@@ -33,6 +40,9 @@ private:
   picture_format Format;
   bool IsExr, ShowsSamples;
   std::vector<float> Rgba, Depth;
+  std::vector<stratus_quantity> Wanted;
+  double Threshold;
+  std::vector<std::vector<float>> Numbers; // of each that is wanted
   std::vector<uint32_t> Samples;
 };
 } // namespace cli

@@ -58,9 +58,12 @@ public:
   cli::scene_frame place() const override;
   const cli::transfer& functions() const override { return this->Transfer; }
   void draw(const stratus_image& image) override;
+  void measure(const stratus_quantities& wanted) override;
   void print_rows() const override;
 
 private:
+  stratus_tetra_options how() const;
+
   const cli::options& Options;
   cli::context& Core;
   stratus_tetra_mode Mode;
@@ -105,11 +108,8 @@ cli::scene_frame grid_drawing::place() const
   return frame;
 }
 
-void grid_drawing::draw(const stratus_image& image)
+stratus_tetra_options grid_drawing::how() const
 {
-  if (!this->Caster) {
-    this->Core.check(stratus_tetra_caster_create(this->Core, &this->Caster), "caster of tetrahedra");
-  }
   stratus_tetra_options how = stratus_tetra_options_default();
   const cli::options& o = this->Options;
   how.mode = this->Mode;
@@ -124,9 +124,30 @@ void grid_drawing::draw(const stratus_image& image)
   how.slice = cli::slice_of(o, o.up.empty() ? 2 : o.up[0] - 'x');
   how.shade = o.shade || o.mode == STRATUS_MODE_FIRST_HIT;
   how.normals = o.normals;
+  return how;
+}
+
+void grid_drawing::draw(const stratus_image& image)
+{
+  if (!this->Caster) {
+    this->Core.check(stratus_tetra_caster_create(this->Core, &this->Caster), "caster of tetrahedra");
+  }
+  const stratus_tetra_options how = this->how();
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(
     stratus_tetra_caster_render(this->Caster, &this->Mesh.view(), &view, &this->Camera, &how, &image, &this->Report), "render");
+}
+
+void grid_drawing::measure(const stratus_quantities& wanted)
+{
+  const stratus_tetra_options how = this->how();
+  const stratus_transfer view = this->Transfer.view();
+  stratus_ray_cast_input input = {};
+  input.tetra = this->Caster;
+  input.mesh = &this->Mesh.view();
+  input.transfer = &view;
+  input.tetra_options = &how;
+  this->Core.check(stratus_ray_caster_render_quantities(&input, 1, &this->Camera, &wanted), "quantity");
 }
 
 void grid_drawing::print_rows() const

@@ -53,12 +53,12 @@ void write_text(canvas& to, const std::string& text, int x, int y)
   }
 }
 
-void draw_bar(canvas& to, int left, uint32_t most, vtkColorTransferFunction* colors)
+void draw_bar(canvas& to, int left, const heat_scale& scale, vtkColorTransferFunction* colors)
 {
   const int tall = std::max(2, to.height - 2 * bar_margin), bottom = (to.height - tall) / 2;
   for (int j = 0; j < tall; ++j) {
     uint8_t rgb[3];
-    look_up(colors, static_cast<double>(most) * j / (tall - 1), rgb);
+    look_up(colors, scale.low + (scale.high - scale.low) * j / (tall - 1), rgb);
     for (int i = 0; i < bar_wide; ++i) {
       to.set(left + bar_left + i, bottom + j, rgb);
     }
@@ -66,20 +66,33 @@ void draw_bar(canvas& to, int left, uint32_t most, vtkColorTransferFunction* col
   if (to.height < 2 * bar_margin + line_height) {
     return; // no room for text
   }
-  const double step = std::max(1.0, round_step(std::max(1.0, static_cast<double>(most)) * line_height / tall));
-  for (double value = 0.0; value <= static_cast<double>(most); value += step) {
-    const int y = bottom + static_cast<int>(std::lround(value / std::max<double>(most, 1.0) * (tall - 1)));
-    write_text(to, grouped(static_cast<unsigned long long>(value)), left + text_left, y);
+  const double extent = scale.high - scale.low, step = round_step(extent * line_height / tall);
+  for (double n = std::ceil(scale.low / step); n * step <= scale.high + 1e-9 * extent; ++n) {
+    const int y = bottom + static_cast<int>(std::lround((n * step - scale.low) / extent * (tall - 1)));
+    const bool whole = std::floor(step) == step && std::abs(n * step) < 1e9 && n >= 0.0;
+    write_text(to, whole ? grouped(static_cast<unsigned long long>(n * step)) : format("%.4g", n * step), left + text_left, y);
   }
-  write_text(to, "samples a pixel", left + 8, to.height - bar_margin / 2 + 1);
+  write_text(to, scale.title, left + 8, to.height - bar_margin / 2 + 1);
 }
 } // namespace
 
-std::vector<uint8_t> heat_map(const std::vector<uint32_t>& samples, int width, int height, const std::string& color)
+value_range range_of(const std::vector<float>& values)
 {
-  const uint32_t most = samples.empty() ? 0 : *std::max_element(samples.begin(), samples.end());
+  value_range range;
+  for (const float value : values) {
+    if (std::isfinite(value)) {
+      range.low = range.count > 0 ? std::min(range.low, static_cast<double>(value)) : value;
+      range.high = range.count > 0 ? std::max(range.high, static_cast<double>(value)) : value;
+      ++range.count;
+    }
+  }
+  return range;
+}
+
+std::vector<uint8_t> heat_map(const std::vector<float>& values, int width, int height, const heat_scale& scale, const std::string& color)
+{
   vtkNew<vtkColorTransferFunction> colors;
-  const std::vector<double> points = parse_color(color.empty() ? "fire" : color, 0.0, std::max<double>(most, 1.0));
+  const std::vector<double> points = parse_color(color.empty() ? "fire" : color, scale.low, scale.high);
   for (size_t i = 0; i < points.size(); i += 4) {
     colors->AddRGBPoint(points[i], points[i + 1], points[i + 2], points[i + 3]);
   }
@@ -87,12 +100,15 @@ std::vector<uint8_t> heat_map(const std::vector<uint32_t>& samples, int width, i
   result.rgb.assign(3 * static_cast<size_t>(result.width) * static_cast<size_t>(height), 0);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      uint8_t rgb[3];
-      look_up(colors, samples[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)], rgb);
+      const float value = values[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
+      uint8_t rgb[3] = { 0, 0, 0 };
+      if (std::isfinite(value)) {
+        look_up(colors, value, rgb);
+      }
       result.set(x, y, rgb);
     }
   }
-  draw_bar(result, width, most, colors);
+  draw_bar(result, width, scale, colors);
   return std::move(result.rgb);
 }
 } // namespace cli

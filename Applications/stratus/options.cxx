@@ -110,6 +110,11 @@ Rendering
   --threads N             threads of the host (default: all)
   --read-timeout S        stop reading INPUT, or a mask, after S seconds without a byte read or progress reported; 0: never (default 60)
   --show samples          show a heat map of the samples that each pixel used, with a scale, instead of the image; --color sets its colours
+  --quantity Q            show a map of a number of each pixel's ray, with a scale, instead of the image: integral (of the values over the
+                          ray's length), length, mean, maximum, maximum_depth (where it is), cells, transmittance, or transmittance_depth
+                          (where the transmittance falls to --threshold). To OUT.exr also several, with commas between them, as channels
+                          in addition to the image
+  --threshold T           the transmittance for --quantity transmittance_depth, above 0 and below 1 (default 0.5)
   --audit                 draw again without skipping and count the pixels that differ; any is a failure
 
 Trees
@@ -314,6 +319,30 @@ void set_show(options& o, const std::string& word, const std::string& value)
   o.shows_samples = value == "samples";
 }
 
+void set_quantities(options& o, const std::string& word, const std::string& value)
+{
+  for (const std::string& name : split(value, ',')) {
+    std::string names;
+    int quantity = 0;
+    while (quantity < STRATUS_QUANTITY_COUNT && name != stratus_quantity_name(static_cast<stratus_quantity>(quantity))) {
+      names += std::string(quantity ? ", " : "") + stratus_quantity_name(static_cast<stratus_quantity>(quantity));
+      ++quantity;
+    }
+    if (quantity == STRATUS_QUANTITY_COUNT) {
+      throw usage(word + ": '" + name + "' is none of " + names);
+    }
+    o.quantities.push_back(static_cast<stratus_quantity>(quantity));
+  }
+}
+
+void set_threshold(options& o, const std::string& word, const std::string& value)
+{
+  o.threshold = number(value, word);
+  if (!(o.threshold > 0.0 && o.threshold < 1.0)) {
+    throw usage(word + ": " + value + " must be above 0 and below 1");
+  }
+}
+
 // Takes "out-%04d.png": one %d, with a width or without.
 void set_frames(options& o, const std::string& word, const std::string& value)
 {
@@ -379,6 +408,8 @@ constexpr struct {
   { "--threads", [](options& o, text word, text value) { o.threads = whole_number(value, word, 1, 1024); } },
   { "--read-timeout", [](options& o, text word, text value) { o.read_timeout = within(value, word, 0.0, 1e6); } },
   { "--show", set_show },
+  { "--quantity", set_quantities },
+  { "--threshold", set_threshold },
   { "--lower", keep_bound<&options::lower> },
   { "--upper", keep_bound<&options::upper> },
   { "--depth", [](options& o, text word, text value) { o.depth = whole_number(value, word, 0, 16); } },
@@ -456,8 +487,12 @@ void check_complete(const options& o)
       throw usage(o.command + ": which INPUT?");
     }
     check_output(o);
-    if (o.shows_samples && (o.axes || o.color_bar || !o.caption.empty())) {
-      throw usage("--show samples is no picture of values: leave out --axes, --color-bar and --caption");
+    if ((o.shows_samples || !o.quantities.empty()) && (o.axes || o.color_bar || !o.caption.empty())) {
+      throw usage(std::string(o.shows_samples ? "--show samples" : "--quantity") +
+        " is no picture of values: leave out --axes, --color-bar and --caption");
+    }
+    if (o.shows_samples && !o.quantities.empty()) {
+      throw usage("--show samples and --quantity are two pictures: leave out one");
     }
     if (o.mode == STRATUS_MODE_ISOSURFACE && o.contours.empty()) {
       throw usage("--mode isosurface: which values? Give --contours V,V,...");

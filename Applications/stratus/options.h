@@ -53,9 +53,11 @@ struct options {
   bool nearest = false;
   bool shade = false;
   bool audit = false;
-  bool report = false;        // render, tree, sort: prints the stages of building
-  bool shows_samples = false; // render: draws the samples that each pixel took
-  bool has_range = false;     // tree: lower..upper is given
+  bool report = false;                      // render, tree, sort: prints the stages of building
+  bool shows_samples = false;               // render: draws the samples that each pixel took
+  std::vector<stratus_quantity> quantities; // render: draws the first one's numbers, or writes all to OpenEXR
+  double threshold = 0.5;                   // of the quantity transmittance_depth
+  bool has_range = false;                   // tree: lower..upper is given
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   stratus_tree_method method = STRATUS_TREE_AUTO;

@@ -71,6 +71,9 @@ void render_one(const cli::options& o, const cli::routed& data, const cli::serie
   cli::output_file out(o.output); // before the work, so that a path that cannot be written is reported at once
   const stratus_image image = frame.view();
   drawing->draw(image);
+  if (frame.has_numbers()) {
+    drawing->measure(frame.numbers());
+  }
   annotate(frame, o, *drawing, in, step);
   std::printf("%s\n", o.source.c_str());
   print_reading(in);
@@ -80,6 +83,9 @@ void render_one(const cli::options& o, const cli::routed& data, const cli::serie
   drawing->print_rows();
   if (image.samples) {
     row("a pixel", frame.describe_samples());
+  }
+  for (const std::string& line : frame.describe_numbers()) {
+    row("quantity", line);
   }
   if (o.report) {
     core.print_build_report();
@@ -175,6 +181,9 @@ void render_film(const cli::options& o, cli::series& in)
       }
       drawing->take(data);
       drawing->draw(image);
+      if (frame.has_numbers()) {
+        drawing->measure(frame.numbers());
+      }
       annotate(frame, o, *drawing, &in, step);
       cli::output_file out(frame_name(o.frames, step));
       frame.write(out);

@@ -21,6 +21,7 @@ struct member {
   std::unique_ptr<cli::input> input; // null for a mesh
   std::unique_ptr<cli::mesh> mesh;   // null for a volume
   cli::transfer functions;
+  stratus_transfer view = {};
   stratus_volume outline = {}; // of a mesh
   stratus_tetra_options tetra_options = {};
   stratus_ray_cast_options options = {};
@@ -57,10 +58,12 @@ public:
   cli::scene_frame place() const override;
   const cli::transfer& functions() const override { return this->Members[0].functions; }
   void draw(const stratus_image& image) override;
+  void measure(const stratus_quantities& wanted) override;
   void print_rows() const override;
   void judge() const override;
 
 private:
+  std::vector<stratus_ray_cast_input> inputs();
   void take_member(const cli::options& o, const cli::routed& data);
   void set_mesh(member& one, const cli::routed& data);
 
@@ -170,16 +173,14 @@ cli::scene_frame several_drawing::place() const
   return frame;
 }
 
-// Only the first INPUT is cropped and masked.
-void several_drawing::draw(const stratus_image& image)
+// The members as the core takes them. Only the first INPUT is cropped and masked.
+std::vector<stratus_ray_cast_input> several_drawing::inputs()
 {
-  const size_t count = this->Members.size();
-  std::vector<stratus_transfer> views(count);
-  std::vector<stratus_ray_cast_input> inputs(count);
-  for (size_t n = 0; n < count; ++n) {
+  std::vector<stratus_ray_cast_input> inputs(this->Members.size());
+  for (size_t n = 0; n < inputs.size(); ++n) {
     member& one = this->Members[n];
-    views[n] = one.functions.view();
-    inputs[n].transfer = &views[n];
+    one.view = one.functions.view();
+    inputs[n].transfer = &one.view;
     one.options = cli::casting_of(this->Options, this->Up);
     if (one.mesh) {
       one.tetra_options = stratus_tetra_options_default();
@@ -199,6 +200,20 @@ void several_drawing::draw(const stratus_image& image)
     inputs[n].volume = &one.input->volume;
     inputs[n].options = &one.options;
   }
+  return inputs;
+}
+
+void several_drawing::measure(const stratus_quantities& wanted)
+{
+  const std::vector<stratus_ray_cast_input> inputs = this->inputs();
+  this->Core.check(
+    stratus_ray_caster_render_quantities(inputs.data(), static_cast<int>(inputs.size()), &this->Camera, &wanted), "quantity");
+}
+
+void several_drawing::draw(const stratus_image& image)
+{
+  const std::vector<stratus_ray_cast_input> inputs = this->inputs();
+  const size_t count = inputs.size();
   std::vector<stratus_ray_cast_report> reports(count);
   this->Core.check(
     stratus_ray_caster_render_several(inputs.data(), static_cast<int>(count), &this->Camera, &image, reports.data()), "render");

@@ -38,12 +38,13 @@ public:
   cli::scene_frame place() const override;
   const cli::transfer& functions() const override { return this->Transfer; }
   void draw(const stratus_image& image) override;
+  void measure(const stratus_quantities& wanted) override;
   void print_rows() const override;
   void judge() const override;
 
 private:
   cli::volumes all() const;
-  void draw_blocks(const stratus_ray_cast_options& cast, const stratus_image& image);
+  std::vector<stratus_ray_cast_input> inputs();
 
   const cli::options& Options;
   cli::context& Core;
@@ -52,6 +53,8 @@ private:
   std::vector<std::unique_ptr<cli::input>> Blocks; // further blocks of Input's volume
   std::vector<stratus_ray_caster*> BlockCasters;
   cli::transfer Transfer;
+  stratus_transfer View = {}; // of a picture, as is
+  stratus_ray_cast_options Casting = {};
   stratus_camera Camera = {};
   stratus_ray_caster* Caster = nullptr;
   stratus_ray_cast_report Report = {};
@@ -130,28 +133,14 @@ cli::scene_frame volume_drawing::place() const
   return frame;
 }
 
-void volume_drawing::draw(const stratus_image& image)
-{
-  stratus_ray_cast_options cast = cli::casting_of(this->Options, this->Up);
-  this->Parts.set(this->Options, this->Core, this->Input->volume, cast);
-  if (!this->Caster) {
-    this->Core.check(stratus_ray_caster_create(this->Core, &this->Caster), "ray caster");
-  }
-  if (!this->Blocks.empty()) {
-    this->draw_blocks(cast, image);
-    return;
-  }
-  const stratus_transfer view = this->Transfer.view();
-  this->Core.check(
-    stratus_ray_caster_render(this->Caster, &this->Input->volume, &view, &this->Camera, &cast, &image, &this->Report), "render");
-}
-
-void volume_drawing::draw_blocks(const stratus_ray_cast_options& cast, const stratus_image& image)
+// The volume, or all its blocks, as the core takes them.
+std::vector<stratus_ray_cast_input> volume_drawing::inputs()
 {
   const cli::volumes volumes = this->all();
-  const stratus_transfer view = this->Transfer.view();
+  this->Casting = cli::casting_of(this->Options, this->Up);
+  this->Parts.set(this->Options, this->Core, this->Input->volume, this->Casting);
+  this->View = this->Transfer.view();
   std::vector<stratus_ray_cast_input> inputs(volumes.size());
-  std::vector<stratus_ray_cast_report> reports(volumes.size());
   this->BlockCasters.resize(std::max(this->BlockCasters.size(), this->Blocks.size()), nullptr);
   for (size_t i = 0; i < volumes.size(); ++i) {
     stratus_ray_caster*& caster = i > 0 ? this->BlockCasters[i - 1] : this->Caster;
@@ -160,9 +149,16 @@ void volume_drawing::draw_blocks(const stratus_ray_cast_options& cast, const str
     }
     inputs[i].caster = caster;
     inputs[i].volume = volumes[i];
-    inputs[i].transfer = &view;
-    inputs[i].options = &cast;
+    inputs[i].transfer = &this->View;
+    inputs[i].options = &this->Casting;
   }
+  return inputs;
+}
+
+void volume_drawing::draw(const stratus_image& image)
+{
+  const std::vector<stratus_ray_cast_input> inputs = this->inputs();
+  std::vector<stratus_ray_cast_report> reports(inputs.size());
   this->Core.check(
     stratus_ray_caster_render_blocks(inputs.data(), static_cast<int>(inputs.size()), &this->Camera, &image, reports.data()), "render");
   // The reasons are from the block with the most samples, the counts are summed over all blocks.
@@ -174,6 +170,15 @@ void volume_drawing::draw_blocks(const stratus_ray_cast_options& cast, const str
       stratus_ray_cast_report_add(&this->Report, &*r);
     }
   }
+}
+
+void volume_drawing::measure(const stratus_quantities& wanted)
+{
+  const std::vector<stratus_ray_cast_input> inputs = this->inputs();
+  stratus_quantities of_blocks = wanted;
+  of_blocks.blocks = 1;
+  this->Core.check(
+    stratus_ray_caster_render_quantities(inputs.data(), static_cast<int>(inputs.size()), &this->Camera, &of_blocks), "quantity");
 }
 
 void volume_drawing::print_rows() const

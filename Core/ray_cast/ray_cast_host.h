@@ -20,6 +20,7 @@ typedef enum stratus_ray_variant {
   STRATUS_VARIANT_LOCAL,       /* composite, cell by cell in rough blocks */
   STRATUS_VARIANT_TRANSFER_2D, /* composite, by a function of two variables */
   STRATUS_VARIANT_SLICE,
+  STRATUS_VARIANT_QUANTITIES,       /* numbers of the field, cell by cell */
   STRATUS_VARIANT_SHADING_MIDPOINT, /* samples are lit, gradient-thinned, multi-component or labelled */
   STRATUS_VARIANT_SHADING_PREINTEGRATED
 } stratus_ray_variant;
@@ -72,6 +73,9 @@ stratus_ray_cast_tile* stratus_ray_transfer_2d_tile_isa2(int type);
 stratus_ray_cast_tile* stratus_ray_slice_tile_isa0(int type);
 stratus_ray_cast_tile* stratus_ray_slice_tile_isa1(int type);
 stratus_ray_cast_tile* stratus_ray_slice_tile_isa2(int type);
+stratus_ray_cast_tile* stratus_ray_quantities_tile_isa0(int type);
+stratus_ray_cast_tile* stratus_ray_quantities_tile_isa1(int type);
+stratus_ray_cast_tile* stratus_ray_quantities_tile_isa2(int type);
 stratus_ray_cast_tile* stratus_ray_modes_tile_isa0(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_modes_tile_isa1(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_modes_tile_isa2(int type, stratus_ray_variant variant);

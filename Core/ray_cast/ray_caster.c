@@ -35,7 +35,7 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
     stratus_ray_fetched_drop(caster);
     stratus_ray_grid_release(caster->context, &caster->grid);
     stratus_first_hit_release(caster);
-    for (int c = 0; c < 4; ++c) {
+    for (int c = 0; c < STRATUS_RAY_PARTS; ++c) {
       stratus_ray_caster_destroy(caster->parts[c]);
       caster->parts[c] = NULL;
     }

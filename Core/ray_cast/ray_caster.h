@@ -16,6 +16,9 @@
 typedef struct stratus_ray_device stratus_ray_device;
 typedef struct stratus_first_hit stratus_first_hit;
 
+/* Casters within a caster: of up to four independent components, and, last, of the quantities of one. */
+#define STRATUS_RAY_PARTS 5
+
 /* A table and its inputs. */
 typedef struct stratus_ray_made_table {
   stratus_table* table; /* NULL: none */
@@ -93,7 +96,7 @@ struct stratus_ray_caster {
   stratus_ray_trial trial;
   const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
 
-  stratus_ray_caster* parts[4]; /* of independent components, see ray_caster_pictures.c; NULL until such a mode is used */
+  stratus_ray_caster* parts[STRATUS_RAY_PARTS]; /* of independent components, see ray_caster_pictures.c; NULL until such a mode is used */
 
   bool keeps; /* pictures hold what rays keep, not its colour (ray_kept.h) */
 

@@ -3,6 +3,7 @@
  * caster, which keeps its structures, and the images are added. */
 #include "picture.h"
 #include "ray_caster.h"
+#include "ray_several_picture.h"
 #include "ray_shading_table.h"
 
 static bool draws_parts(const stratus_volume* volume, const stratus_ray_cast_options* options)
@@ -103,6 +104,9 @@ stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus
     view = stratus_volume_component(volume, component);
     TRY(find_part(caster, component, &one));
   }
+  if (options->mode == STRATUS_MODE_QUANTITIES) { /* structures of pictures stay as they are */
+    TRY(find_part(caster, STRATUS_RAY_PARTS - 1, &one));
+  }
   one->keeps = options->mode != STRATUS_MODE_FIRST_HIT;
   const stratus_status status = stratus_ray_render_one(one, &view, transfer + component, camera, options, image, report);
   one->keeps = false;
@@ -127,6 +131,10 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
   transfer = options->optics.transfer_2d ? &caster->transfer_2d.shown : transfer;
   TRY(stratus_ray_check_input(caster->context, volume, transfer, options));
   TRY(stratus_image_check(caster->context, image));
+  if (options->mode == STRATUS_MODE_QUANTITIES) {
+    const stratus_ray_cast_input input = { .caster = caster, .volume = volume, .transfer = transfer, .options = options };
+    return stratus_several_kept(&input, 1, camera, image, report);
+  }
   TRY((draws_parts(volume, options) ? draw_parts : stratus_ray_render_one)(caster, volume, transfer, camera, options, image, &mine));
   if (report) {
     *report = mine;

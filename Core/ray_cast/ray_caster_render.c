@@ -63,9 +63,9 @@ static stratus_status check_clip_gradients(stratus_context* context, const strat
 
 static stratus_status check_options(stratus_context* context, const stratus_ray_cast_options* options)
 {
-  if ((unsigned)options->mode > STRATUS_MODE_SLICE || (unsigned)options->light.normals > STRATUS_NORMALS_GRADIENT) {
+  if ((unsigned)options->mode > STRATUS_MODE_QUANTITIES || (unsigned)options->light.normals > STRATUS_NORMALS_GRADIENT) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mode %d (0..%d) or normals %d (0..%d) are out of range", (int)options->mode,
-      STRATUS_MODE_SLICE, (int)options->light.normals, STRATUS_NORMALS_GRADIENT);
+      STRATUS_MODE_QUANTITIES, (int)options->light.normals, STRATUS_NORMALS_GRADIENT);
   }
   if ((unsigned)options->skipping.structure > STRATUS_STRUCTURE_HYBRID || (unsigned)options->sampling.rule > STRATUS_SAMPLING_CELLS ||
     (unsigned)options->sampling.interpolation > STRATUS_INTERPOLATION_NEAREST) {

@@ -264,7 +264,8 @@ static stratus_status automatic(stratus_ray_caster* caster, bool times, stratus_
   bool serves = true;
   *structure = STRATUS_STRUCTURE_NONE;
   if (caster->shown.mode == STRATUS_MODE_SLICE ||
-    (caster->occupancy->count == n[0] * n[1] * n[2] && caster->shown.mode == STRATUS_MODE_COMPOSITE)) {
+    (caster->occupancy->count == n[0] * n[1] * n[2] &&
+      (caster->shown.mode == STRATUS_MODE_COMPOSITE || caster->shown.mode == STRATUS_MODE_QUANTITIES))) {
     return STRATUS_OK;
   }
   if (!times) {

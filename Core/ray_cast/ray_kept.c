@@ -11,13 +11,13 @@
 
 bool stratus_kept_is(stratus_mode mode)
 {
-  return stratus_mode_is_extreme(mode) || stratus_mode_is_sum(mode) || mode == STRATUS_MODE_FIRST_HIT;
+  return stratus_mode_is_extreme(mode) || stratus_mode_is_sum(mode) || mode == STRATUS_MODE_FIRST_HIT || mode == STRATUS_MODE_QUANTITIES;
 }
 
 stratus_mode stratus_kept_mode(const stratus_ray_cast_input* input)
 {
   static const stratus_mode of_mesh[] = { STRATUS_MODE_COMPOSITE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
-    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE, STRATUS_MODE_SLICE, STRATUS_MODE_FIRST_HIT };
+    STRATUS_MODE_ADDITIVE, STRATUS_MODE_ISOSURFACE, STRATUS_MODE_SLICE, STRATUS_MODE_FIRST_HIT, STRATUS_MODE_QUANTITIES };
   if (!input->tetra) {
     return input->options ? input->options->mode : STRATUS_MODE_COMPOSITE;
   }
@@ -43,7 +43,9 @@ stratus_status stratus_kept_part_create(const stratus_kept* kept, stratus_image*
 {
   stratus_image like = *kept->image;
   float depth = 0.0f;
+  uint32_t samples = 0;
   like.depth = &depth;
+  like.samples = kept->mode == STRATUS_MODE_QUANTITIES ? &samples : like.samples;
   return stratus_image_part_create(kept->context, &like, part);
 }
 
@@ -140,6 +142,19 @@ static void join_sum(const stratus_kept* kept, int n, const float rgba[4], float
   pixel->of = pixel->of < 0 ? n : pixel->of;
 }
 
+static void join_quantities(const stratus_kept* kept, int n, const float rgba[4], float depth, uint32_t cells, stratus_kept_pixel* pixel)
+{
+  const double largest = (double)rgba[0] + kept->bias;
+  if (pixel->of < 0 || largest > pixel->value || (!(largest < pixel->value) && depth < pixel->depth)) {
+    pixel->value = largest;
+    pixel->depth = depth;
+  }
+  pixel->weight += (double)rgba[1] + kept->bias * (double)rgba[2];
+  pixel->length += (double)rgba[2];
+  pixel->cells += (float)cells;
+  pixel->of = n;
+}
+
 void stratus_kept_join(stratus_kept* kept, int n, const stratus_image* part, int x0, int y0, const int inside[4])
 {
   const stratus_image* image = kept->image;
@@ -163,6 +178,8 @@ void stratus_kept_join(stratus_kept* kept, int n, const stratus_image* part, int
           *pixel = (stratus_kept_pixel){ .depth = depth, .of = n };
           memcpy(image->rgba + 4 * to, rgba, 4 * sizeof *rgba);
         }
+      } else if (kept->mode == STRATUS_MODE_QUANTITIES) {
+        join_quantities(kept, n, rgba, depth, part->samples[from], pixel);
       } else if (stratus_mode_is_extreme(kept->mode)) {
         join_best(kept, n, rgba, depth, pixel);
       } else {
@@ -225,7 +242,12 @@ void stratus_kept_finish(const stratus_kept* kept)
     if (pixel->of < 0) {
       continue;
     }
-    if (kept->mode != STRATUS_MODE_FIRST_HIT) {
+    if (kept->mode == STRATUS_MODE_QUANTITIES) {
+      const double numbers[4] = { pixel->value, pixel->weight, pixel->length, (double)pixel->cells };
+      for (int c = 0; c < 4; ++c) {
+        image->rgba[4 * i + c] = (float)numbers[c];
+      }
+    } else if (kept->mode != STRATUS_MODE_FIRST_HIT) {
       const float weight = (float)kept->inputs[pixel->of].transfer[kept->component].weight;
       if (stratus_mode_is_extreme(kept->mode)) {
         color_best(kept, pixel, add);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Pictures of several grids in the modes whose rays keep a number, or one hit, and not light: maximum, minimum, average, additive, first
- * hit. Each grid is drawn by itself, and stores what its rays keep. A pixel's numbers are joined, whatever the order and overlap of the
- * grids, and coloured at the end. */
+ * Pictures of several grids in the modes whose rays keep numbers, or one hit, and not light: maximum, minimum, average, additive, first
+ * hit, quantities. Each grid is drawn by itself, and stores what its rays keep. A pixel's numbers are joined, whatever the order and
+ * overlap of the grids, and coloured at the end. */
 #ifndef STRATUS_RAY_KEPT_H
 #define STRATUS_RAY_KEPT_H
 
@@ -11,12 +11,12 @@
 
 /* The joint state of a pixel's rays in the grids so far. */
 typedef struct stratus_kept_pixel {
-  double value;  /* extremes: the best value; sums: the integral of opacity times grey, or times value less `base` */
-  double length; /* means: the world length on which values count */
-  double weight; /* sums of one field: the integral of opacity */
-  float depth;
-  float color[3]; /* extremes of dependent components */
-  int of;         /* extremes: the input that has the best value; sums: 0; -1: nothing is kept */
+  double value;       /* extremes: the best value; sums: the integral of opacity times grey, or times value less `base` */
+  double length;      /* means: the world length on which values count */
+  double weight;      /* sums of one field: the integral of opacity */
+  float depth, cells; /* cells: quantities, whose `value` is the largest, and `weight` the integral of the field */
+  float color[3];     /* extremes of dependent components */
+  int of;             /* extremes: the input that has the best value; sums: 0; -1: nothing is kept */
 } stratus_kept_pixel;
 
 typedef struct stratus_kept {

@@ -11,7 +11,8 @@
 
 const char* stratus_mode_name(stratus_mode mode)
 {
-  static const char* const names[] = { "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface", "slice" };
+  static const char* const names[] = { "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface", "slice",
+    "quantities" };
   return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
 }
 
@@ -65,7 +66,10 @@ stratus_status stratus_ray_modes_check(stratus_context* context, const stratus_r
 stratus_ray_shown stratus_ray_modes_shown(const stratus_ray_cast_options* options)
 {
   stratus_ray_shown shown = { .mode = options->mode };
-  if (options->mode == STRATUS_MODE_AVERAGE) {
+  if (options->mode == STRATUS_MODE_QUANTITIES) { /* all finite values count */
+    shown.average_range[0] = -INFINITY;
+    shown.average_range[1] = INFINITY;
+  } else if (options->mode == STRATUS_MODE_AVERAGE) {
     shown.average_range[0] = options->optics.average_range[0];
     shown.average_range[1] = options->optics.average_range[1];
   }
@@ -152,7 +156,8 @@ stratus_status stratus_ray_modes_values(stratus_context* context, const stratus_
     return contour_values(context, shown, transfer, fetching, values);
   }
   TRY(stratus_shown_of_transfer(context, fetching, transfer, values));
-  if (shown->mode == STRATUS_MODE_AVERAGE) { /* transparent values count, too; the array holds at least one interval */
+  if (shown->mode == STRATUS_MODE_AVERAGE ||
+    shown->mode == STRATUS_MODE_QUANTITIES) { /* transparent values count, too; the array holds at least one interval */
     values->count = 1;
     fetched_range(shown->average_range, fetching->bias, values->of[0]);
   } else if (shown->mode == STRATUS_MODE_MAXIMUM && values->count > 0) { /* a maximum below the lowest visible value shows nothing */
@@ -229,7 +234,8 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
     const double error = caster->choice.cell_error * changing_extent(caster->transfers, lo + summed->bias, hi + summed->bias);
     a->lattice.pieces_per_bend = error > 0.0 ? (float)fmin(1.0 / (8.0 * error), 1e30) : 0.0f;
   }
-  if (caster->choice.sampling == STRATUS_SAMPLING_CELLS || options->mode == STRATUS_MODE_SLICE) {
+  if (caster->choice.sampling == STRATUS_SAMPLING_CELLS || options->mode == STRATUS_MODE_SLICE ||
+    options->mode == STRATUS_MODE_QUANTITIES) {
     a->lattice.jitter = 0; /* rays pass from cell to cell, or to a surface, whatever their lattice */
   }
   if (caster->choice.sampling == STRATUS_SAMPLING_LOCAL) {
@@ -261,8 +267,10 @@ stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
   if (caster->transfer_2d.on) {
     return STRATUS_VARIANT_TRANSFER_2D;
   }
-  if (mode == STRATUS_MODE_ISOSURFACE || mode == STRATUS_MODE_SLICE) {
-    return mode == STRATUS_MODE_SLICE ? STRATUS_VARIANT_SLICE : STRATUS_VARIANT_ISOSURFACE;
+  if (mode == STRATUS_MODE_ISOSURFACE || mode == STRATUS_MODE_SLICE || mode == STRATUS_MODE_QUANTITIES) {
+    return mode == STRATUS_MODE_SLICE   ? STRATUS_VARIANT_SLICE
+      : mode == STRATUS_MODE_ISOSURFACE ? STRATUS_VARIANT_ISOSURFACE
+                                        : STRATUS_VARIANT_QUANTITIES;
   }
   if (stratus_mode_is_extreme(mode) || stratus_mode_is_sum(mode)) {
     return stratus_mode_is_sum(mode) ? STRATUS_VARIANT_SUMS : STRATUS_VARIANT_EXTREMES;

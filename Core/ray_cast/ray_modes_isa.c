@@ -21,6 +21,7 @@ stratus_ray_cast_tile* STRATUS_ISA_NAME(stratus_ray_modes_tile)(int type, stratu
     : variant == STRATUS_VARIANT_LOCAL         ? STRATUS_ISA_NAME(stratus_ray_local_tile)(type)
     : variant == STRATUS_VARIANT_TRANSFER_2D   ? STRATUS_ISA_NAME(stratus_ray_transfer_2d_tile)(type)
     : variant == STRATUS_VARIANT_SLICE         ? STRATUS_ISA_NAME(stratus_ray_slice_tile)(type)
+    : variant == STRATUS_VARIANT_QUANTITIES    ? STRATUS_ISA_NAME(stratus_ray_quantities_tile)(type)
     : variant == STRATUS_VARIANT_SUMS          ? tiles_sums[type + 1]
                                                : tiles_extremes[type + 1];
 }

@@ -92,13 +92,15 @@ double stratus_ray_tolerance(const stratus_ray_cast_options* options)
 
 void stratus_ray_choose(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_ray_choice* choice)
 {
-  const bool surfaces = options->mode == STRATUS_MODE_ISOSURFACE || options->mode == STRATUS_MODE_SLICE;
+  const bool surfaces =
+    options->mode == STRATUS_MODE_ISOSURFACE || options->mode == STRATUS_MODE_SLICE || options->mode == STRATUS_MODE_QUANTITIES;
   const bool by_hand = options->sampling.rule != STRATUS_SAMPLING_AUTO && stratus_ray_can_sample(caster, options, options->sampling.rule);
   *choice = (stratus_ray_choice){ .sampling = by_hand ? options->sampling.rule : STRATUS_SAMPLING_MIDPOINT,
     .cell_error = options->sampling.cell_error,
     .expected_error = NAN,
     .met = true };
-  const bool cells = choice->sampling == STRATUS_SAMPLING_CELLS; /* such rays, and those to surfaces, pass from cell to cell */
+  const bool cells =
+    choice->sampling == STRATUS_SAMPLING_CELLS; /* such rays, rays to surfaces, and rays of quantities pass from cell to cell */
   const bool open_rule = options->sampling.rule == STRATUS_SAMPLING_AUTO && options->mode == STRATUS_MODE_COMPOSITE;
   const bool open_step = cells ? !(options->sampling.cell_error > 0.0) : !(options->sampling.distance > 0.0);
   const bool of_voxels = cells || surfaces || open_step;

@@ -12,9 +12,9 @@
 /* The components that are drawn by themselves. */
 static int components_of(const stratus_ray_cast_input* input, stratus_mode mode)
 {
-  return !input->tetra               ? stratus_ray_parts(input->volume, input->options)
-    : mode == STRATUS_MODE_FIRST_HIT ? 1
-                                     : stratus_tetra_component_count(input->mesh);
+  return !input->tetra                                                  ? stratus_ray_parts(input->volume, input->options)
+    : mode == STRATUS_MODE_FIRST_HIT || mode == STRATUS_MODE_QUANTITIES ? 1
+                                                                        : stratus_tetra_component_count(input->mesh);
 }
 
 static stratus_status check(stratus_context* context, const stratus_ray_cast_input* inputs, int count)

@@ -42,14 +42,18 @@ typedef enum stratus_mode {
   STRATUS_MODE_ISOSURFACE,
   /* The values on the surface `slice`, in their colour and opacity (not per length). Points behind one another are blended. The surface is
    * exact, too. */
-  STRATUS_MODE_SLICE
+  STRATUS_MODE_SLICE,
+  /* Numbers in place of colours, by which stratus_ray_caster_render_quantities() finds what it computes: the image's rgba holds the largest
+   * value, the integral of the field, the length of the ray on which it has a value, and the number of its cells; depth is where the
+   * largest value is. Volumes of one component. */
+  STRATUS_MODE_QUANTITIES
 } stratus_mode;
 
 /* Modes average and additive use each value as a fraction of the whole volume's range of finite values, and limit the result to 1. They are
  * opaque: additive wherever a ray meets the volume's bounds, average wherever a value counts. */
 
-/* Return a mode's name: "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface" or "slice"; "unknown" for other
- * numbers. */
+/* Return a mode's name: "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface", "slice" or "quantities";
+ * "unknown" for other numbers. */
 STRATUS_API const char* stratus_mode_name(stratus_mode mode);
 
 typedef enum stratus_normals {

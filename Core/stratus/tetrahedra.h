@@ -31,13 +31,14 @@ typedef enum stratus_tetra_mode {
   STRATUS_TETRA_SLICE,
   /* The first place along a ray where the field's opacity is above 0, as a lit, opaque solid. Values of cells: the first such cell. Values
    * of points: the place within a cell where its linear field begins to show. */
-  STRATUS_TETRA_FIRST_HIT
+  STRATUS_TETRA_FIRST_HIT,
+  STRATUS_TETRA_QUANTITIES /* as STRATUS_MODE_QUANTITIES; only stratus_ray_caster_render_several() takes it */
 } stratus_tetra_mode;
 
 /* Modes average and additive use each value as a fraction of the range of the values that show, and limit the result to 1. They are opaque:
  * additive wherever a ray meets a cell, average wherever a value counts. */
 
-/* Return a mode's name: "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice" or "first-hit"; "unknown" for other
+/* Return a mode's name: "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice", "first-hit" or "quantities"; "unknown" for other
  * numbers. */
 STRATUS_API const char* stratus_tetra_mode_name(stratus_tetra_mode mode);
 

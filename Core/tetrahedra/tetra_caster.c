@@ -77,9 +77,9 @@ void stratus_tetra_caster_destroy(stratus_tetra_caster* caster)
 
 static stratus_status check_options(stratus_context* context, const stratus_tetra_options* options)
 {
-  if ((unsigned)options->mode > STRATUS_TETRA_FIRST_HIT) {
+  if ((unsigned)options->mode > STRATUS_TETRA_QUANTITIES) {
     return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_FIRST_HIT);
+      context, STRATUS_INVALID_ARGUMENT, "mode %d of tetrahedra outside 0..%d", (int)options->mode, STRATUS_TETRA_QUANTITIES);
   }
   if ((unsigned)options->normals > STRATUS_NORMALS_GRADIENT) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "normals %d outside 0..%d", (int)options->normals, STRATUS_NORMALS_GRADIENT);
@@ -286,7 +286,8 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   const bool adds = options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE; /* black where nothing shows */
   const bool shows = stratus_tetra_mixes(mesh, options) ? caster->components.shown : caster->look.table->shown > 0;
   const bool cropped = stratus_tetra_modes_regions(options) && options->crop_regions == 0;
-  if ((!shows && !adds && options->mode != STRATUS_TETRA_ISOSURFACE) || caster->mesh->face_count == 0 || cropped) {
+  const bool needs = !adds && options->mode != STRATUS_TETRA_ISOSURFACE && options->mode != STRATUS_TETRA_QUANTITIES;
+  if ((!shows && needs) || caster->mesh->face_count == 0 || cropped) {
     report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
     snprintf(report->why, sizeof report->why, "nothing to draw: no cell, or none that shows");
     stratus_image_clear(image);
@@ -448,6 +449,10 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
     return STRATUS_INVALID_ARGUMENT;
   }
   options = options ? options : &defaults;
+  if (options->mode == STRATUS_TETRA_QUANTITIES) {
+    return stratus_fail(
+      caster->context, STRATUS_INVALID_ARGUMENT, "mode quantities is not drawn alone: use stratus_ray_caster_render_quantities()");
+  }
   const stratus_tetra_subject of = { mesh, transfer, options };
   TRY(take(caster, &of, camera, image, &drawn, &mine));
   TRY((stratus_tetra_draws_parts(drawn, options) ? draw_parts : draw_one)(caster, drawn, transfer, camera, options, image, &mine));

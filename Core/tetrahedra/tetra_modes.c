@@ -16,7 +16,8 @@ _Static_assert(STRATUS_TETRA_CLIP_PLANES_MAX + 6 == TETRA_PLANES, "as many as th
 
 const char* stratus_tetra_mode_name(stratus_tetra_mode mode)
 {
-  static const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice", "first-hit" };
+  static const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice", "first-hit",
+    "quantities" };
   return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
 }
 
@@ -142,7 +143,8 @@ stratus_status stratus_tetra_shown_sums(stratus_context* context, const stratus_
 void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options)
 {
   stratus_tetra_arguments* a = &frame->arguments;
-  static const int modes[] = { TETRA_LIGHT, TETRA_EXTREMES, TETRA_EXTREMES, TETRA_ADD, TETRA_ADD, TETRA_SURFACES, TETRA_SLICE, TETRA_HITS };
+  static const int modes[] = { TETRA_LIGHT, TETRA_EXTREMES, TETRA_EXTREMES, TETRA_ADD, TETRA_ADD, TETRA_SURFACES, TETRA_SLICE, TETRA_HITS,
+    TETRA_QUANTITIES };
   a->mode = modes[options->mode];
   a->sign = options->mode == STRATUS_TETRA_MINIMUM ? -1.0f : 1.0f;
 }

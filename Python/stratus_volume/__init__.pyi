@@ -14,6 +14,8 @@ _Colors = Union[_OneColor, Sequence[_OneColor]]
 _Device = Union[str, int, "Context", None]
 _Progress = Any  # a function of a stage and a fraction, a bar of tqdm's protocol, or None
 _Background = Union[Sequence[float], None]
+_Quantity = Literal["integral", "length", "mean", "maximum", "maximum_depth", "cells", "transmittance", "transmittance_depth"]
+_Quantities = Union[_Quantity, Sequence[_Quantity], None]
 _Mode = Literal["composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface", "slice"]
 _Matrix = Union[ArrayLike, Any, None]
 _Component = Union[int, Literal["all"], None]
@@ -45,6 +47,8 @@ class Rendering(NamedTuple):
     rgba: NDArray[numpy.float32]
     depth: NDArray[numpy.float32]
     counters: dict[str, Any]
+    @property
+    def quantities(self) -> dict[str, Any]: ...
     def picture(self, background: _Background = ...) -> Picture: ...
 
 class Hits(NamedTuple):
@@ -69,7 +73,7 @@ class Volume:
         average_range: Sequence[float] | None = ..., jitter: bool = ..., audit: bool = ..., opaque_depth: ArrayLike | None = ...,
         progress: _Progress = ..., dependent: bool = ..., weights: float | Sequence[float] | None = ..., mean_components: bool = ...,
         labels: ArrayLike | None = ..., looks: dict[int, dict[str, Any]] | None = ..., function_2d: dict[str, Any] | None = ...,
-        surface: dict[str, Any] | None = ...) -> Rendering: ...
+        surface: dict[str, Any] | None = ..., quantities: _Quantities = ..., threshold: float = ...) -> Rendering: ...
 
 class Tetrahedra:
     context: Context
@@ -83,7 +87,8 @@ class Tetrahedra:
         tolerance: float | None = ..., shade: _Shade = ..., gradient_opacity: _Points = ...,
         contours: float | Sequence[float] | None = ..., crop: Sequence[float] | None = ..., clip_planes: Sequence[Sequence[float]] | None = ...,
         average_range: Sequence[float] | None = ..., opaque_depth: ArrayLike | None = ..., progress: _Progress = ..., dependent: bool = ...,
-        weights: float | Sequence[float] | None = ..., mean_components: bool = ...) -> Rendering: ...
+        weights: float | Sequence[float] | None = ..., mean_components: bool = ..., quantities: _Quantities = ...,
+        threshold: float = ...) -> Rendering: ...
 
 class Tree:
     context: Context
@@ -186,7 +191,7 @@ def view(
     device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., **options: Any) -> View: ...
 def render_several(
     items: Sequence[Any], size: Sequence[int] = ..., camera: Any = ..., opaque_depth: ArrayLike | None = ..., device: _Device = ...,
-    threads: int | None = ..., progress: _Progress = ...) -> Rendering: ...
+    threads: int | None = ..., progress: _Progress = ..., quantities: _Quantities = ..., threshold: float = ...) -> Rendering: ...
 def slab(center: Sequence[float], normal: Sequence[float], thickness: float) -> list[tuple[float, float, float, float]]: ...
 def render_tetrahedra(
     points: ArrayLike, tetrahedra: ArrayLike | None, values: ArrayLike, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ...,

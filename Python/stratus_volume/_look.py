@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Settings that pictures of volumes and of cells share: functions, light, planes, contours, and the picture's own buffers."""
+import ctypes
 import math
 
 import numpy
 
 from . import _declarations as c
-from ._core import address, library
+from ._core import address, choice, library
 from ._picture import Rendering
 from ._values import functions, is_number, number, numbers, pairs, scaled_point
 
@@ -99,5 +100,43 @@ class Image:
             self._opaque = numpy.ascontiguousarray(depth[::-1], numpy.float32)
             self.struct.opaque_depth = address(self._opaque)
 
-    def rendering(self, counters):
-        return Rendering(numpy.ascontiguousarray(self.rgba[::-1]), numpy.ascontiguousarray(self.depth[::-1]), counters)
+    def rendering(self, counters, numbers=None):
+        result = Rendering(numpy.ascontiguousarray(self.rgba[::-1]), numpy.ascontiguousarray(self.depth[::-1]), counters)
+        result._quantities = numbers or {}
+        return result
+
+
+class Quantities:
+    """The core's numbers of each pixel's ray, with their buffers."""
+
+    # Those in units of the values, which may have been scaled.
+    _OF_VALUES = ("integral", "mean", "maximum")
+
+    def __init__(self, names, threshold, image):
+        names = [names] if isinstance(names, str) else list(names or ())
+        prefix, enum = "STRATUS_QUANTITY_", "stratus_quantity"
+        self.numbers = {name: choice(name, enum, prefix, "a quantity", ("count",)) for name in names}
+        self.struct = library.stratus_quantities_default()
+        self.struct.threshold = number(threshold, "threshold")
+        self.struct.width, self.struct.height, self.struct.opaque_depth = *image.size, image.struct.opaque_depth
+        self.buffers = {name: numpy.full(image.size[::-1], self._nothing(name), numpy.float32) for name in names}
+        for name, place in self.numbers.items():
+            self.struct.of[place] = address(self.buffers[name])
+
+    @staticmethod
+    def _nothing(name):
+        return {"integral": 0, "length": 0, "cells": 0, "transmittance": 1}.get(name.replace("-", "_"), numpy.nan)
+
+    def compute(self, context, inputs, count, view, progress):
+        if self.numbers:
+            context.call(library.stratus_ray_caster_render_quantities, inputs, count, ctypes.byref(view), ctypes.byref(self.struct), progress=progress)
+
+    def result(self, power=0, label=None):
+        """The arrays by their names, the top row first. label: a function of a name and an array, for the array in its place."""
+        arrays = {}
+        for name, buffer in self.buffers.items():
+            array = numpy.ascontiguousarray(buffer[::-1])
+            if power and name in self._OF_VALUES:
+                array = numpy.ldexp(array.astype(numpy.float64), power)
+            arrays[name] = label(name, array) if label else array
+        return arrays

@@ -81,17 +81,26 @@ def paint(rgba, background):
     return numpy.rint(255 * numpy.clip(both, 0, 1)).astype(numpy.uint8).view(Picture)
 
 
-class Rendering(typing.NamedTuple):
-    """A picture, as `render` returns it.
+class _Rendering(typing.NamedTuple):
+    rgba: numpy.ndarray
+    depth: numpy.ndarray
+    counters: dict
+
+
+class Rendering(_Rendering):
+    """A picture, as `render` returns it: three items, and the quantities that were asked for.
 
     rgba      float32 (height, width, 4), premultiplied by alpha, the top row first; 0 where nothing shows
     depth     float32 (height, width): world distance along the ray from the eye (parallel cameras: from its plane) to the first visible point;
               infinite where nothing shows
     counters  dict of rays, samples, skipped segments, times in ms, the used structure and sampling, and the reasons for them
+    quantities  dict of arrays (height, width), the top row first, by the names that `quantities` of `render` gave; else empty
     """
-    rgba: numpy.ndarray
-    depth: numpy.ndarray
-    counters: dict
+    _quantities = {}
+
+    @property
+    def quantities(self):
+        return self._quantities
 
     def picture(self, background=None):
         """Returns a Picture of bytes, over a background of (r, g, b) in 0..1 or, for None, transparent."""

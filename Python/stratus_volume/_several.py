@@ -6,7 +6,7 @@ from . import _declarations as c
 from . import _view
 from ._core import as_dict, library
 from ._draw import drawn_of
-from ._look import Image
+from ._look import Image, Quantities
 from ._tetrahedra import AskedOfCells, Tetrahedra
 from ._values import pixels
 from ._volume import Asked
@@ -35,13 +35,14 @@ def _asked(drawn, look, n):
         raise ValueError(f"item {n}: {error}") from None
 
 
-def render_several(items, size=(640, 480), camera=None, opaque_depth=None, device=None, threads=None, progress=None):
+def render_several(items, size=(640, 480), camera=None, opaque_depth=None, device=None, threads=None, progress=None,
+                   quantities=None, threshold=0.5):
     """Draws volumes that may overlap as one medium, and returns a Rendering: rgba, depth, counters.
 
     items         1 to 8 items. Each is data that `render` accepts, or a pair of data and a dict of settings. Settings are all arguments of `render`
                   except size, camera, opaque_depth, device, threads and progress; spacing, origin and matrix place the item. A Volume or
                   Tetrahedra keeps its structures; all of them must use one device, and none may come twice
-    size, camera, opaque_depth, progress  see render. The default camera sees all of the items
+    size, camera, opaque_depth, progress, quantities, threshold  see render. The default camera sees all of the items
     device, threads  for items that are not a Volume or Tetrahedra; default: as of the first Volume or Tetrahedra, or see Volume
 
     Where volumes overlap, their optical depths and their light add up, in any order of the items. All items have the same mode. In maximum,
@@ -67,10 +68,14 @@ def render_several(items, size=(640, 480), camera=None, opaque_depth=None, devic
             raise ValueError(f"item {n} is of another device or Context than item 0: {drawn.context.device} and {context.device}")
         if any(drawn is other for other, _ in parts[:n]):
             raise ValueError(f"item {n} is the same {type(drawn).__name__} as an item before it: make another of the same data")
+    numbers = Quantities(quantities, threshold, image)
     with context.lock:
         asked = [_asked(drawn, look, n) for n, (drawn, look) in enumerate(parts)]
         shown = [(drawn, each) for (drawn, _), each in zip(parts, asked) if not _nothing(drawn)]
         reports = (c.stratus_ray_cast_report * len(shown))()
+        powers = {drawn.power if isinstance(drawn, Tetrahedra) else each.power for drawn, each in shown}
+        if numbers.numbers and len(powers) > 1:
+            raise ValueError("quantities of items whose magnitudes lie outside 1e-30..1e37 in some and inside in others: scale the values")
         if shown:
             inputs = (c.stratus_ray_cast_input * len(shown))()
             for own, (drawn, each) in zip(inputs, shown):
@@ -83,6 +88,7 @@ def render_several(items, size=(640, 480), camera=None, opaque_depth=None, devic
             view = _view.make(context, camera, bounds, size)
             context.call(library.stratus_ray_caster_render_several, inputs, len(shown), ctypes.byref(view), ctypes.byref(image.struct), reports,
                          progress=progress)
+            numbers.compute(context, inputs, len(shown), view, progress)
     drawn_reports = iter([as_dict(report) for report in reports])
     each_of = [{} if _nothing(drawn) else next(drawn_reports) for drawn, _ in parts]
     for (drawn, _), each in zip(parts, asked):
@@ -91,7 +97,7 @@ def render_several(items, size=(640, 480), camera=None, opaque_depth=None, devic
     if shown and float(image.rgba[..., 3].max()) < 0.5 / 255:
         shown[0][1].explain(image.rgba)
     whole = dict(next((each for each in each_of if each), {}), items=each_of)
-    return image.rendering(whole)
+    return image.rendering(whole, numbers.result(powers.pop() if powers else 0))
 
 
 def _nothing(drawn):

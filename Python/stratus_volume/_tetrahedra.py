@@ -9,7 +9,7 @@ from . import _declarations as c
 from . import _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library, type_of
 from ._grid import affine, chosen, of_package
-from ._look import Image, crop_box, set_contours, set_planes, value_interval
+from ._look import Image, Quantities, crop_box, set_contours, set_planes, value_interval
 from ._media import explain_each, functions_of, materials_of, set_surface
 from ._values import (Spread, explain, length_of, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled,
                       unit_length, visible, warn)
@@ -145,7 +145,7 @@ class Tetrahedra:
 
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", method="auto", tolerance=None,
                shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, opaque_depth=None, progress=None,
-               dependent=False, weights=None, mean_components=False, surface=None):
+               dependent=False, weights=None, mean_components=False, surface=None, quantities=None, threshold=0.5):
         """Draws a picture and returns a Rendering: rgba, depth, counters. See `render` for the parameters.
 
         method  march from cell to cell, project sorted cells, or auto: the method of the lower expected cost
@@ -153,6 +153,7 @@ class Tetrahedra:
         """
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_tetra_report()
+        numbers = Quantities(quantities, threshold, image)
         with self.context.lock:
             asked = AskedOfCells(self, opacity, color, unit_distance, mode, method, tolerance, shade, gradient_opacity, contours, crop, clip_planes,
                                  average_range, dependent, weights, mean_components, surface)
@@ -160,8 +161,11 @@ class Tetrahedra:
                 view = _view.make(self.context, camera, self.bounds, size)
                 self.context.call(library.stratus_tetra_caster_render, self._caster.pointer, ctypes.byref(asked.mesh), asked.functions,
                                   ctypes.byref(view), ctypes.byref(asked.options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
+                own = c.stratus_ray_cast_input(tetra=self._caster.pointer, mesh=ctypes.addressof(asked.mesh), transfer=asked.functions,
+                                               tetra_options=ctypes.addressof(asked.options))
+                numbers.compute(self.context, ctypes.byref(own), 1, view, progress)
         asked.explain(image.rgba, report.rays)
-        return image.rendering(as_dict(report))
+        return image.rendering(as_dict(report), numbers.result(0 if self.nothing else self.power))
 
 
 class AskedOfCells:
@@ -172,7 +176,7 @@ class AskedOfCells:
                  mean_components=False, surface=None):
         self.drawn, self.mode, self.options = drawn, mode, library.stratus_tetra_options_default()
         options = self.options
-        options.mode = choice(mode, "stratus_tetra_mode", "STRATUS_TETRA_", "mode")
+        options.mode = choice(mode, "stratus_tetra_mode", "STRATUS_TETRA_", "mode", ("quantities",))
         options.method = choice(method, "stratus_tetra_method", "STRATUS_TETRA_METHOD_", "method")
         if tolerance is not None:
             options.tolerance = number(tolerance, "tolerance")

@@ -6,7 +6,7 @@ from . import _declarations as c
 from . import _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library
 from ._grid import affine, grid_of
-from ._look import Image, crop_box, set_contours, set_planes, set_shading, value_interval
+from ._look import Image, Quantities, crop_box, set_contours, set_planes, set_shading, value_interval
 from ._media import Function2D, Labels, explain_each, functions_of, looks_of, materials_of, set_surface
 from ._values import explain, length_of, number, own_points, pixels, positive, unit_length, warn
 
@@ -32,6 +32,8 @@ class Volume:
 
     def __init__(self, data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None):
         self.grid = grid_of(data, spacing, origin, axes, scalars, component)
+        of_xarray = hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs")
+        self._named = (data.name, data.attrs.get("units")) if of_xarray else None
         self._place(matrix)
         self.context = context_of(device, threads)
         self._caster = Owned(self.context, library.stratus_ray_caster_destroy)
@@ -54,10 +56,11 @@ class Volume:
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", interpolation="linear",
                structure="auto", sampling="auto", sample_distance=0, tolerance=None, shade=False, gradient_opacity=None, contours=None, crop=None,
                clip_planes=None, average_range=None, jitter=False, audit=False, opaque_depth=None, progress=None, dependent=False, weights=None,
-               mean_components=False, labels=None, looks=None, function_2d=None, surface=None):
+               mean_components=False, labels=None, looks=None, function_2d=None, surface=None, quantities=None, threshold=0.5):
         """Draws a picture and returns a Rendering: rgba, depth, counters. See `render` for the parameters."""
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_ray_cast_report()
+        numbers = Quantities(quantities, threshold, image)
         with self.context.lock:
             asked = Asked(self, opacity, color, unit_distance, mode, interpolation, structure, sampling, sample_distance, tolerance, shade,
                           gradient_opacity, contours, crop, clip_planes, average_range, jitter, audit, dependent, weights, mean_components, labels,
@@ -66,8 +69,22 @@ class Volume:
                 view = _view.make(self.context, camera, asked.bounds, size)
                 self.context.call(library.stratus_ray_caster_render, self._caster.pointer, ctypes.byref(asked.volume), asked.functions,
                                   ctypes.byref(view), ctypes.byref(asked.options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
+                own = c.stratus_ray_cast_input(caster=self._caster.pointer, volume=ctypes.pointer(asked.volume), transfer=asked.functions,
+                                               options=ctypes.pointer(asked.options))
+                numbers.compute(self.context, ctypes.byref(own), 1, view, progress)
         asked.explain(image.rgba, report.rays)
-        return image.rendering(as_dict(report))
+        return image.rendering(as_dict(report), numbers.result(0 if self.grid.nothing else asked.power, self._label))
+
+    def _label(self, name, array):
+        """An array of a quantity as the data's own kind."""
+        if self._named is None:
+            return array
+        import xarray
+        own, units = self._named
+        attributes = {"long_name": name.replace("_", " ") + (f" of {own}" if own else "")}
+        if units and name in ("mean", "maximum"):
+            attributes["units"] = units
+        return xarray.DataArray(array, dims=("row", "column"), name=name, attrs=attributes)
 
 
 class Asked:
@@ -80,7 +97,7 @@ class Asked:
         self.grid = grid = drawn.grid
         self.mode, self.options = mode, library.stratus_ray_cast_options_default()
         options = self.options
-        options.mode = choice(mode, "stratus_mode", "STRATUS_MODE_", "mode")
+        options.mode = choice(mode, "stratus_mode", "STRATUS_MODE_", "mode", ("quantities",))
         options.skipping.structure = choice(structure, "stratus_structure", "STRATUS_STRUCTURE_", "structure")
         options.sampling.rule = choice(sampling, "stratus_sampling", "STRATUS_SAMPLING_", "sampling", ("local",))
         options.sampling.interpolation = choice(interpolation, "stratus_interpolation", "STRATUS_INTERPOLATION_", "interpolation")

@@ -446,6 +446,17 @@ vtkSmartPointer<vtkImageData> vtkStratusPicture::MakeImage(
   return image;
 }
 
+void vtkStratusPicture::Spread(const std::vector<float>& values, float* viewport) const
+{
+  for (int j = 0; j < (values.empty() ? 0 : this->Rectangle[3]); ++j) {
+    const size_t row = static_cast<size_t>((j + 0.5) * this->Size[1] / this->Rectangle[3]) * this->Size[0];
+    float* to = viewport + static_cast<size_t>(this->Rectangle[1] + j) * this->Viewport[2] + this->Rectangle[0];
+    for (int i = 0; i < this->Rectangle[2]; ++i) {
+      to[i] = values[row + static_cast<size_t>((i + 0.5) * this->Size[0] / this->Rectangle[2])];
+    }
+  }
+}
+
 bool vtkStratusClipPlanes(vtkAbstractMapper* mapper, int most, double (*planes)[4], int& count, std::string& error)
 {
   vtkPlaneCollection* given = mapper->GetClippingPlanes();

@@ -22,7 +22,10 @@ vtkStandardNewMacro(vtkStratusTetrahedraMapper);
 
 vtkStratusTetrahedraMapper::vtkStratusTetrahedraMapper() : Internal(new Internals(this)) {}
 
-vtkStratusTetrahedraMapper::~vtkStratusTetrahedraMapper() = default;
+vtkStratusTetrahedraMapper::~vtkStratusTetrahedraMapper()
+{
+  this->SetQuantities(nullptr);
+}
 
 int vtkStratusTetrahedraMapper::FillInputPortInformation(int, vtkInformation* info)
 {
@@ -270,6 +273,8 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "CroppingRegionFlags: " << this->CroppingRegionFlags << "\n";
   os << indent << "MaskInput: " << this->MaskInput.GetPointer() << "\n";
   os << indent << "MaskType: " << (this->MaskType == BinaryMaskType ? "binary" : "label map") << "\n";
+  os << indent << "Quantities: " << (this->Quantities ? this->Quantities : "") << "\n";
+  os << indent << "TransmittanceThreshold: " << this->TransmittanceThreshold << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "Device: " << this->GetDevice() << "\n";
   os << indent << "Method: " << this->GetMethodAsString() << "\n";

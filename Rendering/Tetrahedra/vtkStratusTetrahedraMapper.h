@@ -319,10 +319,37 @@ public:
    */
   const char* GetLastError();
 
+  //@{
+  /**
+   * Set/Get the numbers of each ray that GetLastImage() has as float arrays in addition to the picture, by their names, with spaces or
+   * commas between them. Default: none.
+   * - "integral": of the values over the ray's length, a column density; "length" on which the ray meets values; "mean";
+   * - "maximum", the largest value, and "maximum_depth", where it is;
+   * - "cells", the number of cells that the ray passes;
+   * - "transmittance", the part of light that passes by the property's functions, and "transmittance_depth", where it falls to
+   *   TransmittanceThreshold.
+   *
+   * Lengths and depths are in world units, depths along the ray from the eye (parallel: from its plane). A number that a ray does not have
+   * is NaN. Numbers are of the same values as the picture's, within clipping planes, cropping regions and masks, and in front of opaque
+   * geometry, whatever the blend mode. Integral, maximum and cells are exact but for the rounding of floats: the field is integrated cell
+   * by cell. Other names are an error.
+   */
+  vtkSetStringMacro(Quantities);
+  vtkGetStringMacro(Quantities);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the transmittance whose depth is "transmittance_depth" of SetQuantities(), above 0 and below 1. Default 0.5.
+   */
+  vtkSetMacro(TransmittanceThreshold, double);
+  vtkGetMacro(TransmittanceThreshold, double);
+  //@}
+
   /**
    * Get the last picture as floats, of the renderer's viewport's size: point arrays RGBA (premultiplied by alpha) and Depth (world distance
-   * along the ray from the eye, infinity where nothing is). nullptr before the first picture and after one that was mixed with other
-   * volumes. Each call makes a new image.
+   * along the ray from the eye, infinity where nothing is), and what SetQuantities() names. nullptr before the first picture and after one
+   * that was mixed with other volumes. Each call makes a new image.
    */
   vtkImageData* GetLastImage();
 
@@ -366,6 +393,8 @@ protected:
   int ComponentMixing = ADD_COMPONENTS;
   int Method = AUTO_METHOD;
   int NumberOfThreads = 0;
+  char* Quantities = nullptr;
+  double TransmittanceThreshold = 0.5;
   double AverageIPScalarRange[2] = { VTK_FLOAT_MIN, VTK_FLOAT_MAX };
   bool Cropping = false;
   double CroppingRegionPlanes[6] = { 0, 1, 0, 1, 0, 1 };

@@ -346,12 +346,19 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(
       this->Mesh.DropLeaves();
     }
   }
-  this->Renderer = nullptr;
-  this->Context.KeepBuildReport(this->BuildReport);
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
   }
-  return status == STRATUS_OK;
+  stratus_ray_cast_input input = stratus_ray_cast_input();
+  input.tetra = this->Caster;
+  input.mesh = &this->Mesh.GetMesh();
+  input.transfer = this->Functions.data();
+  input.tetra_options = &this->Options;
+  const bool drawn =
+    status == STRATUS_OK && this->Quantities.Compute(this->Context.Get(), &input, 1, false, this->Picture.Camera, image, error);
+  this->Renderer = nullptr;
+  this->Context.KeepBuildReport(this->BuildReport);
+  return drawn;
 }
 
 bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error)
@@ -362,7 +369,8 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   bool empty = false;
   this->HasPicture = false;
   this->NoteLeftOut(prop->GetProperty());
-  if (!this->CheckMapper(error) || !this->PrepareInput(prop, empty, error) || !this->PrepareContext(error)) {
+  if (!this->Quantities.Set(this->Mapper->Quantities, this->Mapper->TransmittanceThreshold, error) || !this->CheckMapper(error) ||
+    !this->PrepareInput(prop, empty, error) || !this->PrepareContext(error)) {
     return false;
   }
   if (empty) {
@@ -413,5 +421,6 @@ vtkImageData* vtkStratusTetrahedraMapper::Internals::GetLastImage()
     return nullptr;
   }
   this->LastImage = this->Picture.MakeImage(this->Rgba, this->Depth, nullptr);
+  this->Quantities.AddTo(this->LastImage, this->Picture);
   return this->LastImage;
 }

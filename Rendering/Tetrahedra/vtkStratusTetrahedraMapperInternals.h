@@ -12,6 +12,7 @@
 #include "vtkStratusMeshMask.h"
 #include "vtkStratusMeshView.h"
 #include "vtkStratusPicture.h"
+#include "vtkStratusQuantities.h"
 #include "vtkStratusTetrahedraMapper.h"
 #include "vtkStratusVectors.h"
 
@@ -87,6 +88,7 @@ private:
   std::array<stratus_transfer, STRATUS_COMPONENTS_MAX> Functions;
   std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{};
   vtkStratusPicture Picture;
+  vtkStratusQuantities Quantities; // of the picture
   bool HasPicture = false;
   vtkStratusVectors Vectors;
   vtkWeakPointer<vtkVolumeProperty> Property; // its colour function selects the component that is drawn

@@ -64,6 +64,9 @@ bool vtkStratusJointPicture::Render(Scene& scene, std::string& error)
   vtkRenderer* renderer = scene.Renderer;
   const bool solid = scene.Settings->GetRenderMode() == vtkStratusVolumeMapper::FIRST_HIT_MODE;
   this->HasSamples = scene.Settings->GetCountSamples() != 0;
+  if (!this->Quantities.Set(scene.Settings->GetQuantities(), scene.Settings->GetTransmittanceThreshold(), error)) {
+    return false;
+  }
   if (!this->Picture.Set(renderer, scene.Boxes, this->ChooseCoarseness(scene), solid)) {
     error = "the camera's projection has no inverse";
     return false;
@@ -80,7 +83,7 @@ bool vtkStratusJointPicture::Render(Scene& scene, std::string& error)
     renderer, others, scene.Settings->GetFinalColorWindow(), scene.Settings->GetFinalColorLevel(), this->Bytes);
   const stratus_image image = this->Picture.MakeRoom(
     this->Rgba, this->Depth, opaqueDepth, this->HasSamples ? &this->Samples : nullptr, pixels.Bytes ? &this->Bytes : nullptr);
-  if (!scene.Cast(this->Picture.Camera, image, true, error)) {
+  if (!scene.Cast(this->Picture.Camera, image, true, error) || !scene.Measure(this->Picture.Camera, image, this->Quantities, error)) {
     return false;
   }
   this->HasPicture = true;
@@ -111,5 +114,6 @@ vtkImageData* vtkStratusJointPicture::GetLastImage()
     return nullptr;
   }
   this->LastImage = this->Picture.MakeImage(this->Rgba, this->Depth, this->HasSamples ? &this->Samples : nullptr);
+  this->Quantities.AddTo(this->LastImage, this->Picture);
   return this->LastImage;
 }

@@ -5,6 +5,7 @@
 
 #include "vtkStratusDisplay.h"
 #include "vtkStratusPicture.h"
+#include "vtkStratusQuantities.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -34,6 +35,9 @@ public:
     // Casts the rays. whole: it is the picture itself, not a part between peels. Returns false where it fails, with the reason in `error`,
     // or where an abort ends it. Valid in this frame, even when the scene is gone.
     CastRays Cast;
+    // Computes the quantities of the rays that were cast. Returns as Cast.
+    std::function<bool(const stratus_camera& camera, const stratus_image& image, vtkStratusQuantities& quantities, std::string& error)>
+      Measure;
     vtkStratusCellFinder* Finder = nullptr; // for Display, while the renderer picks
     // Results of Cast() for the whole frame.
     double Milliseconds = 0.0;
@@ -66,6 +70,7 @@ private:
   std::vector<float> Rgba, Depth, PartDepth;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples;
+  vtkStratusQuantities Quantities;
   vtkSmartPointer<vtkImageData> LastImage;
 };
 

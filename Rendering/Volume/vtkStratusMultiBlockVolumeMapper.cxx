@@ -327,6 +327,8 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   to->SetNumberOfThreads(settings->GetNumberOfThreads());
   to->SetAudit(settings->GetAudit());
   to->SetCountSamples(settings->GetCountSamples());
+  to->SetQuantities(settings->GetQuantities());
+  to->SetTransmittanceThreshold(settings->GetTransmittanceThreshold());
   std::copy_n(this->Transfer2DRanges, 4, to->Internal->Transfer2DRanges);
 }
 
@@ -434,6 +436,10 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Render(vtkRenderer* renderer, 
   this->Scene.Settings = this->Mappers[0];
   this->Scene.Cast = [this](const stratus_camera& camera, const stratus_image& image, bool whole, std::string& why) {
     return this->Cast(camera, image, whole, why);
+  };
+  this->Scene.Measure = [this](
+                          const stratus_camera& camera, const stratus_image& image, vtkStratusQuantities& quantities, std::string& why) {
+    return quantities.Compute(this->Context.Get(), this->Inputs.data(), static_cast<int>(this->Inputs.size()), true, camera, image, why);
   };
   this->Scene.Finder = renderer->GetSelector() ? &this->Finder : nullptr;
   if (this->Scene.Finder) {

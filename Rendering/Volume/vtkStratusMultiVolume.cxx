@@ -238,6 +238,10 @@ bool vtkStratusMultiVolume::Internals::Render(vtkRenderer* renderer, std::string
   this->Scene.Cast = [this](const stratus_camera& camera, const stratus_image& image, bool whole, std::string& why) {
     return this->Cast(camera, image, whole, why);
   };
+  this->Scene.Measure = [this](
+                          const stratus_camera& camera, const stratus_image& image, vtkStratusQuantities& quantities, std::string& why) {
+    return quantities.Compute(this->Context.Get(), this->Inputs, this->Count, false, camera, image, why);
+  };
   this->Renderer = renderer;
   const bool drawn = this->Picture.Render(this->Scene, error);
   this->Renderer = nullptr;

@@ -28,6 +28,7 @@ vtkStratusVolumeMapper::vtkStratusVolumeMapper() : Internal(new Internals(this))
 vtkStratusVolumeMapper::~vtkStratusVolumeMapper()
 {
   this->SetTransfer2DYAxisArray(nullptr);
+  this->SetQuantities(nullptr);
 }
 
 int vtkStratusVolumeMapper::FillInputPortInformation(int, vtkInformation* info)
@@ -262,6 +263,8 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "UseJittering: " << (this->UseJittering ? "On" : "Off") << "\n";
   os << indent << "JitterSeed: " << this->JitterSeed << "\n";
   os << indent << "CountSamples: " << (this->CountSamples ? "On" : "Off") << "\n";
+  os << indent << "Quantities: " << (this->Quantities ? this->Quantities : "") << "\n";
+  os << indent << "TransmittanceThreshold: " << this->TransmittanceThreshold << "\n";
   os << indent << "Last picture: structure " << this->GetStructureUsedAsString() << ", sampling " << this->GetSamplingUsedAsString()
      << ", sample distance " << this->GetUsedSampleDistance() << ", " << this->GetUsedImageSampleDistance() << " pixels a ray, "
      << this->GetSamplesTaken() << " samples, " << this->GetSamplesSkipped() << " skipped, " << this->GetCastTime()

@@ -475,6 +475,33 @@ public:
 
   //@{
   /**
+   * Set/Get the numbers of each ray that GetLastImage() has as float arrays in addition to the picture, by their names, with spaces or
+   * commas between them. Default: none.
+   * - "integral": of the values over the ray's length, a column density; "length" on which the ray meets values; "mean";
+   * - "maximum", the largest value, and "maximum_depth", where it is;
+   * - "cells", the number of cells that the ray passes;
+   * - "transmittance", the part of light that passes by the property's functions, and "transmittance_depth", where it falls to
+   *   TransmittanceThreshold.
+   *
+   * Lengths and depths are in world units, depths along the ray from the eye (parallel: from its plane). A number that a ray does not have
+   * is NaN. Numbers are of the same values as the picture's, within clipping planes, cropping regions and masks, and in front of opaque
+   * geometry, whatever the blend mode. Integral, maximum and cells are exact but for the rounding of floats: the field is integrated cell
+   * by cell. Other names are an error.
+   */
+  vtkSetStringMacro(Quantities);
+  vtkGetStringMacro(Quantities);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the transmittance whose depth is "transmittance_depth" of SetQuantities(), above 0 and below 1. Default 0.5.
+   */
+  vtkSetMacro(TransmittanceThreshold, double);
+  vtkGetMacro(TransmittanceThreshold, double);
+  //@}
+
+  //@{
+  /**
    * Get counts of the last picture: values interpolated, segments skipped, reads of the structure, pixels that the audit found different,
    * blocks, occupied blocks, and bytes of the structure.
    */
@@ -567,7 +594,8 @@ public:
    * - "RGBA" (the scalars): 4 components, premultiplied by alpha, without the opaque geometry;
    * - "Depth": world distance along the ray from the eye, in a parallel view from its plane, to the first contribution; infinite where
    *   there is none;
-   * - "Samples", if the picture was drawn with CountSamples.
+   * - "Samples", if the picture was drawn with CountSamples;
+   * - what SetQuantities() names.
    *
    * A pixel of a coarse picture is repeated. The result is nullptr before the first picture, and after one that was refused, aborted or
    * mixed with other volumes. The mapper owns the image, and the next call overwrites it.
@@ -644,6 +672,8 @@ protected:
   vtkTypeBool UseJittering = 0;
   unsigned int JitterSeed = 0;
   vtkTypeBool CountSamples = 0;
+  char* Quantities = nullptr;
+  double TransmittanceThreshold = 0.5;
 
 private:
   vtkStratusVolumeMapper(const vtkStratusVolumeMapper&) = delete;

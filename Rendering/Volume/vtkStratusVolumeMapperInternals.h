@@ -10,6 +10,7 @@
 #include "vtkStratusLeftOut.h"
 #include "vtkStratusMultiVolume.h"
 #include "vtkStratusPicture.h"
+#include "vtkStratusQuantities.h"
 #include "vtkStratusSheet.h"
 #include "vtkStratusVectors.h"
 #include "vtkStratusVolumeMapper.h"
@@ -123,6 +124,7 @@ private:
   std::vector<float> Rgba, Depth, PartDepth;
   std::vector<unsigned char> Bytes;
   std::vector<uint32_t> Samples;             // empty: not counted
+  vtkStratusQuantities Quantities;           // of the picture
   vtkSmartPointer<vtkAbstractArray> Offered; // the array of the tree that the caster was last given
   vtkMTimeType OfferedTime = 0;
   const stratus_ray_caster* OfferedTo = nullptr;

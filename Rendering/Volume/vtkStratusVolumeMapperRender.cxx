@@ -88,12 +88,19 @@ bool vtkStratusVolumeMapper::Internals::Cast(
   stratus_context_start_build_report(this->Context.Get());
   const stratus_status status = stratus_ray_caster_render(
     this->Caster, &this->Image.GetVolume(), this->Functions.data(), &this->Picture.Camera, &options, &image, &this->Report);
-  this->Renderer = nullptr;
-  this->Context.KeepBuildReport(this->BuildReport);
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
   }
-  return status == STRATUS_OK;
+  stratus_ray_cast_input input = stratus_ray_cast_input();
+  input.caster = this->Caster;
+  input.volume = &this->Image.GetVolume();
+  input.transfer = this->Functions.data();
+  input.options = &options;
+  const bool drawn =
+    status == STRATUS_OK && this->Quantities.Compute(this->Context.Get(), &input, 1, false, this->Picture.Camera, image, error);
+  this->Renderer = nullptr;
+  this->Context.KeepBuildReport(this->BuildReport);
+  return drawn;
 }
 
 // Casts the rays of the last frame up to window depths, in place of the opaque ones. The frame's reports are kept.
@@ -159,7 +166,8 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   this->ReleaseJoint(renderer);
   this->HasSamples = this->Mapper->CountSamples != 0;
   stratus_ray_cast_options options;
-  if (!this->Describe(renderer, prop, options, error) || !this->PrepareContext(error)) {
+  if (!this->Quantities.Set(this->Mapper->Quantities, this->Mapper->TransmittanceThreshold, error) ||
+    !this->Describe(renderer, prop, options, error) || !this->PrepareContext(error)) {
     return false;
   }
   // Rendering checks the volume, too, but the picture's rectangle already relies on it.
@@ -245,5 +253,6 @@ vtkImageData* vtkStratusVolumeMapper::Internals::GetLastImage()
     return nullptr;
   }
   this->LastImage = this->Picture.MakeImage(this->Rgba, this->Depth, this->HasSamples ? &this->Samples : nullptr);
+  this->Quantities.AddTo(this->LastImage, this->Picture);
   return this->LastImage;
 }

@@ -57,10 +57,10 @@ static void modes_are_those_of_the_host(void** state)
   for (size_t i = 0; i < sizeof mask; ++i) {
     mask[i] = (uint8_t)(i % 21 > 6);
   }
-  for (uint32_t seed = 0; seed < (few_run() ? 5 : one_ray ? 10 : 24); ++seed) {
+  for (uint32_t seed = 0; seed < (few_run() ? 6 : one_ray ? 12 : 24); ++seed) {
     picture_case c;
-    const int mode = STRATUS_MODE_MAXIMUM + (int)(seed % 5);
-    case_create(host, &c, types[seed / 5 % 2], 21, 19, 23, seed);
+    const int mode = seed % 6 == 5 ? STRATUS_MODE_QUANTITIES : STRATUS_MODE_MAXIMUM + (int)(seed % 6);
+    case_create(host, &c, types[seed / 6 % 2], 21, 19, 23, seed);
     ask_for(&c, mode, seed, mask);
     if (seed % 4 == 3) { /* two dependent components: every second value is the other's */
       c.volume.dimensions[0] = 10;

@@ -65,7 +65,7 @@ static bool is_kept(const scene* s, const double p[3])
 typedef struct kept_cell {
   int64_t at[3];
   double corner[8];
-  bool hidden;
+  bool hidden; /* a value is not finite */
 } kept_cell;
 
 #define NO_CELL                                                                                                                            \
@@ -78,7 +78,7 @@ static void read_cell(const scene* s, const int64_t at[3], kept_cell* cell)
   const stratus_volume* v = s->volume;
   const int corners = s->options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST ? 1 : 8;
   memcpy(cell->at, at, sizeof cell->at);
-  cell->hidden = cell_is_hidden(v, at);
+  cell->hidden = false;
   for (int corner = 0; corner < corners; ++corner) {
     int64_t c[3];
     for (int a = 0; a < 3; ++a) {
@@ -99,17 +99,18 @@ static double mix(double a, double b, double t)
 static double field_at(const scene* s, const double p[3], kept_cell* cell)
 {
   const bool is_nearest = s->options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST;
-  int64_t at[3];
+  int64_t at[3], inside[3];
   double t[3];
   for (int a = 0; a < 3; ++a) {
     const reference_spot spot = reference_axis_find(s->volume, a, p[a]);
+    inside[a] = spot.cell;
     at[a] = is_nearest ? spot.nearest : spot.cell;
     t[a] = spot.fraction;
   }
   if (at[0] != cell->at[0] || at[1] != cell->at[1] || at[2] != cell->at[2]) {
     read_cell(s, at, cell);
   }
-  if (cell->hidden || !is_kept(s, p)) {
+  if (cell->hidden || cell_is_hidden(s->volume, inside) || !is_kept(s, p)) {
     return (double)NAN;
   }
   const double* v = cell->corner;
@@ -551,6 +552,58 @@ static void draw_slice(const scene* s, const line* l, float rgba[4], float* dept
   rgba[3] = (float)(1.0 - left);
 }
 
+/* ---- quantities */
+
+/* Cuts the line where it passes cells' planes, the planes half way between them, and crop planes: in each part the field is a cubic, which
+ * two places of Gauss integrate. */
+static void draw_quantities(const scene* s, const line* l, float rgba[4], float* depth)
+{
+  enum { PLANES = 8192, PLACES = 60 };
+  static _Thread_local crossing planes[PLANES];
+  double cut[CUTS], integral = 0.0, length = 0.0, largest = -(double)INFINITY;
+  int count = cut_line(s, l, cut) + 1, cells = 0;
+  int64_t last[3] = { -1, -1, -1 };
+  kept_cell cell = NO_CELL;
+  for (int i = 0; i < count; ++i) {
+    planes[i].t = cut[i];
+  }
+  for (int a = 0; a < 3; ++a) {
+    for (int64_t n = 0; n < 2 * s->volume->dimensions[a] - 1; ++n) {
+      const int64_t next = (n + 1) / 2 < s->volume->dimensions[a] ? (n + 1) / 2 : n / 2;
+      const double place = 0.5 * (reference_axis_place(s->volume, a, n / 2) + reference_axis_place(s->volume, a, next));
+      const double t = (place - l->origin[a]) / l->direction[a];
+      if (t > l->begin && t < l->end && count < PLANES) {
+        planes[count++].t = t;
+      }
+    }
+  }
+  qsort(planes, (size_t)count, sizeof *planes, by_distance);
+  for (int i = 0; i + 1 < count; ++i) {
+    const double from = planes[i].t, extent = planes[i + 1].t - from, off = 0.5 / sqrt(3.0);
+    const double one = field_on(s, l, from + (0.5 - off) * extent, &cell), other = field_on(s, l, from + (0.5 + off) * extent, &cell);
+    if (isnan(one) || isnan(other) || !(extent > 0.0)) {
+      continue;
+    }
+    integral += 0.5 * (one + other) * extent;
+    length += extent;
+    cells += memcmp(last, cell.at, sizeof last) != 0;
+    memcpy(last, cell.at, sizeof last);
+    for (int place = 0; place <= PLACES; ++place) {
+      const double t = from + extent * (1e-9 + (1.0 - 2e-9) * place / PLACES), value = field_on(s, l, t, &cell);
+      if (value > largest) {
+        largest = value;
+        *depth = (float)t;
+      }
+    }
+  }
+  if (length > 0.0) {
+    const double numbers[4] = { largest, integral, length, cells };
+    for (int c = 0; c < 4; ++c) {
+      rgba[c] = (float)numbers[c];
+    }
+  }
+}
+
 void reference_modes_render(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
   const stratus_ray_cast_options* options, int width, int height, double step, float* rgba, float* depth)
 {
@@ -584,6 +637,8 @@ void reference_modes_render(const stratus_volume* volume, const stratus_transfer
     }
     if (options->mode == STRATUS_MODE_ISOSURFACE) {
       draw_surfaces(&s, &l, to, far);
+    } else if (options->mode == STRATUS_MODE_QUANTITIES) {
+      draw_quantities(&s, &l, to, far);
     } else if (options->mode == STRATUS_MODE_SLICE) {
       draw_slice(&s, &l, to, far);
     } else if (options->mode == STRATUS_MODE_MAXIMUM || options->mode == STRATUS_MODE_MINIMUM) {

@@ -22,7 +22,12 @@
 /* Whether rays go from cell to cell, at least in part. */
 #ifndef RAY_BY_CELLS
 #define RAY_BY_CELLS                                                                                                                       \
-  (STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE || STRATUS_RAY_MODE == STRATUS_RAY_CELLS || STRATUS_RAY_MODE == STRATUS_RAY_LOCAL)
+  (STRATUS_RAY_MODE == STRATUS_RAY_ISOSURFACE || STRATUS_RAY_MODE == STRATUS_RAY_CELLS || STRATUS_RAY_MODE == STRATUS_RAY_LOCAL ||         \
+    STRATUS_RAY_MODE == STRATUS_RAY_QUANTITIES)
+#endif
+/* Whether rays take samples of the lattice, at least in part. */
+#ifndef RAY_BY_SAMPLES
+#define RAY_BY_SAMPLES ((!RAY_BY_CELLS && STRATUS_RAY_MODE != STRATUS_RAY_SLICE) || STRATUS_RAY_MODE == STRATUS_RAY_LOCAL)
 #endif
 
 /* 1: the includer walks from cell to cell by itself, or looks functions of two variables up. */
@@ -195,6 +200,8 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #include "ray_transfer_2d.h"
 #elif STRATUS_RAY_MODE == STRATUS_RAY_SLICE
 #include "ray_slice.h"
+#elif STRATUS_RAY_MODE == STRATUS_RAY_QUANTITIES
+#include "ray_quantities.h"
 #elif STRATUS_RAY_MODE == STRATUS_RAY_CELLS || STRATUS_RAY_MODE == STRATUS_RAY_LOCAL
 #include "ray_cells.h"
 #elif STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE
@@ -221,7 +228,7 @@ INLINE void RAY_NAME(ray_shade)(
 }
 #endif
 
-#if STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS && STRATUS_RAY_MODE != STRATUS_RAY_SLICE
+#if RAY_BY_SAMPLES
 /* Asks the structure once enough rays need it. Returns 0 if no ray is left. */
 INLINE int RAY_NAME(ray_leap)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* map, stratus_packet* k)
 {
@@ -238,7 +245,7 @@ INLINE int RAY_NAME(ray_leap)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL con
 
 #if STRATUS_RAY_MODE == STRATUS_RAY_LOCAL
 #include "ray_local.h"
-#elif STRATUS_RAY_MODE != STRATUS_RAY_ISOSURFACE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS && STRATUS_RAY_MODE != STRATUS_RAY_SLICE
+#elif RAY_BY_SAMPLES
 INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const uchar* map, GLOBAL const uchar* rough, GLOBAL const void* table, stratus_packet* k)
 {
@@ -274,6 +281,7 @@ INLINE void RAY_NAME(ray_march_two)(CONSTANT stratus_ray_cast_arguments* a, valu
 }
 #endif
 
+#if STRATUS_RAY_MODE != STRATUS_RAY_QUANTITIES
 INLINE void RAY_NAME(ray_finish)(
   CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, GLOBAL const void* table, stratus_packet* k)
 {
@@ -283,6 +291,7 @@ INLINE void RAY_NAME(ray_finish)(
   (void)table;
   (void)k;
 }
+#endif
 #endif
 
 /* Makes the rays of the packet at pixel (x, y) ready for their first segment. `crop` is set only where the frame shows crop regions. */
@@ -302,7 +311,7 @@ INLINE void RAY_NAME(ray_load)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
 #if STRATUS_RAY_MODE == STRATUS_RAY_SLICE
   slice_begin(a, x, y, &rays, k);
 #endif
-#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES
+#if STRATUS_RAY_MODE == STRATUS_RAY_EXTREMES || STRATUS_RAY_MODE == STRATUS_RAY_QUANTITIES
   k->front = v_set(-LARGEST_FLOAT);
 #endif
 }

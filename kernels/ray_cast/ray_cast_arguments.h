@@ -66,6 +66,7 @@
 #define STRATUS_RAY_LOCAL 6       /* light behind light, cell by cell in rough blocks, from sample to sample elsewhere */
 #define STRATUS_RAY_TRANSFER_2D 7 /* light behind light, by a function of the value and of a second number */
 #define STRATUS_RAY_SLICE 8       /* the values on a surface of the world, light behind light */
+#define STRATUS_RAY_QUANTITIES 9  /* the field's integral, length and largest value, cell by cell */
 
 /* The rays: ray k (forward + u right + v up) from eye; parallel: from eye + u right + v up along forward. */
 typedef struct stratus_ray_camera {

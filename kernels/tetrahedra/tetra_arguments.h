@@ -27,12 +27,13 @@
 #define TETRA_CELL 8
 #define TETRA_FACE 8
 /* How a ray combines its cells. */
-#define TETRA_LIGHT 0    /* light behind light */
-#define TETRA_EXTREMES 1 /* the largest or smallest value */
-#define TETRA_ADD 2      /* the mean or the sum of values */
-#define TETRA_SURFACES 3 /* surfaces of contour values, light behind light */
-#define TETRA_SLICE 4    /* the values on a surface of the world, light behind light */
-#define TETRA_HITS 5     /* the first cell that shows anything: its points, of which the host makes a picture */
+#define TETRA_LIGHT 0      /* light behind light */
+#define TETRA_EXTREMES 1   /* the largest or smallest value */
+#define TETRA_ADD 2        /* the mean or the sum of values */
+#define TETRA_SURFACES 3   /* surfaces of contour values, light behind light */
+#define TETRA_SLICE 4      /* the values on a surface of the world, light behind light */
+#define TETRA_HITS 5       /* the first cell that shows anything: its points, of which the host makes a picture */
+#define TETRA_QUANTITIES 6 /* the field's integral, length, largest value and number of cells */
 /* Added to the numbers that a hit stores, so that they are the bits of floats between 0 and 1. */
 #define TETRA_HIT_NAME 0x10000000
 #define TETRA_PLANES 12 /* of clip planes and the sides of a box */

@@ -263,6 +263,18 @@ INLINE void tetra_hit(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_s
   light->transparency = v_select(met, v_set(0.0f), light->transparency);
 }
 
+/* Adds a cell to a ray's quantities, which kernels/ray_cast/ray_quantities.h describes: red, the integral; green, the length; blue, the
+ * number of cells. The field is linear. */
+INLINE void tetra_measure(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat length)
+{
+  const vfloat zero = v_set(0.0f), mean = v_set(0.5f) * (first + last);
+  tetra_extreme(light, mask, first, last, near, near + length);
+  length = v_select(mask, length, zero);
+  light->red = v_fma(v_select(mask, mean, zero), length, light->red);
+  light->green = light->green + length;
+  light->blue = light->blue + v_select(mask, v_set(1.0f), zero);
+}
+
 #if TETRA_LIT
 /* Floats of points, `count` of four, where a ray passes a face, as tetra_cross() has the value. */
 INLINE void tetra_face_floats(GLOBAL const float* floats, int count, const vint name[3], const vfloat edge[3], vmask mask, vfloat g[4])
@@ -364,6 +376,8 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
   if (a->mode == TETRA_EXTREMES) {
     const vfloat sign = v_set(a->sign);
     tetra_extreme(light, mask, sign * first, sign * last, near, v_fma(end, r->length, r->offset));
+  } else if (a->mode == TETRA_QUANTITIES) {
+    tetra_measure(light, mask, first, last, near, (end - begin) * r->length);
   } else if (a->mode == TETRA_SURFACES) {
 #if TETRA_LIT
     const vmask some = mask & m_andnot(v_le(first, first), v_le(first, last) & v_le(last, first));

@@ -194,9 +194,11 @@ INLINE void store_ray(const stratus_tetra_walk* t, int pixel, const float rgba[4
 /* Stores the pixels of lanes whose ray has ended. */
 INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vmask mask)
 {
+  CONSTANT stratus_tetra_arguments* a = t->arguments;
   float channel[4][STRATUS_WIDTH], depth[STRATUS_WIDTH], largest[STRATUS_WIDTH];
   int pixel[STRATUS_WIDTH], segments[STRATUS_WIDTH], entry[STRATUS_WIDTH];
-  const vfloat one = v_set(1.0f), most = v_set(TETRA_LIT ? LARGEST_FLOAT : 1.0f); /* rounding may take a sum above 1, light goes beyond */
+  /* rounding may take a sum above 1; light and quantities go beyond */
+  const vfloat one = v_set(1.0f), most = v_set(TETRA_LIT || a->mode == TETRA_QUANTITIES ? LARGEST_FLOAT : 1.0f);
   v_store(channel[0], v_min(k->light.red, most));
   v_store(channel[1], v_min(k->light.green, most));
   v_store(channel[2], v_min(k->light.blue, most));
@@ -205,7 +207,6 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
   v_store(largest, k->light.most);
   vi_store(pixel, vi_select(mask, k->pixel, vi_set(-1)));
   vi_store(segments, k->segments);
-  CONSTANT stratus_tetra_arguments* a = t->arguments;
   if (a->mode == TETRA_EXTREMES) {
     vi_store(entry, table_entry(&a->table, t->view->scene.colors, v_set(a->sign) * k->light.most));
   }
@@ -241,7 +242,15 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
       rgba[0] = found ? a->sign * largest[lane] : 0.0f;
       rgba[3] = found ? 1.0f : 0.0f;
     }
-    store_ray(t, pixel[lane], rgba, depth[lane], segments[lane]);
+    int taken = segments[lane];
+    if (a->mode == TETRA_QUANTITIES) {
+      taken = (int)rgba[2];
+      rgba[2] = rgba[1];
+      rgba[1] = rgba[0];
+      rgba[0] = taken > 0 ? largest[lane] : 0.0f;
+      rgba[3] = taken > 0 ? 1.0f : 0.0f;
+    }
+    store_ray(t, pixel[lane], rgba, depth[lane], taken);
     t->found.segments += (uint)segments[lane];
   }
 }

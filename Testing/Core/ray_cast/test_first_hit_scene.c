@@ -298,7 +298,7 @@ static void what_makes_no_sense_is_refused(void** state)
   c.options = fine;                                                                                                                        \
   change;                                                                                                                                  \
   refuse(context, &c, word)
-  REFUSE(c.options.mode = (stratus_mode)(STRATUS_MODE_SLICE + 1), "mode");
+  REFUSE(c.options.mode = (stratus_mode)(STRATUS_MODE_QUANTITIES + 1), "mode");
   REFUSE(c.options.mode = (stratus_mode)-1, "mode");
   REFUSE(c.options.light.normals = (stratus_normals)2, "normals");
   REFUSE(c.options.light.shading.ambient = -0.1, "ambient");
