@@ -38,8 +38,8 @@ typedef enum stratus_tetra_mode {
 /* Modes average and additive use each value as a fraction of the range of the values that show, and limit the result to 1. They are opaque:
  * additive wherever a ray meets a cell, average wherever a value counts. */
 
-/* Return a mode's name: "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice", "first-hit" or "quantities"; "unknown" for other
- * numbers. */
+/* Return a mode's name: "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice", "first-hit" or "quantities";
+ * "unknown" for other numbers. */
 STRATUS_API const char* stratus_tetra_mode_name(stratus_tetra_mode mode);
 
 #define STRATUS_TETRA_CLIP_PLANES_MAX 6
