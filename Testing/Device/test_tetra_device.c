@@ -349,6 +349,7 @@ int test_tetra_device(void)
     cmocka_unit_test_prestate(device_and_host_draw_the_same, &project_gpu),
     cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_gpu),
   };
+#define TWO(test) cmocka_unit_test_prestate(test, &march_cpu), cmocka_unit_test_prestate(test, &project_gpu)
 #define EACH(test)                                                                                                                         \
   cmocka_unit_test_prestate(test, &march_cpu), cmocka_unit_test_prestate(test, &march_gpu), cmocka_unit_test_prestate(test, &project_cpu), \
     cmocka_unit_test_prestate(test, &project_gpu)
@@ -364,6 +365,16 @@ int test_tetra_device(void)
     EACH(the_loss_of_the_device_at_any_call),
     EACH(refused_memory),
   };
+  const struct CMUnitTest small[] = {
+    EACH(device_and_host_draw_the_same),
+    cmocka_unit_test_prestate(components_draw_the_same, &march_gpu),
+    cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_cpu),
+    cmocka_unit_test_prestate(auto_goes_by_the_costs_of_the_host, &march_cpu),
+    TWO(a_caster_that_drew_before),
+    TWO(the_loss_of_the_device_at_any_call),
+    TWO(refused_memory),
+  };
+#undef TWO
 #undef EACH
   if (stratus_device_count() == 0) {
     return test_skip("no OpenCL device on this machine");
@@ -374,6 +385,9 @@ int test_tetra_device(void)
     wider = 2.5;
     return cmocka_run_group_tests(few, NULL, NULL);
   }
-  seeds = few_run() ? 3 : seeds;
+  if (few_run()) {
+    seeds = 3;
+    return cmocka_run_group_tests(small, NULL, NULL);
+  }
   return cmocka_run_group_tests(all, NULL, NULL);
 }
