@@ -103,21 +103,25 @@ typedef struct stratus_tetra_options {
    * segment of half a spacing in the world. Finite. A spacing is the edge of a cube that six cells of the mean volume fill. The gradient's
    * magnitude is in values per spacing, whatever the mesh's matrix. */
   double gradient_distance;
-  /* Values of several components, by marching. Isosurface, slice and first hits do not draw them, and only composite draws dependent ones:
-   * other requests give STRATUS_UNSUPPORTED. A value that is not finite in any component hides its cells.
+  /* Values of several components, by marching. A value that is not finite in any component hides its cells. Isosurface and first hits do
+   * not draw independent ones: STRATUS_UNSUPPORTED.
    *
-   * Composite, 0 (default): each component is a medium with its own transfer function. Optical depths, times the functions' weights, and
-   * emitted light add up. In other modes each independent component is drawn by itself. Their premultiplied colours, times the functions'
-   * weights, add up to at most 1, and so do the alphas of extremes.
+   * 0 (default): each component is a medium with its own transfer function. Composite: optical depths, times the functions' weights, and
+   * emitted light add up. Slice: the same at each point, over a length of which each opacity is. Maximum, minimum, average and additive
+   * draw each component by itself. Their premultiplied colours, times the functions' weights, add up to at most 1, and so do the alphas of
+   * extremes.
    *
    * 1: the components are one medium with one function. Of 2 components, the first has the colour and the second the opacity. Of 4
-   * (STRATUS_UINT8 only), the first three are red, green and blue in 0..255, and the fourth has the opacity. */
+   * (up to 16 bits, or floats), the first three are red, green and blue in 0..255, and the fourth has the opacity. Maximum and minimum keep
+   * the last component's value, isosurface cuts it, first hits and slice show it by its opacity, each in the colour of the others at that
+   * place. Average and additive add the last one's opacity times the first one's value; average_range is of the first one. */
   int dependent;
   /* Composite, independent components: one material for each component, which replaces `shade` and the material in `shading`. The lights of
    * `shading` are read if a material has shade. NULL (default): all components have the material of `shading`. Each component is lit, and
    * its opacity multiplied, by its own gradient; dependent components by the last one's gradient. Borrowed during the render. */
   const stratus_material* materials;
-  /* Independent components. 1: each counts by its share of the optical depth, as in stratus_ray_cast_options. Default 0. */
+  /* Independent components, composite and slice. 1: each counts by its share of the optical depth, as in stratus_ray_cast_options. Default
+   * 0. */
   int mean_components;
 } stratus_tetra_options;
 

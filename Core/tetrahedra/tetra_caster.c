@@ -308,7 +308,7 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   stratus_tetra_frame_contours(&frame, caster->mesh, caster->look.transfer, options, caster->keeps);
   stratus_tetra_frame_clip(&frame, mesh, options);
   stratus_tetra_frame_light(&frame, caster, mesh, transfer, options);
-  stratus_tetra_frame_components(&frame, caster, options);
+  stratus_tetra_frame_components(&frame, caster, mesh, options);
   report->transform_ms = stratus_now_ms() - start;
   TRY(marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report));
   if (hits) {
@@ -317,15 +317,16 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   return STRATUS_OK;
 }
 
+/* transfer: the component's. */
 static stratus_status draw_component(stratus_tetra_caster* caster, int component, const stratus_mesh* mesh,
-  const stratus_transfer* transfers, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image,
+  const stratus_transfer* transfer, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image,
   stratus_tetra_report* report, double* bias)
 {
   stratus_tetra_part* other = component > 0 ? caster->parts + component - 1 : NULL;
   if (other) {
     stratus_tetra_part_swap(caster, other);
   }
-  const stratus_status status = draw_one(caster, mesh, transfers + component, camera, options, image, report);
+  const stratus_status status = draw_one(caster, mesh, transfer, camera, options, image, report);
   *bias = caster->mesh->bias;
   if (other) {
     stratus_tetra_part_swap(caster, other);
@@ -359,7 +360,7 @@ static stratus_status draw_parts(stratus_tetra_caster* caster, const stratus_mes
   for (int c = 0; c < mesh->components; ++c) {
     stratus_tetra_report mine = { 0 };
     double bias;
-    TRY_CLEANUP(draw_component(caster, c, mesh, transfers, camera, options, &part, &mine, &bias));
+    TRY_CLEANUP(draw_component(caster, c, mesh, transfers + c, camera, options, &part, &mine, &bias));
     stratus_image_add(image, &part, (float)transfers[c].weight, opaque);
     add_report(report, &mine);
   }
@@ -455,7 +456,12 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   }
   const stratus_tetra_subject of = { mesh, transfer, options };
   TRY(take(caster, &of, camera, image, &drawn, &mine));
-  TRY((stratus_tetra_draws_parts(drawn, options) ? draw_parts : draw_one)(caster, drawn, transfer, camera, options, image, &mine));
+  if (stratus_tetra_draws_last(drawn, options)) {
+    double bias;
+    TRY(draw_component(caster, drawn->components - 1, drawn, transfer, camera, options, image, &mine, &bias));
+  } else {
+    TRY((stratus_tetra_draws_parts(drawn, options) ? draw_parts : draw_one)(caster, drawn, transfer, camera, options, image, &mine));
+  }
   fill_report(caster, &mine);
   if (report) {
     *report = mine;
@@ -471,9 +477,13 @@ stratus_status stratus_tetra_caster_render_kept(stratus_tetra_caster* caster, co
   const stratus_mesh* drawn = NULL;
   marched.method = STRATUS_TETRA_METHOD_MARCH;
   const stratus_tetra_subject of = { mesh, transfer, &marched };
+  if (mesh && mesh->components > 1 && marched.dependent) {
+    return stratus_fail(caster->context, STRATUS_UNSUPPORTED,
+      "mesh of %d dependent components among several is not supported, only of one or of independent ones", mesh->components);
+  }
   TRY(take(caster, &of, camera, image, &drawn, report));
   caster->keeps = true;
-  const stratus_status status = draw_component(caster, component, drawn, transfer, camera, &marched, image, report, bias);
+  const stratus_status status = draw_component(caster, component, drawn, transfer + component, camera, &marched, image, report, bias);
   caster->keeps = false;
   fill_report(caster, report);
   return status;

@@ -63,7 +63,9 @@ typedef struct stratus_tetra_components {
   int32_t* sums; /* of all tables, each as stratus_tetra_sums() */
   size_t value_count, sum_count;
   int sums_at[4];
-  float last[4], depth_scale[4];
+  float last[4], depth_scale[4], scale[4], offset[4]; /* the last two: from fetched values to places */
+  double bias[4];
+  float low, high; /* range of the first one's fetched values of shown cells */
   bool has_opaque[4], shown;
   bool dependent;              /* inputs from which the tables were made, as are the next fields */
   stratus_transfer* transfers; /* copies */
@@ -177,8 +179,8 @@ stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus
 bool stratus_tetra_modes_regions(const stratus_tetra_options* options);
 /* Whether nothing but marching draws with these options. */
 bool stratus_tetra_modes_march(const stratus_tetra_options* options);
-/* Sums for average and additive in the layout of stratus_tetra_sums(): of opacity times value, of opacity, nothing, and of the entries that
- * count. A value is a fraction of the range of `values`. */
+/* Sums for average and additive in the layout of stratus_tetra_sums(): of opacity times value, of opacity, whose moments are the last part,
+ * nothing, and of the entries that count. A value is a fraction of the range of `values`. */
 stratus_status stratus_tetra_value_sums(
   stratus_context* context, const stratus_table* table, const stratus_table_values* values, const double range[2], int32_t** sums);
 /* Numbers of entries for first hits, where stratus_tetra_sums() has those of opaque entries: the next that shows upwards, or the table's
@@ -213,14 +215,15 @@ void stratus_tetra_light_drop_factors(stratus_tetra_caster* caster);
 /* Sets the arguments of a frame that stratus_tetra_frame_prepare() has prepared. */
 void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_tetra_options* options);
-/* tetra_components.c: values of several components that mix along rays. */
+/* tetra_components.c: values of several components that rays read together: those that mix, and dependent ones. */
 bool stratus_tetra_mixes(const stratus_mesh* mesh, const stratus_tetra_options* options);
 stratus_status stratus_tetra_components_check(
   stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
 stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfers,
   const stratus_tetra_options* options, double* ms);
 void stratus_tetra_components_drop(stratus_tetra_caster* caster);
-void stratus_tetra_frame_components(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_tetra_options* options);
+void stratus_tetra_frame_components(
+  stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options);
 /* tetra_look.c: the tables of a transfer function. Return the values of a mesh for which a table is made; low..high: their range. */
 stratus_table_values stratus_tetra_look_values(const stratus_mesh* mesh, float low, float high, double bias);
 /* Make a look if `known` has another function, mode or range; otherwise made->table is NULL. */
@@ -230,7 +233,9 @@ stratus_status stratus_tetra_look_make(stratus_context* context, const stratus_t
 stratus_status stratus_tetra_look_update(
   stratus_tetra_caster* caster, const stratus_transfer* transfer, const stratus_tetra_options* options, stratus_tetra_look* made);
 void stratus_tetra_look_drop(stratus_context* context, stratus_tetra_look* look);
-/* tetra_parts.c: true if each component has an image of its own. */
+/* tetra_parts.c: true if rays keep, cut or add the last of dependent components, in the colours of the others. */
+bool stratus_tetra_draws_last(const stratus_mesh* mesh, const stratus_tetra_options* options);
+/* True if each component has an image of its own. */
 bool stratus_tetra_draws_parts(const stratus_mesh* mesh, const stratus_tetra_options* options);
 stratus_status stratus_tetra_parts_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfers,
   const stratus_tetra_options* options, double* ms);

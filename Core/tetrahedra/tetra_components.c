@@ -13,7 +13,8 @@
 
 bool stratus_tetra_mixes(const stratus_mesh* mesh, const stratus_tetra_options* options)
 {
-  return stratus_tetra_component_count(mesh) > 1 && options->mode == STRATUS_TETRA_COMPOSITE;
+  return stratus_tetra_component_count(mesh) > 1 &&
+    (options->dependent || options->mode == STRATUS_TETRA_COMPOSITE || options->mode == STRATUS_TETRA_SLICE);
 }
 
 stratus_status stratus_tetra_components_check(
@@ -23,21 +24,18 @@ stratus_status stratus_tetra_components_check(
   if (count == 1) {
     return STRATUS_OK;
   }
-  if (options->mode >= STRATUS_TETRA_ISOSURFACE) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode %s of %d components is not supported, only of one",
-      stratus_tetra_mode_name(options->mode), count);
-  }
-  if (options->dependent && options->mode != STRATUS_TETRA_COMPOSITE) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "%d dependent components are not supported in mode %s, only in composite", count,
-      stratus_tetra_mode_name(options->mode));
+  if (!options->dependent && (options->mode == STRATUS_TETRA_ISOSURFACE || options->mode == STRATUS_TETRA_FIRST_HIT)) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "mode %s of %d independent components is not supported, only of one, or of dependent ones", stratus_tetra_mode_name(options->mode),
+      count);
   }
   if (options->method == STRATUS_TETRA_METHOD_PROJECT) {
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "values of %d components cannot be projected, only marched: take the method march or auto", count);
   }
-  if (options->dependent && !(count == 2 || (count == 4 && mesh->type == STRATUS_UINT8))) {
+  if (options->dependent && !(count == 2 || (count == 4 && !stratus_type_is_wide(mesh->type)))) {
     return stratus_fail(context, STRATUS_UNSUPPORTED,
-      "%d dependent components of type %d are not supported, only 2 of any type, or 4 of unsigned bytes", count, (int)mesh->type);
+      "%d dependent components of type %d are not supported, only 2 of any type, or 4 of up to 16 bits or floats", count, (int)mesh->type);
   }
   for (int c = 0; c < (options->dependent ? 1 : count); ++c) {
     TRY(stratus_transfer_check(context, transfers + c));
@@ -82,8 +80,6 @@ typedef struct components_build {
   const stratus_mesh* mesh;
   const stratus_transfer* transfers;
   stratus_tetra_components made;
-  double bias[4];
-  float scale[4], offset[4]; /* from a fetched value to its place */
 } components_build;
 
 /* Return the function of a component's table. half: points for a component that has only a colour. */
@@ -106,7 +102,7 @@ static stratus_status add_table(components_build* b, int c)
 {
   stratus_context* context = b->caster->context;
   stratus_tetra_components* m = &b->made;
-  const stratus_table_values values = values_of(b->mesh, c, b->bias[c]);
+  const stratus_table_values values = values_of(b->mesh, c, b->made.bias[c]);
   double half[2];
   const stratus_transfer function = function_of(b, c, half);
   stratus_table* table = NULL;
@@ -129,8 +125,8 @@ static stratus_status add_table(components_build* b, int c)
     m->depth_scale[c] = stratus_table_arguments_of(table).tau_scale * (m->dependent ? 1.0f : (float)function.weight);
     m->has_opaque[c] = table->has_opaque != 0 && (m->dependent || function.weight > 0.0);
     m->shown = m->shown || (table->shown > 0 && (!m->dependent || c + 1 == m->count));
-    b->scale[c] = table->scale;
-    b->offset[c] = table->offset;
+    b->made.scale[c] = table->scale;
+    b->made.offset[c] = table->offset;
   }
   stratus_release(context, sums);
   stratus_table_destroy(table);
@@ -159,8 +155,8 @@ static stratus_status fill_places(components_build* b)
       const int64_t value = stratus_tetra_value_at(&cells, &slots, slot);
       float* place = m->places + 4 * (tetra->names && !b->mesh->cell_values ? tetra->names[slot] : slots.first + slot);
       for (int c = 0; c < m->count && value >= 0; ++c) {
-        const float fetched = stratus_volume_fetch(&component[c], b->bias[c], (size_t)value);
-        place[c] = isfinite(fetched) ? fetched * b->scale[c] + b->offset[c] : 0.0f;
+        const float fetched = stratus_volume_fetch(&component[c], b->made.bias[c], (size_t)value);
+        place[c] = isfinite(fetched) ? fetched * b->made.scale[c] + b->made.offset[c] : 0.0f;
       }
     }
   }
@@ -171,10 +167,10 @@ static stratus_status build(components_build* b)
 {
   stratus_tetra_components* m = &b->made;
   for (int c = 0; c < m->count; ++c) {
-    b->bias[c] = stratus_tetra_bias(b->mesh, c);
+    b->made.bias[c] = stratus_tetra_bias(b->mesh, c);
     if (m->dependent && m->count == 4 && c < 3) { /* red, green and blue are not scaled to the range */
-      b->scale[c] = 1.0f / 255.0f;
-      b->offset[c] = (float)b->bias[c] * b->scale[c];
+      b->made.scale[c] = 1.0f / 255.0f;
+      b->made.offset[c] = (float)b->made.bias[c] * b->made.scale[c];
     } else {
       TRY(add_table(b, c));
     }
@@ -195,9 +191,12 @@ stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, con
   if (!stratus_tetra_mixes(mesh, options)) {
     return STRATUS_OK;
   }
-  b.made = (stratus_tetra_components){
-    .count = count, .dependent = options->dependent != 0, .transfer_count = options->dependent ? 1 : count, .values = caster->value_builds
-  };
+  b.made = (stratus_tetra_components){ .count = count,
+    .dependent = options->dependent != 0,
+    .transfer_count = options->dependent ? 1 : count,
+    .values = caster->value_builds,
+    .low = caster->mesh->low,
+    .high = caster->mesh->high };
   bool same = known->count == count && known->dependent == b.made.dependent && known->values == caster->value_builds;
   for (int t = 0; t < b.made.transfer_count && same; ++t) {
     same = stratus_transfer_same(known->transfers + t, transfers + t);
@@ -217,12 +216,28 @@ stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, con
   return status;
 }
 
-void stratus_tetra_frame_components(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_tetra_options* options)
+/* Sets how the first component's values are parts of its range, and count. */
+static void set_grey(const stratus_tetra_caster* caster, const stratus_tetra_options* options, stratus_tetra_media_arguments* a)
+{
+  const stratus_tetra_components* m = &caster->components;
+  const double low = (double)m->low, width = (double)m->high - low, scale = (double)m->scale[0];
+  const double per_place = scale > 0.0 && width > 0.0 ? 1.0 / (scale * width) : 0.0;
+  a->grey[0] = (float)per_place;
+  a->grey[1] = width > 0.0 ? (float)(-(double)m->offset[0] * per_place - low / width) : 0.0f;
+  for (int end = 0; end < 2; ++end) {
+    const double counted =
+      options->mode == STRATUS_TETRA_AVERAGE ? options->average_range[end] - m->bias[0] : (end ? (double)INFINITY : -(double)INFINITY);
+    a->counted[end] = (float)fmin(fmax(width > 0.0 ? (counted - low) / width : counted - low, -1e30), 1e30);
+  }
+}
+
+void stratus_tetra_frame_components(
+  stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options)
 {
   const stratus_tetra_components* m = &caster->components;
   stratus_tetra_media_arguments* a = &frame->arguments.media;
-  if (m->count == 0 || options->mode != STRATUS_TETRA_COMPOSITE) {
-    return;
+  if (!stratus_tetra_mixes(mesh, options) || options->mode == STRATUS_TETRA_FIRST_HIT) {
+    return; /* hits are coloured afterwards */
   }
   frame->lit = true;
   frame->components = m->places;
@@ -237,6 +252,12 @@ void stratus_tetra_frame_components(stratus_tetra_frame* frame, const stratus_te
     a->depth_scale[c] = m->depth_scale[c];
     a->has_opaque[c] = m->has_opaque[c];
     a->weight[c] = m->dependent ? 1.0f : (float)m->transfers[c].weight;
+    if (options->mode == STRATUS_TETRA_SLICE) { /* a place has the optical depth of a unit distance of its own */
+      a->depth_scale[c] *= (float)m->transfers[m->dependent ? 0 : c].unit_distance;
+    }
     a->way_scale[c] = a->weight[c] > 0.0f ? m->depth_scale[c] / a->weight[c] * frame->arguments.factor_way : 0.0f;
+  }
+  if (options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE) {
+    set_grey(caster, options, a);
   }
 }

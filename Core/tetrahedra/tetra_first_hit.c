@@ -21,7 +21,9 @@ typedef struct hits {
   double planes[TETRA_PLANES + 6][4]; /* that cut rays, in the world, relative to the eye; then those between crop regions */
   int plane_count, crop_count;        /* of the first, and of the second */
   double to_normal[9];                /* takes gradients in local coordinates to the world */
+  const float* gradients;             /* of points */
   bool smooth;                        /* normals are the gradients of points */
+  bool dependent;                     /* values are of dependent components */
   stratus_lamps lamps;
 } hits;
 
@@ -272,7 +274,7 @@ static bool smooth_normal(const hits* h, const hit_ray* ray, const hit_cell* cel
   weigh(ray, cell, k, weight);
   for (int i = 0; i < (cell->flat ? 3 : 4); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      gradient[axis] += weight[i] * (double)h->caster->gradients.vectors[4 * (size_t)cell->name[i] + (size_t)axis];
+      gradient[axis] += weight[i] * (double)h->gradients[4 * (size_t)cell->name[i] + (size_t)axis];
     }
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -308,6 +310,29 @@ static void find_normal(const hits* h, const hit_ray* ray, const hit_cell* cell,
   }
 }
 
+/* Finds the colour of a place. Of dependent components the last one's function is not asked: the others have the colour. */
+static void find_color(const hits* h, const hit_ray* ray, const hit_cell* cell, const hit_place* place, double shown[4])
+{
+  const stratus_tetra_components* m = &h->caster->components;
+  double value = place->value + h->caster->mesh->bias;
+  if (h->dependent) {
+    double weight[4], at[4] = { 0.0, 0.0, 0.0, 0.0 };
+    const bool own = h->frame->cell_values != NULL;
+    weigh(ray, cell, place->k, weight);
+    for (int i = 0; i < (own ? 1 : cell->flat ? 3 : 4); ++i) {
+      const float* places = m->places + 4 * (size_t)cell->name[own ? 3 : i];
+      for (int c = 0; c < m->count; ++c) {
+        at[c] += (own ? 1.0 : weight[i]) * (double)places[c];
+      }
+    }
+    memcpy(shown, at, 3 * sizeof *shown);
+    value = m->scale[0] > 0.0f ? (at[0] - (double)m->offset[0]) / (double)m->scale[0] + m->bias[0] : m->bias[0] + (double)m->low;
+  }
+  if (!h->dependent || m->count == 2) {
+    stratus_transfer_at(h->transfer, value, shown);
+  }
+}
+
 /* Replaces a pixel's stored cell by the colour of the hit. Returns its depth. */
 static float shade(const hits* h, int x, int y, float rgba[4])
 {
@@ -320,7 +345,7 @@ static float shade(const hits* h, int x, int y, float rgba[4])
   take_ray(h, x, y, &ray);
   take_cell(h, rgba, &cell);
   const hit_place place = find_place(h, &ray, &cell);
-  stratus_transfer_at(h->transfer, place.value + h->caster->mesh->bias, shown);
+  find_color(h, &ray, &cell, &place, shown);
   if (h->options->shade) {
     find_normal(h, &ray, &cell, &place, normal);
     for (int axis = 0; axis < 3; ++axis) {
@@ -339,15 +364,16 @@ static float shade(const hits* h, int x, int y, float rgba[4])
 void stratus_tetra_hits_shade(const stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_tetra_options* options, const stratus_image* image)
 {
-  hits h = { .frame = frame, .caster = caster, .transfer = transfer, .options = options };
+  hits h = { .frame = frame, .caster = caster, .transfer = transfer, .options = options, .dependent = stratus_tetra_mixes(mesh, options) };
   double inverse[16];
   h.plane_count = stratus_tetra_planes(mesh, options, h.planes);
   h.crop_count = stratus_tetra_crop_planes(mesh, options, h.planes + TETRA_PLANES);
   for (int p = 0; p < TETRA_PLANES + h.crop_count; ++p) {
     h.planes[p][3] += stratus_vector_dot(h.planes[p], frame->camera.eye);
   }
-  h.smooth =
-    options->normals == STRATUS_NORMALS_GRADIENT && caster->gradients.vectors && stratus_matrix_invert_affine(mesh->matrix, inverse);
+  const int of = h.dependent ? caster->components.count - 1 : 0, set = caster->gradients.set[of] > 0 ? caster->gradients.set[of] : 0;
+  h.gradients = caster->gradients.vectors ? caster->gradients.vectors + 4 * (size_t)caster->mesh->point_count * (size_t)set : NULL;
+  h.smooth = options->normals == STRATUS_NORMALS_GRADIENT && h.gradients && stratus_matrix_invert_affine(mesh->matrix, inverse);
   for (int i = 0; i < 9 && h.smooth; ++i) { /* normals transform by the inverse's transpose */
     h.to_normal[i] = inverse[4 * (i % 3) + i / 3];
   }

@@ -103,7 +103,7 @@ stratus_status stratus_tetra_value_sums(
 {
   const size_t size = (size_t)table->size;
   const double lo = (double)values->lo, width = (double)values->hi - lo, one = SUM_MOST / ((double)size + 1.0);
-  int64_t below[4] = { 0, 0, 0, 0 };
+  int64_t below[4] = { 0, 0, 0, 0 }, moment = 0;
   void* memory = NULL;
   TRY(stratus_allocate_zero(context, STRATUS_TETRA_SUMS * size, sizeof(int32_t), &memory));
   *sums = memory;
@@ -119,6 +119,10 @@ stratus_status stratus_tetra_value_sums(
       (*sums)[4 * (size + entry) + c] = (int32_t)here;
       below[c] += here;
     }
+    const int64_t turn = (int64_t)(*sums)[4 * (size + entry) + 1] * (int64_t)entry, middle = moment + turn / 2;
+    (*sums)[10 * size + 2 * entry] = (int32_t)(middle >> 16);
+    (*sums)[10 * size + 2 * entry + 1] = (int32_t)(middle & 0xffff);
+    moment += turn;
   }
   return STRATUS_OK;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Components that are drawn separately. In modes that find one value per ray, each component of a mesh has its own values and look. While a
- * component is drawn, its values and look replace the first component's. The images are added. */
+ * component is drawn, its values and look replace the first component's. The images are added. Of dependent components, only the last one
+ * is drawn so. */
 #include "tetra_caster.h"
 
 #include "mesh.h"
@@ -8,9 +9,16 @@
 
 #include <string.h>
 
+bool stratus_tetra_draws_last(const stratus_mesh* mesh, const stratus_tetra_options* options)
+{
+  return stratus_tetra_component_count(mesh) > 1 && options->dependent && options->mode != STRATUS_TETRA_COMPOSITE &&
+    options->mode != STRATUS_TETRA_SLICE;
+}
+
 bool stratus_tetra_draws_parts(const stratus_mesh* mesh, const stratus_tetra_options* options)
 {
-  return stratus_tetra_component_count(mesh) > 1 && options->mode != STRATUS_TETRA_COMPOSITE && options->mode < STRATUS_TETRA_ISOSURFACE;
+  return stratus_tetra_component_count(mesh) > 1 && !options->dependent && options->mode >= STRATUS_TETRA_MAXIMUM &&
+    options->mode <= STRATUS_TETRA_ADDITIVE;
 }
 
 void stratus_tetra_parts_drop(stratus_tetra_caster* caster)
@@ -67,19 +75,25 @@ stratus_status stratus_tetra_parts_update(stratus_tetra_caster* caster, const st
 {
   const double start = stratus_now_ms();
   stratus_status status = STRATUS_OK;
-  if (!stratus_tetra_draws_parts(mesh, options)) {
+  const bool last = stratus_tetra_draws_last(mesh, options);
+  stratus_tetra_options own = *options;
+  if (last) { /* the range is of the first component's values */
+    own.average_range[0] = -(double)INFINITY;
+    own.average_range[1] = (double)INFINITY;
+  }
+  if (!last && !stratus_tetra_draws_parts(mesh, options)) {
     return STRATUS_OK;
   }
   if (caster->part_values != caster->value_builds) {
     stratus_tetra_parts_drop(caster);
   }
-  for (int c = 1; c < stratus_tetra_component_count(mesh) && status == STRATUS_OK; ++c) {
+  for (int c = last ? stratus_tetra_component_count(mesh) - 1 : 1; c < stratus_tetra_component_count(mesh) && status == STRATUS_OK; ++c) {
     stratus_tetra_part* part = caster->parts + c - 1;
     stratus_tetra_look made = { 0 };
     status = part->values ? STRATUS_OK : fetch_part(caster, mesh, c, part);
     if (status == STRATUS_OK) {
       const stratus_table_values values = stratus_tetra_look_values(mesh, part->low, part->high, part->bias);
-      status = stratus_tetra_look_make(caster->context, &values, transfers + c, options, &part->look, &made);
+      status = stratus_tetra_look_make(caster->context, &values, transfers + (last ? 0 : c), &own, &part->look, &made);
     }
     if (made.table) {
       stratus_tetra_look_drop(caster->context, &part->look);

@@ -23,23 +23,24 @@
  *   points of equal coordinates and values are merged, so that blocks meet in whole faces. Blocks without the array or without a volume are
  *   left out with a warning. A single block is drawn as it is;
  * - point and cell scalars of any numeric type but bits; also of 2 to 4 independent components, each with functions of its own, which mix
- *   in composite (ComponentMixing), while maximum, minimum, average and additive draw each by itself and add the weighted colours; and in
- *   composite of dependent ones: 2 (colour by the first, opacity by the second) and 4 unsigned bytes (red, green, blue, and the opacity's
- *   value). They are marched. Of independent ones the first colour function's VectorMode draws one value, as VTK's mappers of meshes do:
- *   the magnitude, or the component that VectorComponent names, by the functions of component 0. The first component, the default,
- *   leaves 2 to 4 components to mix; of more components only the first is drawn;
+ *   in composite and slice (ComponentMixing), while maximum, minimum, average and additive draw each by itself and add the weighted
+ *   colours; and of dependent ones: 2 (colour by the first, opacity by the second) and 4 of up to 16 bits or floats (red, green, blue in
+ *   0..255, and the opacity's value), in every mode as vtkStratusVolumeMapper draws them. They are marched. Of independent ones the first
+ * colour function's VectorMode draws one value, as VTK's mappers of meshes do: the magnitude, or the component that VectorComponent names,
+ * by the functions of component 0. The first component, the default, leaves 2 to 4 components to mix; of more components only the first is
+ *   drawn;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
  * - the blend modes composite, maximum and minimum intensity (the largest or smallest value on a ray, at the opacity of one unit distance),
  *   average and additive intensity, isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
  *   tetrahedron), and slices (SliceFunction of the property, as vtkStratusVolumeMapper takes it). All but composite and maximum are
  *   marched: PROJECT_METHOD refuses them, AUTO_METHOD marches;
  * - first hits (RenderModeToFirstHit): lit, opaque solids, which write their depth. They are marched;
- * - light (Shade; the renderer's lights and TwoSidedLighting), in composite, isosurface and first hits, as vtkStratusVolumeMapper takes it.
- * In a tetrahedron the field's gradient is constant; each point has the mean of its tetrahedra's, weighted by volume, and between points it
- * is interpolated, so that light is smooth across cells. Cell scalars are averaged at points for it. Independent components are lit and
- *   thinned each by its own gradient, and have a Shade and a material of their own; dependent ones by the last one's;
+ * - light (Shade; the renderer's lights and TwoSidedLighting), in composite, isosurface and first hits, as vtkStratusVolumeMapper takes
+ *   it. In a tetrahedron the field's gradient is constant; each point has the mean of its tetrahedra's, weighted by volume, and between
+ *   points it is interpolated, so that light is smooth across cells. Cell scalars are averaged at points for it. Independent components
+ *   are lit and thinned each by its own gradient, and have a Shade and a material of their own; dependent ones by the last one's;
  * - gradient opacity in composite, in values per mean spacing: the edge of a cube that six tetrahedra of the mean volume fill. It
- * multiplies the optical depth, or the opacity (GradientOpacityDistance). Light and gradient opacity are marched;
+ *   multiplies the optical depth, or the opacity (GradientOpacityDistance). Light and gradient opacity are marched;
  * - up to 6 clipping planes (of origin and normal) and cropping to any of the 27 regions. They cut rays exactly, cells are not left out;
  * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes). In composite mode, rays are cast up to each surface, so that the
  *   parts of the volume between surfaces are in depth order. In other modes the whole frame is placed between the surfaces, at its first
@@ -52,8 +53,7 @@
  * composite, isosurface and first hits, gradient opacity outside of composite, functions of two variables and of labels, transforms of
  * clipping planes and of SliceFunction.
  *
- * All else (isosurfaces, slices and first hits of several components, dependent ones in other modes than composite) is refused by an error,
- * and nothing is drawn.
+ * All else (isosurfaces and first hits of several independent components) is refused by an error, and nothing is drawn.
  *
  * Volumes of one renderer are drawn by depth, as vtkStratusVolumeMapper describes. A mesh is mixed with the volumes that overlap it if one
  * of them has a vtkStratusVolumeMapper, by method auto or march and without light.

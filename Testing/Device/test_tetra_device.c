@@ -137,7 +137,9 @@ static void components_draw_the_same(void** state)
 {
   stratus_context *host = open_context("host", *state), *device = open_context("0", *state);
   assert_non_null(device);
-  for (uint32_t seed = 0; seed < 10; seed += few_run() ? 3 : 1) {
+  for (uint32_t seed = 0; seed < 16; seed += few_run() ? 3 : 1) {
+    static const stratus_tetra_mode last[6] = { STRATUS_TETRA_SLICE, STRATUS_TETRA_MINIMUM, STRATUS_TETRA_ISOSURFACE, STRATUS_TETRA_AVERAGE,
+      STRATUS_TETRA_FIRST_HIT, STRATUS_TETRA_SLICE };
     static const double thicker[4] = { 0.2, 0.1, 0.9, 0.6 }, thin[4] = { 0.1, 0.0, 0.6, 1.0 };
     static const stratus_material materials[2] = { { 1, 0.1, 0.9, 0.5, 30.0 }, { 1, 0.4, 0.5, 0.0, 1.0 } };
     tetra_case c;
@@ -146,7 +148,12 @@ static void components_draw_the_same(void** state)
     stratus_transfer transfers[2] = { c.transfer, c.transfer };
     transfers[1].opacity = thicker;
     transfers[1].opacity_count = 2;
-    c.options.mode = seed < 3 || seed > 6 ? STRATUS_TETRA_COMPOSITE : (stratus_tetra_mode)(STRATUS_TETRA_MAXIMUM + seed - 3);
+    c.options.mode = seed > 9 ? last[seed - 10]
+      : seed < 3 || seed > 6  ? STRATUS_TETRA_COMPOSITE
+                              : (stratus_tetra_mode)(STRATUS_TETRA_MAXIMUM + seed - 3);
+    c.options.contour_count = 1;
+    c.options.contours[0] = 0.5;
+    c.options.slice = (stratus_slice){ .center = { 0.5 * edge, 0.5 * edge, 0.5 * edge }, .linear = { 1, 2, 3 } };
     if (seed > 6) {
       c.options.shade = 1;
       c.options.materials = seed == 8 ? materials : NULL;
@@ -160,7 +167,7 @@ static void components_draw_the_same(void** state)
     for (int64_t cell = 0; cell < 4 * c.mesh.cell_count; ++cell) {
       c.mesh.cell_count = c.vertices[cell] >= (int32_t)c.mesh.point_count ? cell / 4 : c.mesh.cell_count;
     }
-    c.options.dependent = seed == 1 || seed == 7;
+    c.options.dependent = seed == 1 || seed == 7 || (seed > 9 && seed < 15);
     c.options.mean_components = seed == 2 || seed == 8;
     for (int where = 0; where < 2; ++where) {
       stratus_context* context = where ? device : host;

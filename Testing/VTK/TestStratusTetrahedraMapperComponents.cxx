@@ -176,10 +176,10 @@ void WhatIsRefused()
   };
   scene.Tetrahedra->SetBlendModeToIsoSurface();
   scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, 0.5);
-  refuses("mode isosurface of 3 components");
+  refuses("mode isosurface of 3 independent components");
   scene.Tetrahedra->SetBlendModeToAverageIntensity();
   scene.Volume->GetProperty()->IndependentComponentsOff();
-  refuses("3 dependent components are not supported in mode average");
+  refuses("3 dependent components of type");
   scene.Volume->GetProperty()->IndependentComponentsOn();
   scene.Tetrahedra->SetBlendModeToComposite();
   scene.Tetrahedra->SetMethodToProject();

@@ -60,6 +60,9 @@ typedef struct stratus_tetra_media_arguments {
   float way_scale[4];  /* the optical depth of a unit of its sums over factor_way, whatever the weight */
   int gradients_at[4]; /* which of the sets of gradients is its own; -1: neither light nor opacity depends on it */
   int points;          /* gradients in a set */
+  /* Sums of dependent components: the first one's value as a part of its range is place * grey[0] + grey[1], and counts from counted[0] to
+   * counted[1]. */
+  float grey[2], counted[2];
 } stratus_tetra_media_arguments;
 
 typedef struct stratus_tetra_arguments {

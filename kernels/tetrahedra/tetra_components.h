@@ -18,7 +18,7 @@ typedef struct stratus_tetra_values {
 /* A stretch of several components. */
 typedef struct stratus_tetra_mixture {
   const stratus_tetra_values* values;
-  const stratus_tetra_stretch* gradients; /* of those components whose light or opacity depends on them */
+  const stratus_tetra_stretch* gradients; /* of those components whose light or opacity depends on them; 0: none is lit or thinned */
   GLOBAL const int* sums;                 /* of all components */
   GLOBAL const float* factors;            /* their gradient opacities */
   vfloat length;                          /* in the world */
@@ -134,7 +134,7 @@ INLINE void mix_components(CONSTANT stratus_tetra_arguments* a, const stratus_te
         medium.color[i] = v_set(0.5f) * (from[i] + to[i]);
       }
     }
-    if (component_has_gradient(a, c)) {
+    if (m->gradients && component_has_gradient(a, c)) {
       light_component(a, m, c, at, part, mask, &medium);
     }
     *depth = *depth + medium.depth;

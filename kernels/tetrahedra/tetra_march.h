@@ -222,59 +222,6 @@ INLINE stratus_tetra_passage tetra_pass(
   return passage;
 }
 
-/* Keeps the largest value so far, and where it is. Minima are maxima of the negative values. */
-INLINE void tetra_extreme(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat far)
-{
-  const vfloat larger = v_max(first, last);
-  const vmask more = mask & v_lt(light->most, larger);
-  light->most = v_select(more, larger, light->most);
-  light->depth = v_select(more, v_select(v_lt(first, last), far, near), light->depth);
-}
-
-/* Composites the values that the part begin..end of a cell shows on the slice. */
-INLINE void tetra_slice(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
-  stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask)
-{
-  const vfloat slope = (passage->last - passage->first) * v_reciprocal(v_max(passage->to - passage->from, v_set(1e-30f)));
-  for (int n = 0; n < 2; ++n) {
-    const vmask met = mask & v_le(begin, r->slice[n]) & v_lt(r->slice[n], end);
-    if (m_any(met)) {
-      const vfloat z = v_select(met, r->slice[n], begin), value = v_fma(slope, z - passage->from, passage->first);
-      vfloat color[4];
-      gather_four(scene->colors, table_entry(&a->table, scene->colors, value), met, color);
-      tetra_surface(a, light, 0, met, color, v_fma(z, r->length, r->offset));
-    }
-  }
-}
-
-/* Ends rays at a cell of which a part from value `first` to `last` shows, and keeps the names of its points, first those of the face by
- * which the ray entered. Of values of cells the last is the cell's number. */
-INLINE void tetra_hit(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_light* light,
-  const stratus_tetra_passage* passage, vfloat first, vfloat last, vmask mask)
-{
-  vint entry;
-  const vint from = table_entry(&a->table, scene->colors, first), to = table_entry(&a->table, scene->colors, last);
-  const vmask met = opaque_on_the_way(&a->table, scene->sums + 8 * a->table.entries, from, to, mask, &entry);
-  const vint plus = vi_set(TETRA_HIT_NAME);
-  light->red = v_select(met, v_from_bits(passage->name[0] + plus), light->red);
-  light->green = v_select(met, v_from_bits(passage->name[1] + plus), light->green);
-  light->blue = v_select(met, v_from_bits(passage->name[2] + plus), light->blue);
-  light->most = v_select(met, v_from_bits(passage->fourth + plus), light->most);
-  light->transparency = v_select(met, v_set(0.0f), light->transparency);
-}
-
-/* Adds a cell to a ray's quantities, which kernels/ray_cast/ray_quantities.h describes: red, the integral; green, the length; blue, the
- * number of cells. The field is linear. */
-INLINE void tetra_measure(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat length)
-{
-  const vfloat zero = v_set(0.0f), mean = v_set(0.5f) * (first + last);
-  tetra_extreme(light, mask, first, last, near, near + length);
-  length = v_select(mask, length, zero);
-  light->red = v_fma(v_select(mask, mean, zero), length, light->red);
-  light->green = light->green + length;
-  light->blue = light->blue + v_select(mask, v_set(1.0f), zero);
-}
-
 #if TETRA_LIT
 /* Floats of points, `count` of four, where a ray passes a face, as tetra_cross() has the value. */
 INLINE void tetra_face_floats(GLOBAL const float* floats, int count, const vint name[3], const vfloat edge[3], vmask mask, vfloat g[4])
@@ -320,27 +267,88 @@ INLINE stratus_tetra_stretch tetra_stretch(
   return s;
 }
 
-/* Adds the light of several components on the part begin..end of a cell that was passed. */
-INLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
-  stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask, vfloat near)
+/* The places of a cell's values at the ends of the part begin..end of it. */
+INLINE void tetra_values_of(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask, stratus_tetra_values* values)
 {
   const vfloat per_z = v_reciprocal(v_max(passage->to - passage->from, v_set(1e-30f)));
   const vfloat from = v_clamp((begin - passage->from) * per_z, 0.0f, 1.0f), to = v_clamp((end - passage->from) * per_z, 0.0f, 1.0f);
-  stratus_tetra_values values;
   if (a->cell_values) {
-    gather_four(scene->components, passage->cell >> vi_set(3), mask, values.from);
+    gather_four(scene->components, passage->cell >> vi_set(3), mask, values->from);
     for (int c = 0; c < TETRA_COMPONENTS; ++c) {
-      values.to[c] = values.from[c];
+      values->to[c] = values->from[c];
     }
   } else {
     vfloat first[4], last[4];
     tetra_face_floats(scene->components, 4, passage->name, passage->edge, mask, first);
     tetra_face_floats(scene->components, 4, r->name, r->edge, mask, last);
     for (int c = 0; c < TETRA_COMPONENTS; ++c) {
-      values.from[c] = v_fma(last[c] - first[c], from, first[c]);
-      values.to[c] = v_fma(last[c] - first[c], to, first[c]);
+      values->from[c] = v_fma(last[c] - first[c], from, first[c]);
+      values->to[c] = v_fma(last[c] - first[c], to, first[c]);
     }
   }
+}
+
+/* Mixes a cell's components at the place z: their light, and their optical depth over a unit of length. */
+INLINE void tetra_mix_at(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  const stratus_tetra_passage* passage, vfloat z, vmask mask, vfloat glow[3], vfloat* depth)
+{
+  stratus_tetra_values values;
+  vfloat own[TETRA_COMPONENTS];
+  tetra_values_of(a, scene, r, passage, z, z, mask, &values);
+  const stratus_tetra_mixture mixture = { &values, 0, scene->media, scene->factors, v_set(1.0f) };
+  mix_components(a, &mixture, values.from, values.from, v_set(0.0f), v_set(1.0f), mask, glow, depth, own);
+}
+
+/* The colour of dependent components at the place z. */
+INLINE void tetra_color_at(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  const stratus_tetra_passage* passage, vfloat z, vmask mask, vfloat color[3])
+{
+  vfloat depth;
+  tetra_mix_at(a, scene, r, passage, z, mask, color, &depth);
+  const vfloat per_depth = v_reciprocal(v_max(depth, v_set(1e-30f)));
+  for (int i = 0; i < 3; ++i) {
+    color[i] = color[i] * per_depth;
+  }
+}
+
+/* Adds the last component's opacity times the first one's value on the part begin..end of a cell, as tetra_add() adds one component's.
+ * first, last: values of the last component at both ends. */
+INLINE void tetra_add_product(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vfloat first, vfloat last, vmask mask)
+{
+  CONSTANT stratus_tetra_media_arguments* m = &a->media;
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
+  stratus_tetra_values values;
+  tetra_values_of(a, scene, r, passage, begin, end, mask, &values);
+  const vfloat start = v_fma(values.from[0], v_set(m->grey[0]), v_set(m->grey[1])),
+               stop = v_fma(values.to[0], v_set(m->grey[0]), v_set(m->grey[1]));
+  const vfloat rise = stop - start, low = v_set(m->counted[0]), high = v_set(m->counted[1]);
+  const vmask varies = v_lt(zero, v_abs(rise)), inside = v_le(low, start) & v_le(start, high);
+  const vfloat per_rise = v_reciprocal(v_select(varies, v_abs(rise), one)); /* only the part whose values count */
+  const vfloat enters = v_select(v_lt(zero, rise), low - start, start - high) * per_rise,
+               leaves = v_select(v_lt(zero, rise), high - start, start - low) * per_rise;
+  const vfloat from = v_select(varies, v_max(enters, zero), zero), to = v_select(varies, v_min(leaves, one), v_select(inside, one, zero));
+  mask = mask & v_lt(from, to);
+  if (!m_any(mask)) {
+    return;
+  }
+  const vfloat begins = v_fma(from, end - begin, begin);
+  const stratus_tetra_place place = tetra_place(a, scene->sums, v_fma(from, last - first, first), mask),
+                            next = tetra_place(a, scene->sums, v_fma(to, last - first, first), mask);
+  const vfloat opacity = v_from_int(next.sum[1] - place.sum[1]);
+  const vfloat middle = tetra_middle_of(scene->sums, (int)a->table.last + 1, place.entry, next.entry, opacity, mask);
+  const vfloat value = v_fma(v_fma(middle, to - from, from), rise, start);
+  tetra_add(
+    a, scene->sums, light, mask, &place, &next, &value, (to - from) * (end - begin) * r->length, v_fma(begins, r->length, r->offset));
+}
+
+/* Adds the light of several components on the part begin..end of a cell that was passed. */
+INLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask, vfloat near)
+{
+  stratus_tetra_values values;
+  tetra_values_of(a, scene, r, passage, begin, end, mask, &values);
   stratus_tetra_stretch stretches[TETRA_COMPONENTS];
   for (int c = 0; c < a->media.components; ++c) {
     if (component_has_gradient(a, c)) {
@@ -359,6 +367,123 @@ INLINE vmask tetra_may_show(CONSTANT stratus_tetra_arguments* a, const stratus_t
 }
 #endif
 
+/* Keeps the largest value so far, and where it is. Minima are maxima of the negative values. Returns the rays that have a larger one. */
+INLINE vmask tetra_extreme(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat far)
+{
+  const vfloat larger = v_max(first, last);
+  const vmask more = mask & v_lt(light->most, larger);
+  light->most = v_select(more, larger, light->most);
+  light->depth = v_select(more, v_select(v_lt(first, last), far, near), light->depth);
+  return more;
+}
+
+/* Adds a cell to a ray's quantities, which kernels/ray_cast/ray_quantities.h describes: red, the integral; green, the length; blue, the
+ * number of cells. The field is linear. */
+INLINE void tetra_measure(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat length)
+{
+  const vfloat zero = v_set(0.0f), mean = v_set(0.5f) * (first + last);
+  (void)tetra_extreme(light, mask, first, last, near, near + length);
+  length = v_select(mask, length, zero);
+  light->red = v_fma(v_select(mask, mean, zero), length, light->red);
+  light->green = light->green + length;
+  light->blue = light->blue + v_select(mask, v_set(1.0f), zero);
+}
+
+/* Composite the surfaces that the part begin..end of a cell passes, from value `first` to `last`, in their order along it. A surface is
+ * where the field passes its value upwards or downwards, so that one on the border of two cells counts once. Dependent components have
+ * their own colour. */
+INLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vfloat first, vfloat last, vmask mask)
+{
+  const vmask rises = v_lt(first, last);
+#if TETRA_LIT
+  const int of = a->media.components ? a->media.components - 1 : 0;
+  stratus_tetra_stretch stretch;
+  mask = mask & m_andnot(v_le(first, first), v_le(first, last) & v_le(last, first));
+  if (!m_any(mask)) {
+    return;
+  }
+  if (a->light.on) {
+    const size_t set = (size_t)a->media.gradients_at[of] * (size_t)a->media.points;
+    stretch = tetra_stretch(scene->gradients + 4 * set, r, passage, begin, end, mask);
+  }
+#else
+  (void)scene;
+  (void)passage;
+#endif
+  for (int n = 0; n < a->contour_count; ++n) {
+    CONSTANT float *up = a->contour[n], *down = a->contour[a->contour_count - 1 - n];
+    const vfloat value = v_select(rises, v_set(up[0]), v_set(down[0]));
+    const vmask below = v_lt(first, value), ends_below = v_lt(last, value);
+    const vmask met = mask & (m_andnot(below, ends_below) | m_andnot(ends_below, below));
+    if (!m_any(met)) {
+      continue;
+    }
+    const vfloat part = (value - first) * v_reciprocal(v_select(met, last - first, v_set(1.0f)));
+    const vfloat distance = v_fma(part, (end - begin) * r->length, v_fma(begin, r->length, r->offset));
+    vfloat color[4] = { v_select(rises, v_set(up[1]), v_set(down[1])), v_select(rises, v_set(up[2]), v_set(down[2])),
+      v_select(rises, v_set(up[3]), v_set(down[3])), v_select(rises, v_set(up[4]), v_set(down[4])) };
+#if TETRA_LIT
+    if (a->media.components) {
+      tetra_color_at(a, scene, r, passage, v_fma(part, end - begin, begin), met, color);
+      for (int i = 0; i < 3; ++i) {
+        color[i] = color[i] * color[3];
+      }
+    }
+    if (a->light.on) {
+      stratus_tetra_lit lit;
+      tetra_light_at(a, 0, of, &stretch, part, v_set(0.0f), met, &lit);
+      tetra_surface(a, light, &lit, met, color, distance);
+      continue;
+    }
+#endif
+    tetra_surface(a, light, 0, met, color, distance);
+  }
+}
+
+/* Composites the values that the part begin..end of a cell shows on the slice. */
+INLINE void tetra_slice(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask)
+{
+  const vfloat slope = (passage->last - passage->first) * v_reciprocal(v_max(passage->to - passage->from, v_set(1e-30f)));
+  for (int n = 0; n < 2; ++n) {
+    const vmask met = mask & v_le(begin, r->slice[n]) & v_lt(r->slice[n], end);
+    if (m_any(met)) {
+      const vfloat z = v_select(met, r->slice[n], begin), value = v_fma(slope, z - passage->from, passage->first);
+      vfloat color[4];
+      gather_four(scene->colors, table_entry(&a->table, scene->colors, value), met, color);
+#if TETRA_LIT
+      if (a->media.components) {
+        vfloat depth;
+        tetra_mix_at(a, scene, r, passage, z, met, color, &depth);
+        const vfloat share = v_absorbed_share(depth, met);
+        for (int i = 0; i < 3; ++i) {
+          color[i] = color[i] * share;
+        }
+        color[3] = v_min(depth * share, v_set(1.0f));
+      }
+#endif
+      tetra_surface(a, light, 0, met, color, v_fma(z, r->length, r->offset));
+    }
+  }
+}
+
+/* Ends rays at a cell that shows between the values `first` and `last`. Keeps the numbers of the cell's points, of which the first three
+ * are the face by which the ray entered. Of values of cells the fourth number is the cell's. */
+INLINE void tetra_hit(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_light* light,
+  const stratus_tetra_passage* passage, vfloat first, vfloat last, vmask mask)
+{
+  vint entry;
+  const vint from = table_entry(&a->table, scene->colors, first), to = table_entry(&a->table, scene->colors, last);
+  const vmask met = opaque_on_the_way(&a->table, scene->sums + 8 * a->table.entries, from, to, mask, &entry);
+  const vint plus = vi_set(TETRA_HIT_NAME);
+  light->red = v_select(met, v_from_bits(passage->name[0] + plus), light->red);
+  light->green = v_select(met, v_from_bits(passage->name[1] + plus), light->green);
+  light->blue = v_select(met, v_from_bits(passage->name[2] + plus), light->blue);
+  light->most = v_select(met, v_from_bits(passage->fourth + plus), light->most);
+  light->transparency = v_select(met, v_set(0.0f), light->transparency);
+}
+
 /* Add the light of a cell that was passed, cut to the visible part. Returns the lanes whose path has ended: they are outside, hidden by
  * matter in front, or beyond the visible part. */
 INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_ray* r,
@@ -375,23 +500,30 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
   const vfloat near = v_fma(begin, r->length, r->offset);
   if (a->mode == TETRA_EXTREMES) {
     const vfloat sign = v_set(a->sign);
-    tetra_extreme(light, mask, sign * first, sign * last, near, v_fma(end, r->length, r->offset));
+    const vmask more = tetra_extreme(light, mask, sign * first, sign * last, near, v_fma(end, r->length, r->offset));
+#if TETRA_LIT
+    if (a->media.components && m_any(more)) { /* dependent ones */
+      vfloat color[3];
+      tetra_color_at(a, scene, r, passage, v_select(v_lt(sign * first, sign * last), end, begin), more, color);
+      light->red = v_select(more, color[0], light->red);
+      light->green = v_select(more, color[1], light->green);
+      light->blue = v_select(more, color[2], light->blue);
+    }
+#else
+    (void)more;
+#endif
   } else if (a->mode == TETRA_QUANTITIES) {
     tetra_measure(light, mask, first, last, near, (end - begin) * r->length);
   } else if (a->mode == TETRA_SURFACES) {
-#if TETRA_LIT
-    const vmask some = mask & m_andnot(v_le(first, first), v_le(first, last) & v_le(last, first));
-    if (m_any(some)) {
-      const stratus_tetra_stretch stretch = tetra_stretch(scene->gradients, r, passage, begin, end, some);
-      tetra_surfaces(a, &stretch, light, some, first, last, near, stretch.length);
-    }
-#else
-    tetra_surfaces(a, 0, light, mask, first, last, near, (end - begin) * r->length);
-#endif
+    tetra_surfaces(a, scene, r, light, passage, begin, end, first, last, mask);
   } else if (a->mode == TETRA_SLICE) {
     tetra_slice(a, scene, r, light, passage, begin, end, mask);
   } else if (a->mode == TETRA_HITS) {
     tetra_hit(a, scene, light, passage, first, last, mask);
+#if TETRA_LIT
+  } else if (a->mode == TETRA_ADD && a->media.components) {
+    tetra_add_product(a, scene, r, light, passage, begin, end, first, last, mask);
+#endif
   } else {
     stratus_tetra_place from = r->place, to;
     r->place = to = tetra_place(a, scene->sums, passage->last, passage->seen);
@@ -404,7 +536,7 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
       to = tetra_place_select(cut, &cut_to, &to);
     }
     if (a->mode == TETRA_ADD) {
-      tetra_add(a, scene->sums, light, mask, &from, &to, (end - begin) * r->length, near);
+      tetra_add(a, scene->sums, light, mask, &from, &to, 0, (end - begin) * r->length, near);
     } else {
 #if TETRA_LIT
       const vmask some = a->media.components ? mask : tetra_may_show(a, &from, &to, mask);

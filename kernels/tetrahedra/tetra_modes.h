@@ -13,9 +13,9 @@ typedef int stratus_tetra_stretch; /* of no use */
 #endif
 
 /* Add the mean of a stretch times its length: red of opacity times value, green of the values that count. The sums of a place are of
- * opacity times value, of opacity, and of the values that count. */
+ * opacity times value, of opacity, and of the values that count. value: replaces the value; 0: the table's. */
 INLINE void tetra_add(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
-  const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat length, vfloat near)
+  const stratus_tetra_place* from, const stratus_tetra_place* to, const vfloat* value, vfloat length, vfloat near)
 {
   const vint rise = to->entry - from->entry, one = vi_set(1);
   const vmask level = mask & vi_zero(rise);
@@ -30,7 +30,11 @@ INLINE void tetra_add(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sum
     }
   }
   const vfloat per_entry = length * v_reciprocal(v_abs(v_from_int(vi_select(level, one, rise)))), zero = v_set(0.0f);
-  light->red = v_select(mask, v_fma(per_entry, v_abs(v_from_int(span[0])), light->red), light->red);
+  vfloat added = v_abs(v_from_int(span[0]));
+  if (value) {
+    added = v_abs(v_from_int(span[1])) * *value;
+  }
+  light->red = v_select(mask, v_fma(per_entry, added, light->red), light->red);
   light->green = v_select(mask, v_fma(per_entry, v_abs(v_from_int(span[3])), light->green), light->green);
   if (a->picture.want_depth) {
     const vmask hit = mask & v_lt(zero, v_abs(v_from_int(span[1]))) & v_le(v_set(LARGEST_FLOAT), light->depth);
@@ -48,34 +52,6 @@ INLINE void tetra_surface(CONSTANT stratus_tetra_arguments* a, stratus_tetra_lig
   if (a->picture.want_depth) {
     const vmask hit = mask & v_lt(zero, opacity) & v_le(v_set(LARGEST_FLOAT), light->depth);
     light->depth = v_select(hit, distance, light->depth);
-  }
-}
-
-/* Composite the surfaces that a stretch passes, in their order along it. A surface is where the field passes its value upwards or
- * downwards, so that one on the border of two cells counts once. stretch: its light, read only by the variant TETRA_LIT. */
-INLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_stretch* stretch, stratus_tetra_light* light,
-  vmask mask, vfloat first, vfloat last, vfloat near, vfloat length)
-{
-  const vmask rises = v_lt(first, last);
-  for (int n = 0; n < a->contour_count; ++n) {
-    CONSTANT float *up = a->contour[n], *down = a->contour[a->contour_count - 1 - n];
-    const vfloat value = v_select(rises, v_set(up[0]), v_set(down[0]));
-    const vmask below = v_lt(first, value), ends_below = v_lt(last, value);
-    const vmask met = mask & (m_andnot(below, ends_below) | m_andnot(ends_below, below));
-    if (!m_any(met)) {
-      continue;
-    }
-    const vfloat part = (value - first) * v_reciprocal(v_select(met, last - first, v_set(1.0f)));
-    const vfloat color[4] = { v_select(rises, v_set(up[1]), v_set(down[1])), v_select(rises, v_set(up[2]), v_set(down[2])),
-      v_select(rises, v_set(up[3]), v_set(down[3])), v_select(rises, v_set(up[4]), v_set(down[4])) };
-#if TETRA_LIT
-    stratus_tetra_lit lit;
-    tetra_light_at(a, 0, 0, stretch, part, v_set(0.0f), met, &lit);
-    tetra_surface(a, light, &lit, met, color, v_fma(part, length, near));
-#else
-    (void)stretch;
-    tetra_surface(a, light, 0, met, color, v_fma(part, length, near));
-#endif
   }
 }
 

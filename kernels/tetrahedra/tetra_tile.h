@@ -234,6 +234,9 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
         rgba[c] = largest[lane] > -LARGEST_FLOAT ? t->view->scene.colors[4 * entry[lane] + c] : 0.0f;
       }
     }
+    for (int c = 0; TETRA_LIT && a->mode == TETRA_EXTREMES && c < 3; ++c) { /* of dependent components */
+      rgba[c] = channel[c][lane] * rgba[3];
+    }
     if (a->mode == TETRA_HITS) {
       rgba[3] = rgba[3] > 0.0f ? largest[lane] : 0.0f;
     }

@@ -147,27 +147,14 @@ static void add_cell(const several* s, const spaces* in, const met_cell* met, co
   }
 }
 
-static void draw_reference(several* s)
+typedef void add_ray(const several* s, const met_cell* met, size_t count, const double origin[3], const double along[3], double out[4]);
+
+/* Draws the reference by what `add` makes of each ray's cells. */
+static void draw_by(const several* s, add_ray* add)
 {
   const stratus_camera* k = &s->whole.camera;
-  spaces in;
   met_cell* met = calloc((size_t)s->part[0].mesh.cell_count + 1, sizeof *met);
   assert_non_null(met);
-  for (int c = 0; c < s->count; ++c) {
-    const stratus_material* m = s->whole.options.dependent ? NULL : s->whole.options.materials;
-    stratus_shading* shading = &s->part[c].options.shading;
-    s->part[c].options = s->whole.options;
-    s->part[c].camera = *k;
-    s->part[c].transfer = s->transfers[s->whole.options.dependent ? 0 : c];
-    if (m) {
-      shading->ambient = m[c].ambient;
-      shading->diffuse = m[c].diffuse;
-      shading->specular = m[c].specular;
-      shading->specular_power = m[c].specular_power;
-    }
-    in.world[c] = tetra_space_create(s->part + c, 1);
-    in.local[c] = tetra_space_create(s->part + c, 0);
-  }
   for (int pixel = 0; pixel < TETRA_PIXELS; ++pixel) {
     const double u = (2.0 * (pixel % TETRA_WIDTH) + 1.0) / TETRA_WIDTH - 1.0, v = (2.0 * (pixel / TETRA_WIDTH) + 1.0) / TETRA_HEIGHT - 1.0;
     double origin[3], along[3], *out = reference + 4 * pixel;
@@ -187,15 +174,42 @@ static void draw_reference(several* s)
     }
     qsort(met, count, sizeof *met, nearer);
     memset(out, 0, 4 * sizeof *out);
-    for (size_t i = 0; i < count; ++i) {
-      add_cell(s, &in, met + i, origin, along, out);
-    }
-  }
-  for (int c = 0; c < s->count; ++c) {
-    tetra_space_destroy(in.world + c);
-    tetra_space_destroy(in.local + c);
+    add(s, met, count, origin, along, out);
   }
   free(met);
+}
+
+static spaces spaces_now; /* of the reference that is drawn */
+
+static void add_all(const several* s, const met_cell* met, size_t count, const double origin[3], const double along[3], double out[4])
+{
+  for (size_t i = 0; i < count; ++i) {
+    add_cell(s, &spaces_now, met + i, origin, along, out);
+  }
+}
+
+static void draw_reference(several* s)
+{
+  for (int c = 0; c < s->count; ++c) {
+    const stratus_material* m = s->whole.options.dependent ? NULL : s->whole.options.materials;
+    stratus_shading* shading = &s->part[c].options.shading;
+    s->part[c].options = s->whole.options;
+    s->part[c].camera = s->whole.camera;
+    s->part[c].transfer = s->transfers[s->whole.options.dependent ? 0 : c];
+    if (m) {
+      shading->ambient = m[c].ambient;
+      shading->diffuse = m[c].diffuse;
+      shading->specular = m[c].specular;
+      shading->specular_power = m[c].specular_power;
+    }
+    spaces_now.world[c] = tetra_space_create(s->part + c, 1);
+    spaces_now.local[c] = tetra_space_create(s->part + c, 0);
+  }
+  draw_by(s, add_all);
+  for (int c = 0; c < s->count; ++c) {
+    tetra_space_destroy(spaces_now.world + c);
+    tetra_space_destroy(spaces_now.local + c);
+  }
 }
 
 static void draw(stratus_context* context, const several* s, tetra_picture* p)
@@ -387,6 +401,136 @@ static void modes_of_components_are_right(void** state)
   }
 }
 
+/* Adds a layer of the colour at the part t of a cell, by the last of dependent components, or by all independent ones. */
+static void add_layer(const several* s, const met_cell* met, double t, double out[4])
+{
+  const stratus_tetra_options* o = &s->whole.options;
+  double depth = 0.0, squares = 0.0, glow[3] = { 0.0, 0.0, 0.0 }, value[COMPONENTS], rgb[3];
+  for (int c = 0; c < s->count; ++c) {
+    value[c] = met->of[c].first + t * (met->of[c].last - met->of[c].first);
+  }
+  for (int c = o->dependent ? s->count - 1 : 0; c < s->count; ++c) {
+    const stratus_transfer* f = s->transfers + (o->dependent ? 0 : c);
+    const double opacity = linear_between(f->opacity, f->opacity_count, 2, 1, value[c]);
+    const double own = -log1p(-fmin(opacity, 1.0 - 1e-15)) * (o->dependent ? 1.0 : f->weight);
+    color_of(f, value[o->dependent ? 0 : c], rgb);
+    for (int k = 0; k < 3; ++k) {
+      glow[k] += own * (o->dependent && s->count == 4 ? value[k] / 255.0 : rgb[k]);
+    }
+    depth += own;
+    squares += own * own;
+  }
+  const double glows = depth;
+  depth = o->mean_components && !o->dependent && depth > 0.0 ? squares / depth : depth;
+  const double alpha = -expm1(-depth);
+  for (int k = 0; k < 3 && glows > 0.0; ++k) {
+    out[k] += (1.0 - out[3]) * alpha * glow[k] / depth;
+  }
+  out[3] += (1.0 - out[3]) * alpha;
+}
+
+/* Draws the cells that a ray meets, nearest first, by the mode: what the last of dependent components shows, in the others' colours. */
+static void add_cells(const several* s, const met_cell* met, size_t count, const double origin[3], const double along[3], double out[4])
+{
+  const stratus_tetra_options* o = &s->whole.options;
+  const stratus_transfer* f = s->transfers;
+  const int last = s->count - 1;
+  const double sign = o->mode == STRATUS_TETRA_MINIMUM ? -1.0 : 1.0, length = sqrt(tetra_dot(along, along));
+  double best = -INFINITY, sum = 0.0, counted = 0.0, range[2];
+  tetra_range(s->part, range);
+  for (size_t i = 0; i < count && !(o->mode == STRATUS_TETRA_FIRST_HIT && out[3] > 0.0); ++i) {
+    const tetra_stretch* cut = met[i].of + last;
+    for (int end = 0; end < 2 && o->mode <= STRATUS_TETRA_MINIMUM; ++end) {
+      const double value = sign * (end ? cut->last : cut->first);
+      if (value > best) {
+        best = value;
+        memset(out, 0, 4 * sizeof *out);
+        add_layer(s, met + i, end, out);
+      }
+    }
+    if (o->mode == STRATUS_TETRA_AVERAGE || o->mode == STRATUS_TETRA_ADDITIVE) {
+      for (int step = 0; step < STEPS; ++step) {
+        const double t = (step + 0.5) / STEPS, part = (cut->to - cut->from) * length / STEPS;
+        const double grey = met[i].of[0].first + t * (met[i].of[0].last - met[i].of[0].first);
+        const double opacity = linear_between(f->opacity, f->opacity_count, 2, 1, cut->first + t * (cut->last - cut->first));
+        if (o->mode == STRATUS_TETRA_ADDITIVE || (grey >= o->average_range[0] && grey <= o->average_range[1])) {
+          sum += opacity * (grey - range[0]) / (range[1] - range[0]) * part;
+          counted += part;
+        }
+      }
+      out[3] = counted > 0.0;
+      out[0] = out[1] = out[2] = counted > 0.0 ? fmin(sum / (o->mode == STRATUS_TETRA_AVERAGE ? counted : f->unit_distance), 1.0) : 0.0;
+    }
+    const double contour = o->contours[0], at = (contour - cut->first) / (cut->last - cut->first);
+    if (o->mode == STRATUS_TETRA_ISOSURFACE && (cut->first < contour) != (cut->last < contour)) {
+      add_layer(s, met + i, at, out);
+    }
+    const double a = tetra_slice_at(&o->slice, origin, along, cut->from), b = tetra_slice_at(&o->slice, origin, along, cut->to);
+    if (o->mode == STRATUS_TETRA_SLICE && (a < 0.0) != (b < 0.0)) {
+      add_layer(s, met + i, a / (a - b), out);
+    }
+    for (int step = 0; step <= 10 * STEPS && o->mode == STRATUS_TETRA_FIRST_HIT && !(out[3] > 0.0); ++step) {
+      const double t = (double)step / (10 * STEPS);
+      if (linear_between(f->opacity, f->opacity_count, 2, 1, cut->first + t * (cut->last - cut->first)) > 0.0) {
+        add_layer(s, met + i, t, out);
+        for (int k = 0; k < 3; ++k) {
+          out[k] /= out[3];
+        }
+        out[3] = 1.0;
+      }
+    }
+  }
+}
+
+/* Values are rounded to tables; the reference's first hits and sums are steps. */
+static void dependent_components_in_all_modes(void** state)
+{
+  for (uint32_t seed = 0; seed < 18; ++seed) {
+    several s;
+    const bool mixes = seed >= 14, four = seed % 2 == 1 && !mixes; /* the last ones: slices of independent components, and their mean */
+    double largest;
+    create(&s, 3, four ? 4 : 2 + (int)(seed > 15), four, seed);
+    if (four && seed % 4 == 3) { /* floats of the same values */
+      const int64_t count = 4 * (s.whole.mesh.point_count > s.whole.mesh.cell_count ? s.whole.mesh.point_count : s.whole.mesh.cell_count);
+      float* floats = calloc((size_t)count, sizeof *floats);
+      assert_non_null(floats);
+      for (int64_t i = 0; i < count; ++i) {
+        floats[i] = (float)((uint8_t*)s.all)[i];
+      }
+      free(s.all);
+      s.whole.mesh.values = s.all = floats;
+      s.whole.mesh.type = STRATUS_FLOAT32;
+    }
+    stratus_tetra_options* o = &s.whole.options;
+    const double unit = four ? 255.0 : 1.0;
+    o->mode = mixes ? STRATUS_TETRA_SLICE : (stratus_tetra_mode)(STRATUS_TETRA_MAXIMUM + seed / 2 % 7);
+    o->dependent = !mixes;
+    o->mean_components = mixes && seed % 2 == 1;
+    o->contour_count = 1;
+    o->contours[0] = 0.55 * unit;
+    o->average_range[0] = 0.3 * unit;
+    o->average_range[1] = 0.8 * unit;
+    o->slice = (stratus_slice){ .center = { 1.4, 1.5, 1.6 }, .linear = { 1, 0.5, -0.7 } };
+    s.whole.mesh.cell_values = seed % 3 == 1 && o->mode != STRATUS_TETRA_ISOSURFACE;
+    for (int c = 0; c < s.count; ++c) {
+      s.part[c].mesh.cell_values = s.whole.mesh.cell_values;
+      s.transfers[c].unit_distance = o->mode == STRATUS_TETRA_ADDITIVE ? 6.0 : 0.7 + 0.4 * c;
+      s.part[c].transfer = s.transfers[o->dependent ? 0 : c];
+      s.part[c].options = *o;
+    }
+    tetra_camera(*state, &s.whole, 3, (int)(seed % 8), seed & 1);
+    draw_by(&s, add_cells);
+    draw(*state, &s, &picture);
+    const double error = tetra_error(picture.rgba, reference, &largest);
+    if (!(error < 0.5)) {
+      print_error(
+        "seed %u, %d components, mode %s: %.3f of 255, at most %.2f\n", seed, s.count, stratus_tetra_mode_name(o->mode), error, largest);
+    }
+    assert_true(error < 0.5);
+    destroy(&s);
+  }
+}
+
 /* One caster draws one mode after the other, with other functions and values: nothing of an earlier picture stays. */
 static void modes_follow_one_another(void** state)
 {
@@ -463,9 +607,9 @@ static void lattices_threads_and_sets_agree(void** state)
 
 static void wrong_components_are_refused(void** state)
 {
-  static const char* const words[] = { "components 5 outside 1..4", "must be at least its 3 components", "mode isosurface of 2 components",
-    "cannot be projected", "dependent components", "material of component 1 has (0.4, nan", "ambient is nan",
-    "2 dependent components are not supported in mode maximum" };
+  static const char* const words[] = { "components 5 outside 1..4", "must be at least its 3 components",
+    "mode isosurface of 2 independent components", "cannot be projected", "dependent components", "material of component 1 has (0.4, nan",
+    "ambient is nan", "mode first-hit of 2 independent components" };
   stratus_tetra_caster* caster = NULL;
   several s;
   create(&s, 2, 2, false, 1);
@@ -477,12 +621,12 @@ static void wrong_components_are_refused(void** state)
     stratus_tetra_options o = s.whole.options;
     stratus_transfer transfers[2] = { s.transfers[0], s.transfers[1] };
     o.method = wrong == 3 ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_AUTO;
-    o.mode = wrong == 2 ? STRATUS_TETRA_ISOSURFACE : wrong == 7 ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
+    o.mode = wrong == 2 ? STRATUS_TETRA_ISOSURFACE : wrong == 7 ? STRATUS_TETRA_FIRST_HIT : STRATUS_TETRA_COMPOSITE;
     mesh.components = wrong == 0 ? 5 : wrong == 1 || wrong == 4 ? 3 : 2;
     mesh.value_stride = wrong == 4 ? 3 : 2;
     mesh.point_count = wrong == 4 ? 0 : mesh.point_count;
     mesh.cell_count = wrong == 4 ? 0 : mesh.cell_count;
-    o.dependent = wrong == 4 || wrong == 7;
+    o.dependent = wrong == 4;
     o.contour_count = 1;
     if (wrong == 5 || wrong == 6) {
       set_light(&s, wrong == 5);
@@ -507,6 +651,7 @@ int test_tetra_components(void)
     cmocka_unit_test_setup_teardown(components_are_right, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(lit_components_are_right, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(modes_of_components_are_right, tetra_start, tetra_stop),
+    cmocka_unit_test_setup_teardown(dependent_components_in_all_modes, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(modes_follow_one_another, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(halves_are_a_whole, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(lattices_threads_and_sets_agree, tetra_start, tetra_stop),
