@@ -18,6 +18,8 @@
 #define TILE 8
 /* x of a pixel that a ray only fills its tile's place for. */
 #define NO_PIXEL UINT32_MAX
+/* Of places and planes in index coordinates, relative to the numbers from which they are computed. */
+#define ROUNDING 1e-13
 /* Enough rays to keep all threads or the device busy, few enough for their caches. */
 #define BATCH_RAYS 32768
 
@@ -39,17 +41,19 @@ typedef struct first_hit_frame {
 
 /* ---- rays */
 
-/* Clips the ray to slope*t + height >= 0. A ray whose start moves records `number` in *cut_by. */
-static void cut(double height, double slope, uint32_t number, stratus_ray* ray, uint32_t* cut_by)
+/* Clips the ray to slope*t + height >= 0. A ray whose start moves records `number` in *cut_by. size: the sum of the magnitudes that
+ * `height` adds up, whose rounding must not show voxels beyond a plane that is on their faces. */
+static void cut(double height, double size, double slope, uint32_t number, stratus_ray* ray, uint32_t* cut_by)
 {
+  const double slack = ROUNDING * size;
   if (slope > 0.0) {
-    const double t = -height / slope;
+    const double t = (slack - height) / slope;
     if (t > ray->t_min) {
       ray->t_min = t;
       *cut_by = number;
     }
   } else if (slope < 0.0) {
-    ray->t_max = fmin(ray->t_max, -height / slope);
+    ray->t_max = fmin(ray->t_max, (slack - height) / slope);
   } else if (height < 0.0) {
     ray->t_max = -INFINITY;
   }
@@ -99,13 +103,16 @@ static bool make_ray(const first_hit_frame* frame, uint32_t x, uint32_t y, strat
   for (uint32_t side = 0; frame->options->clipping.crop && side < 6; ++side) {
     const uint32_t axis = side / 2;
     const double sign = side % 2 ? -1.0 : 1.0;
-    cut(sign * (ray->origin[axis] - frame->crop[side]), sign * ray->direction[axis], STRATUS_CUT_CROP + side, ray, &pixel->cut);
+    cut(sign * (ray->origin[axis] - frame->crop[side]), fabs(ray->origin[axis]) + fabs(frame->crop[side]), sign * ray->direction[axis],
+      STRATUS_CUT_CROP + side, ray, &pixel->cut);
   }
   for (int p = 0; p < frame->options->clipping.clip_plane_count; ++p) {
     const double* plane = frame->planes[p];
-    const double height = plane[0] * ray->origin[0] + plane[1] * ray->origin[1] + plane[2] * ray->origin[2] + plane[3];
+    const double terms[4] = { plane[0] * ray->origin[0], plane[1] * ray->origin[1], plane[2] * ray->origin[2], plane[3] };
+    const double height = terms[0] + terms[1] + terms[2] + terms[3];
+    const double size = fabs(terms[0]) + fabs(terms[1]) + fabs(terms[2]) + fabs(terms[3]);
     const double slope = plane[0] * ray->direction[0] + plane[1] * ray->direction[1] + plane[2] * ray->direction[2];
-    cut(height, slope, STRATUS_CUT_PLANE + (uint32_t)p, ray, &pixel->cut);
+    cut(height, size, slope, STRATUS_CUT_PLANE + (uint32_t)p, ray, &pixel->cut);
   }
   return ray->t_min <= ray->t_max && meets(frame, ray);
 }
