@@ -18,13 +18,20 @@ namespace {
 
 using cli::row;
 
+// Converts a step's data to the grids that the options need.
+cli::routed route_for(vtkDataObject* data, const cli::options& o)
+{
+  const bool hits = o.mode == STRATUS_MODE_FIRST_HIT, lit = hits ? o.normals == STRATUS_NORMALS_GRADIENT : o.shade;
+  return cli::route(data, o.source, o.array, o.nearest || hits, lit);
+}
+
 // Reads a step into memory of its own, so that the reader is free for the next one in another thread.
 cli::routed read_apart(cli::series& in, size_t step, const cli::options& o)
 {
   const vtkSmartPointer<vtkDataObject> shared = in.read(step);
   const auto own = vtkSmartPointer<vtkDataObject>::Take(shared->NewInstance());
   own->DeepCopy(shared);
-  return cli::route(own, o.source, o.array, o.nearest || o.mode == STRATUS_MODE_FIRST_HIT);
+  return route_for(own, o);
 }
 
 // Draws the requested annotations around the volume.
@@ -218,5 +225,5 @@ void cli::render(const options& o)
     return;
   }
   const size_t step = in.find(o.time);
-  render_one(o, route(in.read(step), o.source, o.array, o.nearest || o.mode == STRATUS_MODE_FIRST_HIT), &in, step);
+  render_one(o, route_for(in.read(step), o), &in, step);
 }

@@ -161,7 +161,7 @@ bool keep_blocks(vtkCompositeDataSet* whole, const std::string& path, const std:
 }
 
 // Makes blocks of AMR.
-void refine(vtkUniformGridAMR* amr, const std::string& path, const std::string& array, bool nearest, cli::routed& result)
+void refine(vtkUniformGridAMR* amr, const std::string& path, const std::string& array, bool nearest, bool gradients, cli::routed& result)
 {
   vtkStratusAMR grids;
   std::string error;
@@ -171,7 +171,7 @@ void refine(vtkUniformGridAMR* amr, const std::string& path, const std::string& 
     result.arrays = boxes++ == 0 ? names_of(box) : result.arrays;
     return values;
   };
-  if (!grids.Set(amr, find, nearest, error)) {
+  if (!grids.Set(amr, find, { nearest, gradients }, error)) {
     throw cli::failure("'" + path + "': " + error);
   }
   if (grids.GetGrids().empty()) {
@@ -227,7 +227,7 @@ void join(vtkCompositeDataSet* whole, const std::string& path, const std::string
 
 namespace cli {
 
-routed route(vtkDataObject* data, const std::string& path, const std::string& array, bool nearest)
+routed route(vtkDataObject* data, const std::string& path, const std::string& array, bool nearest, bool gradients)
 {
   routed result;
   if (vtkImageData* image = vtkImageData::SafeDownCast(data)) {
@@ -253,7 +253,7 @@ routed route(vtkDataObject* data, const std::string& path, const std::string& ar
     result.kind = points_of(dimensions, "curvilinear grid");
     result.grid = curved;
   } else if (vtkUniformGridAMR* amr = vtkUniformGridAMR::SafeDownCast(data)) {
-    refine(amr, path, array, nearest, result);
+    refine(amr, path, array, nearest, gradients, result);
   } else if (vtkCompositeDataSet* whole = vtkCompositeDataSet::SafeDownCast(data)) {
     if (!keep_blocks(whole, path, array, result)) {
       join(whole, path, array, result);

@@ -19,15 +19,15 @@ struct routed {
   std::vector<vtkSmartPointer<vtkDataSet>> blocks;
   vtkSmartPointer<vtkDataSet> grid; // or an unstructured or structured one, for the caster of tetrahedra
   std::string kind;                 // of the file's data, for people
-  bool refined = false;             // whether image and blocks hold AMR, whose gradients change from block to block
+  bool refined = false;             // whether image and blocks hold AMR, whose gradients are the grids' own
   std::string arrays;               // of composite data: the first part's arrays, since `grid` has only the drawn one
 };
 
 // The one place that decides how a kind of data is drawn. Throws failure for data that are not drawn at all, with their kind.
 // Composite data that consist only of images and rectilinear grids stay blocks. Other composite data become one grid, in which parts that
 // meet share their points. AMR becomes blocks that hold its field. `array` is the name of the array that will be drawn, "" for the first.
-// nearest: cell values of AMR are drawn as they are.
-routed route(vtkDataObject* data, const std::string& path, const std::string& array, bool nearest = false);
+// nearest, gradients: cell values of AMR are drawn as they are; its gradients are read.
+routed route(vtkDataObject* data, const std::string& path, const std::string& array, bool nearest = false, bool gradients = false);
 
 // Returns the array `name`. If the name is empty it returns the active scalars, or else the first array of one component, or else the
 // lengths of the first vectors. Points come before cells. Of vectors, the lengths are added to the data set and returned, or the component

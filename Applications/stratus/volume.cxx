@@ -5,6 +5,8 @@
 #include "drawing.h"
 #include "input.h"
 
+#include "vtkStratusAMR.h"
+
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -71,14 +73,12 @@ void volume_drawing::take(const cli::routed& data)
   this->Up = o.up.empty() ? this->Input->up_axis : o.up[0] - 'x';
   this->Input->volume.matrix[5 * this->Up] *= o.exaggeration;
   this->Blocks.clear();
+  this->Input->volume.gradients = data.refined ? vtkStratusAMR::GetGradients(data.image) : nullptr;
   for (const auto& block : data.blocks) {
     this->Blocks.push_back(std::make_unique<cli::input>(this->Core, o.source, block, o.array));
+    this->Blocks.back()->volume.gradients = data.refined ? vtkStratusAMR::GetGradients(block) : nullptr;
     this->Blocks.back()->volume.revision = this->Steps;
     this->Blocks.back()->volume.matrix[5 * this->Up] *= o.exaggeration;
-  }
-  if (data.refined && (o.shade || (o.mode == STRATUS_MODE_FIRST_HIT && o.normals == STRATUS_NORMALS_GRADIENT))) {
-    throw cli::usage("'" + o.source + "' is AMR, which is drawn without " + (o.shade ? "--shade" : "--normals gradient") +
-      ": light follows gradients, which each block has in its own spacing, so that borders of levels would show");
   }
   if (!this->Blocks.empty() && (!o.mask.empty() || o.audit)) {
     throw cli::usage("'" + o.source + "' is a volume of " + std::to_string(1 + this->Blocks.size()) + " blocks, which is drawn without " +

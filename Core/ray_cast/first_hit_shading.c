@@ -100,7 +100,8 @@ static double slope_at(const stratus_volume* volume, int axis, int64_t at, doubl
 /* Computes the normal by differences, one-sided where a neighbour is missing or not finite. Returns false if the gradient is 0. */
 static bool gradient_normal(const stratus_shader* shader, const int32_t voxel[3], const double direction[3], double normal[3])
 {
-  const int64_t here[3] = { voxel[0], voxel[1], voxel[2] };
+  const stratus_volume* volume = shader->volume;
+  const int64_t here[3] = { voxel[0], voxel[1], voxel[2] }, *n = volume->dimensions;
   const double value = value_at(shader, here);
   double world[3] = { 0.0, 0.0, 0.0 };
   for (int axis = 0; axis < 3; ++axis) {
@@ -108,9 +109,11 @@ static bool gradient_normal(const stratus_shader* shader, const int32_t voxel[3]
     for (int s = 0; s < 2; ++s) {
       int64_t at[3] = { here[0], here[1], here[2] };
       at[axis] += s ? 1 : -1;
-      side[s] = at[axis] >= 0 && at[axis] < shader->volume->dimensions[axis] ? value_at(shader, at) : NAN;
+      side[s] = at[axis] >= 0 && at[axis] < n[axis] ? value_at(shader, at) : NAN;
     }
-    const double slope = slope_at(shader->volume, axis, here[axis], side[0], value, side[1]);
+    const double slope = volume->gradients
+      ? (double)volume->gradients[((axis * n[2] + here[2]) * n[1] + here[1]) * n[0] + here[0]] * stratus_volume_spacing(volume, axis)
+      : slope_at(volume, axis, here[axis], side[0], value, side[1]);
     for (int row = 0; row < 3; ++row) {
       world[row] += slope * shader->world_to_index[4 * axis + row];
     }

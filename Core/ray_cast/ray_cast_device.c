@@ -43,12 +43,11 @@ static stratus_status replace(stratus_ray_caster* caster, buffer_name name, cons
 static size_t value_bytes(const stratus_ray_caster* caster)
 {
   const stratus_volume* volume = &caster->traversed;
-  const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
-  const size_t components = (size_t)stratus_volume_components(volume);
-  if (volume->values == caster->fetched) { /* fetched values store one component after the other */
-    return values * components * sizeof(float);
+  const size_t values = stratus_volume_count(volume);
+  if (volume->values == caster->fetched || volume->gradients) { /* one plane after the other */
+    return values * (size_t)stratus_volume_planes(volume) * sizeof(float);
   }
-  return ((values - 1) * (size_t)volume->value_stride + components) * stratus_type_size(volume->type);
+  return ((values - 1) * (size_t)volume->value_stride + (size_t)stratus_volume_components(volume)) * stratus_type_size(volume->type);
 }
 
 static size_t hidden_bytes(const stratus_ray_caster* caster)
@@ -133,7 +132,8 @@ int stratus_ray_rarities(const stratus_ray_cast_arguments* a)
     (a->lattice.jitter ? RAY_JITTER : 0) | (a->values.has_hidden ? RAY_HIDDEN : 0) | (a->values.nearest ? RAY_NEAREST : 0) |
     (a->map.tree ? RAY_TREE : 0) | (a->media.components > 1 ? RAY_COMPONENTS : 0) | (a->media.label_count > 0 ? RAY_LABELS : 0) |
     (a->values.page_components ? RAY_PAGES : 0) | (a->table.has_opaque ? RAY_OPAQUE : 0) | (a->table.cut ? RAY_CUT : 0) |
-    (a->table.jumps ? RAY_JUMPS : 0) | (a->grid.on ? RAY_GRID : 0) | (a->lattice.follows ? RAY_FOLLOWS : 0);
+    (a->table.jumps ? RAY_JUMPS : 0) | (a->grid.on ? RAY_GRID : 0) | (a->lattice.follows ? RAY_FOLLOWS : 0) |
+    (a->values.gradient_at ? RAY_GRADIENTS : 0);
 }
 
 static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_cast_arguments* arguments, int type,
@@ -331,7 +331,7 @@ stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus
     return STRATUS_OK;
   }
   if (in_pages) {
-    stratus_ray_pages_arguments(&caster->device->pages, stratus_volume_components(&caster->traversed), &arguments);
+    stratus_ray_pages_arguments(&caster->device->pages, stratus_volume_planes(&caster->traversed), &arguments);
     type = (int)caster->traversed.type; /* pages have the type's own fetch, whatever the volume's shape */
   }
   mine.arguments = &arguments;

@@ -44,7 +44,7 @@ static stratus_status check_crop(stratus_context* context, const stratus_ray_cas
   return STRATUS_OK;
 }
 
-/* Gradients at clip planes need a distance of one voxel, which only grids of equal spacing have, and one component. */
+/* Gradients at clip planes are differences at a distance of one voxel, which only grids of equal spacing have, of one component. */
 static stratus_status check_clip_gradients(stratus_context* context, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   if (!options->clipping.clip_gradients || options->clipping.clip_plane_count == 0) {
@@ -53,10 +53,12 @@ static stratus_status check_clip_gradients(stratus_context* context, const strat
   if (!isfinite(options->clipping.clipped_value)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "clipped value %g, must be finite", options->clipping.clipped_value);
   }
-  if (volume->coordinates[0] || volume->coordinates[1] || volume->coordinates[2] || stratus_volume_components(volume) > 1) {
+  if (stratus_volume_is_stretched(volume) || volume->gradients || stratus_volume_components(volume) > 1) {
     return stratus_fail(context, STRATUS_UNSUPPORTED,
-      "gradients that clip planes change, of %s: only grids of equal spacing and 1 component",
-      stratus_volume_components(volume) > 1 ? "several components" : "a grid with coordinates");
+      "gradients that clip planes change, of %s: only grids of equal spacing, without gradients and of 1 component",
+      stratus_volume_components(volume) > 1 ? "several components"
+        : volume->gradients                 ? "a volume with gradients"
+                                            : "a grid with coordinates");
   }
   return STRATUS_OK;
 }
@@ -91,6 +93,10 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
   if (!(options->optics.gradient_distance >= 0.0) || !isfinite(options->optics.gradient_distance)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "gradient distance %g, must be positive and finite, or 0 for optical depths",
       options->optics.gradient_distance);
+  }
+  if (!(options->optics.gradient_length >= 0.0) || !isfinite(options->optics.gradient_length)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "gradient length %g, must be positive and finite, or 0 for the mean spacing",
+      options->optics.gradient_length);
   }
   const int size = options->skipping.block_size;
   if (size != 0 && size != 2 && size != 4 && size != 8 && size != 16 && size != 32) {

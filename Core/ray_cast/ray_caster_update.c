@@ -145,6 +145,7 @@ static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, con
   in.shade = options->light.shade != 0;
   in.mean_components = options->optics.mean_components != 0;
   in.gradient_distance = options->optics.gradient_distance;
+  in.gradient_length = options->optics.gradient_length;
   for (int c = 0; c < materials && c < 4; ++c) { /* field by field: their padding is anything */
     in.materials[c].shade = options->light.materials[c].shade != 0;
     in.materials[c].ambient = options->light.materials[c].ambient;

@@ -31,33 +31,57 @@ int stratus_ray_fetch_type(const stratus_volume* volume)
   return is_regular(volume) && volume->value_stride == 1 && stratus_ray_cast_type_is_fast((int)volume->type) ? (int)volume->type : -1;
 }
 
+/* Whether gradients are not where rays read them: behind the values of one component. */
+static bool has_gradients_apart(const stratus_volume* volume)
+{
+  const bool plain = volume->type == STRATUS_FLOAT32 && volume->value_stride == 1 && stratus_volume_components(volume) == 1;
+  return volume->gradients && !(plain && volume->gradients == (const float*)volume->values + stratus_volume_count(volume));
+}
+
+/* Copies the values of a component, and the planes of its gradients behind them. */
+static void copy_component(const stratus_ray_caster* caster, int component, float* to)
+{
+  const stratus_volume view = stratus_volume_component(&caster->volume, component);
+  const double bias = stratus_volume_bias(&view);
+  const size_t count = stratus_volume_count(&view), slice = count / (size_t)view.dimensions[2];
+#pragma omp parallel for num_threads(caster->context->threads)
+  for (int64_t k = 0; k < view.dimensions[2]; ++k) {
+    for (size_t i = (size_t)k * slice; i < ((size_t)k + 1) * slice; ++i) {
+      to[i] = stratus_volume_fetch(&view, bias, i);
+      for (size_t axis = 0; view.gradients && axis < 3; ++axis) {
+        to[(axis + 1) * count + i] = view.gradients[axis * count + i];
+      }
+    }
+  }
+}
+
 stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster, size_t rays)
 {
   const stratus_volume* volume = &caster->volume;
   const int type = stratus_ray_fetch_type(volume);
   const int components = stratus_volume_components(volume);
-  const bool slow = type < 0 || type == STRATUS_FLOAT64;
-  const bool must = components > 1 && stratus_type_is_wide(volume->type); /* traversal applies one bias, but each component has its own */
+  const bool apart = has_gradients_apart(volume), slow = type < 0 || type == STRATUS_FLOAT64 || apart;
+  /* traversal applies one bias, but each component has its own, and gradients have none */
+  const bool must = apart || (components > 1 && stratus_type_is_wide(volume->type));
   caster->traversed = *volume;
   if (!slow || (!is_regular(volume) && !must)) {
     return STRATUS_OK;
   }
-  const size_t slice = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1], slices = (size_t)volume->dimensions[2];
-  const bool fits = slice * slices <= FETCHED_BYTES_MOST / sizeof(float) / (size_t)components;
+  const size_t count = stratus_volume_count(volume), planes = (size_t)stratus_volume_planes(volume);
+  const bool fits = count <= FETCHED_BYTES_MOST / sizeof(float) / planes;
   if (must && !fits) {
-    return stratus_fail(caster->context, STRATUS_UNSUPPORTED,
-      "%d components of %zu values each of 32 bits and more: together at most %zu values", components, slice * slices,
-      FETCHED_BYTES_MOST / sizeof(float));
+    return stratus_fail(caster->context, STRATUS_UNSUPPORTED, "%d components of %zu values each %s: together at most %zu numbers",
+      components, count, apart ? "with three derivatives" : "of 32 bits and more", FETCHED_BYTES_MOST / sizeof(float));
   }
   if (!caster->fetched) {
     const int64_t* n = volume->dimensions;
     const double longest = fmax(fmax((double)n[0], (double)n[1]), (double)n[2]);
     const double samples = (double)caster->samples_since_data + (caster->copy_failed ? 0.0 : longest * (double)rays);
-    if (!must && (samples < (double)(slice * slices) || !fits)) {
+    if (!must && (samples < (double)count || !fits)) {
       return STRATUS_OK;
     }
     void* memory = NULL;
-    const stratus_status status = stratus_allocate(caster->context, slice * slices * (size_t)components, sizeof(float), &memory);
+    const stratus_status status = stratus_allocate(caster->context, count * planes, sizeof(float), &memory);
     if (status != STRATUS_OK && must) {
       return status;
     }
@@ -67,19 +91,10 @@ stratus_status stratus_ray_fetched_update(stratus_ray_caster* caster, size_t ray
       caster->copy_failed = true;
       return STRATUS_OK;
     }
-    float* fetched = memory;
+    caster->fetched = memory;
     for (int c = 0; c < components; ++c) {
-      const stratus_volume view = stratus_volume_component(volume, c);
-      const double bias = stratus_volume_bias(&view);
-      float* plane = fetched + (size_t)c * slice * slices;
-#pragma omp parallel for num_threads(caster->context->threads)
-      for (size_t k = 0; k < slices; ++k) {
-        for (size_t i = k * slice; i < (k + 1) * slice; ++i) {
-          plane[i] = stratus_volume_fetch(&view, bias, i);
-        }
-      }
+      copy_component(caster, c, caster->fetched + (size_t)c * (planes / (size_t)components) * count);
     }
-    caster->fetched = fetched;
     ++caster->data_serial;
   }
   caster->traversed.values = caster->fetched;

@@ -212,10 +212,12 @@ static void set_clip_planes(const stratus_ray_cast_options* options, const doubl
 
 static void set_addressing(const stratus_volume* volume, stratus_ray_cast_arguments* a)
 {
+  a->values.gradient_at = volume->gradients ? (int)(uint32_t)stratus_volume_count(volume) : 0;
   const uint64_t stride = (uint64_t)volume->value_stride, row = (uint64_t)volume->dimensions[0] * stride;
   const uint64_t slice = row * (uint64_t)volume->dimensions[1], values = slice * (uint64_t)volume->dimensions[2];
   for (int axis = 0; axis < 3; ++axis) {
     a->values.dimensions[axis] = (int)volume->dimensions[axis];
+    a->values.gradient_scale[axis] = (float)stratus_volume_spacing(volume, axis);
   }
   a->values.row = (int)(uint32_t)row;
   a->values.row_high = (int)(uint32_t)(row >> 32);

@@ -25,11 +25,11 @@ void stratus_ray_pages_drop(stratus_context* context, stratus_ray_pages* pages)
   *pages = (stratus_ray_pages){ .entries = NULL };
 }
 
-void stratus_ray_pages_arguments(const stratus_ray_pages* pages, int components, stratus_ray_cast_arguments* a)
+void stratus_ray_pages_arguments(const stratus_ray_pages* pages, int planes, stratus_ray_cast_arguments* a)
 {
   a->values.pages_across = (int)pages->pages[0];
   a->values.pages_rows = (int)pages->pages[1];
-  a->values.page_components = components;
+  a->values.page_components = planes;
 }
 
 /* ---- which pages */
@@ -117,14 +117,13 @@ typedef struct page_source {
 static page_source source_of(const stratus_ray_caster* caster)
 {
   const stratus_volume* v = &caster->traversed;
-  const bool planes = v->values == caster->fetched; /* fetched values store one component after the other */
-  const size_t values = (size_t)v->dimensions[0] * (size_t)v->dimensions[1] * (size_t)v->dimensions[2];
+  const bool planes = v->values == caster->fetched || v->gradients; /* one component, or derivative, after the other */
   return (page_source){ .values = v->values,
     .dimensions = { v->dimensions[0], v->dimensions[1], v->dimensions[2] },
     .stride = (size_t)v->value_stride,
-    .component = planes ? values : 1,
+    .component = planes ? stratus_volume_count(v) : 1,
     .size = stratus_type_size(v->type),
-    .components = stratus_volume_components(v) };
+    .components = stratus_volume_planes(v) };
 }
 
 /* Copies a row of PAGE_ROW values. The last `beyond` of them repeat the volume's last. */
@@ -279,7 +278,7 @@ stratus_status stratus_ray_pages_update(
   if (pages->entries && has_all(pages, wanted, table)) {
     stratus_release(context, wanted);
   } else {
-    const size_t page_bytes = PAGE_VALUES * stratus_type_size(volume->type) * (size_t)stratus_volume_components(volume);
+    const size_t page_bytes = PAGE_VALUES * stratus_type_size(volume->type) * (size_t)stratus_volume_planes(volume);
     const stratus_status status = replace_pages(caster, pages, wanted, table, page_bytes, text, capacity, why_not);
     if (status != STRATUS_OK || *why_not) {
       stratus_ray_pages_drop(context, pages);

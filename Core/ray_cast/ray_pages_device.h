@@ -23,7 +23,7 @@ typedef struct stratus_ray_pages {
 stratus_status stratus_ray_pages_update(
   stratus_ray_caster* caster, stratus_ray_pages* pages, stratus_ray_variant variant, char* text, size_t capacity, const char** why_not);
 /* Writes the layout of the page table to the rays' arguments. */
-void stratus_ray_pages_arguments(const stratus_ray_pages* pages, int components, stratus_ray_cast_arguments* a);
+void stratus_ray_pages_arguments(const stratus_ray_pages* pages, int planes, stratus_ray_cast_arguments* a);
 /* Releases the buffers and all memory. */
 void stratus_ray_pages_drop(stratus_context* context, stratus_ray_pages* pages);
 

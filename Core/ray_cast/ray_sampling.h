@@ -26,7 +26,7 @@ typedef struct stratus_ray_choice_inputs {
   stratus_sampling sampling;
   stratus_interpolation interpolation;
   int shade, mean_components;
-  double gradient_distance;
+  double gradient_distance, gradient_length;
   stratus_material materials[4];
 } stratus_ray_choice_inputs;
 

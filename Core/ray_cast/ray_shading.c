@@ -57,7 +57,7 @@ static void set_tables(const stratus_ray_caster* caster, const stratus_ray_cast_
 {
   const stratus_ray_shading_tables* shading = &caster->shading_tables;
   const stratus_volume* volume = &caster->traversed;
-  const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
+  const size_t planes = (size_t)stratus_volume_planes(volume) / (size_t)stratus_volume_components(volume);
   a->media.components = shading->components;
   a->media.dependent = caster->dependent ? a->media.components - 1 : 0;
   a->media.mean = options->optics.mean_components && !caster->dependent;
@@ -67,7 +67,8 @@ static void set_tables(const stratus_ray_caster* caster, const stratus_ray_cast_
   a->media.label_first = shading->label_first;
   a->media.label_steps = shading->label_tables ? shading->label_steps : 0;
   a->media.label_count = shading->label_tables ? shading->label_tables_count - 1 : 0;
-  a->media.component_bytes = (int)(uint32_t)(volume->values == caster->fetched ? values * sizeof(float) : stratus_type_size(volume->type));
+  a->media.component_bytes = (int)(uint32_t)(volume->values == caster->fetched ? stratus_volume_count(volume) * planes * sizeof(float)
+                                                                               : stratus_type_size(volume->type));
   for (int c = 0; c < 4; ++c) {
     const stratus_table* table = shading->tables[c];
     const bool has = caster->shades && options->mode == STRATUS_MODE_COMPOSITE && c < shading->components;
@@ -109,9 +110,9 @@ void stratus_ray_shading_arguments(const stratus_ray_caster* caster, const strat
   }
   const double spacing[3] = { fabs(stratus_volume_spacing(volume, 0)), fabs(stratus_volume_spacing(volume, 1)),
     fabs(stratus_volume_spacing(volume, 2)) };
-  const double mean = (spacing[0] + spacing[1] + spacing[2]) / 3.0;
+  const double of = options->optics.gradient_length, length = of > 0.0 ? of : (spacing[0] + spacing[1] + spacing[2]) / 3.0;
   for (int axis = 0; axis < 3; ++axis) {
-    a->media.gradient_length[axis] = (float)(mean / spacing[axis]);
+    a->media.gradient_length[axis] = (float)(length / spacing[axis]);
   }
   set_tables(caster, options, a);
   stratus_ray_transfer_2d_arguments(caster, a);

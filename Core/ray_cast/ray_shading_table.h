@@ -23,6 +23,12 @@ typedef struct stratus_ray_shading_tables {
 } stratus_ray_shading_tables;
 
 int stratus_volume_components(const stratus_volume* volume);
+/* The planes of one number for each value that rays read: of each component the values and, if the volume has gradients, the three
+ * derivatives behind them. */
+static inline int stratus_volume_planes(const stratus_volume* volume)
+{
+  return stratus_volume_components(volume) * (volume->gradients ? 4 : 1);
+}
 stratus_volume stratus_volume_component(const stratus_volume* volume, int component); /* a component as a volume of its own */
 /* The component that rays follow, see stratus_ray_caster. */
 int stratus_ray_followed(const stratus_volume* volume, const stratus_ray_cast_options* options);

@@ -196,6 +196,9 @@ typedef struct stratus_ray_optics_options {
    * length; a value of opacity 1 stays opaque. Greater than 0: F multiplies the opacity A of a segment of this world length, which then
    * lets 1 - F A pass. VTK's mappers multiply the opacity of a sample in this way. Samples are never pre-integrated then. */
   double gradient_distance;
+  /* Composite. The length, before the volume's matrix, that gradient magnitudes are of: of stratus_transfer.gradient, and of functions of
+   * two variables. Parts of a field of several spacings need one length. 0 (default): the mean spacing of the grid. */
+  double gradient_length;
   /* Composite. A function of two variables, for volumes of one component, or of two if the second component is the function's second
    * variable. NULL (default): none. It replaces the transfer function, which is not read and may be NULL. Samples follow the midpoint rule:
    * other rules and labels give STRATUS_UNSUPPORTED. An automatic step keeps the tolerance as measured. It has no bound from the function,

@@ -63,8 +63,13 @@ typedef struct stratus_volume {
   /* 1..4, default 1 (0 counts as 1), at most value_stride. Component c of value v is values[v*value_stride + c]. Ray casts use all
    * components, except in modes first hit, isosurface and slice: these give STRATUS_UNSUPPORTED for more than 1. Everything else reads the
    * first component. */
-
   int components;
+  /* NULL (default): gradients are differences of neighbouring values. Otherwise the gradient at each value, which is interpolated as values
+   * are: the derivative of component c along the grid's axis i, per unit of local length, is gradients[(3*c + i)*count + v] at value v of
+   * `count`. Parts of a larger field have no seams in their light if they agree on it where they meet. Rays read gradients in place if
+   * they directly follow the values in memory, of one component, FLOAT32 and value_stride 1; otherwise as copies, floats of at most 2 GB.
+   */
+  const float* gradients;
 } stratus_volume;
 
 /* Return a view with the defaults. The caller sets at least values, type and dimensions. */

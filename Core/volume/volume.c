@@ -309,7 +309,7 @@ double stratus_volume_bias(const stratus_volume* volume)
   if (!stratus_type_is_wide(volume->type)) {
     return 0.0;
   }
-  const size_t count = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
+  const size_t count = stratus_volume_count(volume);
   const size_t stride = count / BIAS_VALUES_ASKED + 1;
   double bias = INFINITY;
   for (size_t i = 0; i < count; i += stride) {
@@ -328,12 +328,12 @@ bool stratus_volume_same_data(const stratus_volume* a, const stratus_volume* b)
 {
   return a->values == b->values && a->type == b->type && memcmp(a->dimensions, b->dimensions, sizeof a->dimensions) == 0 &&
     a->value_stride == b->value_stride && a->cell_centered == b->cell_centered && a->point_ghosts == b->point_ghosts &&
-    a->cell_ghosts == b->cell_ghosts && a->revision == b->revision;
+    a->cell_ghosts == b->cell_ghosts && a->gradients == b->gradients && a->revision == b->revision;
 }
 
 bool stratus_volume_floats_differ(const stratus_volume* volume, double bias)
 {
-  const size_t count = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
+  const size_t count = stratus_volume_count(volume);
   float first = NAN;
   for (size_t i = 0; i < count; ++i) {
     const float value = stratus_volume_fetch(volume, bias, i);
@@ -352,7 +352,7 @@ stratus_status stratus_volume_check_floats(stratus_context* context, const strat
   if (volume->type != STRATUS_FLOAT64) {
     return STRATUS_OK;
   }
-  const size_t count = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
+  const size_t count = stratus_volume_count(volume);
   const size_t stride = count / BIAS_VALUES_ASKED + 1;
   double far[2] = { NAN, NAN }; /* below and above */
   for (size_t i = 0; i < count; i += stride) {

@@ -35,6 +35,10 @@ static inline float stratus_float_below(double number)
   const float nearest = (float)number;
   return (double)nearest > number ? nextafterf(nearest, -INFINITY) : nearest;
 }
+static inline size_t stratus_volume_count(const stratus_volume* volume)
+{
+  return (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
+}
 /* Whether the volume extends along an axis. */
 static inline bool stratus_volume_extends(const stratus_volume* volume, int axis)
 {

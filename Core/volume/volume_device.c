@@ -27,8 +27,7 @@ static void release_buffers(cl_mem* buffers, size_t count)
 
 static size_t volume_bytes(const stratus_volume* volume)
 {
-  const size_t values = (size_t)volume->dimensions[0] * (size_t)volume->dimensions[1] * (size_t)volume->dimensions[2];
-  return ((values - 1) * (size_t)volume->value_stride + 1) * stratus_type_size(volume->type);
+  return ((stratus_volume_count(volume) - 1) * (size_t)volume->value_stride + 1) * stratus_type_size(volume->type);
 }
 
 bool stratus_device_takes_volume(const stratus_context* context, const stratus_volume* volume)

@@ -12,6 +12,8 @@
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkOverlappingAMR.h"
@@ -105,6 +107,8 @@ bool FindSource(vtkStratusAMRGrid* grid, const std::string& name, bool cells, So
   return vtkStratusFindGhosts(data, count, cells ? "cells of a box" : "points of a box", source.Flags, error);
 }
 
+constexpr const char* GradientArray = "StratusGradients"; // of a grid's field data
+
 // How a level's values are converted to a grid's values.
 struct Kind {
   int Type;
@@ -112,14 +116,14 @@ struct Kind {
 };
 
 // Chooses doubles if floats could not distinguish the values, as for close values far from 0.
-Kind ChooseKind(const vtkStratusAMRField& field, int type, bool nearest)
+Kind ChooseKind(const vtkStratusAMRField& field, int type, bool as_is)
 {
   double range[2];
   const bool any = field.GetRange(range);
   const double most = any ? std::max(std::fabs(range[0]), std::fabs(range[1])) : 0.0;
   const bool digits = vtkDataArray::GetDataTypeSize(type) >= 4 && type != VTK_FLOAT;
   const bool doubles = digits && any && range[1] - range[0] < 0.125 * most;
-  return { nearest ? type : doubles ? VTK_DOUBLE : VTK_FLOAT, std::min(1e-33, 1e-3 * most) };
+  return { as_is ? type : doubles ? VTK_DOUBLE : VTK_FLOAT, std::min(1e-33, 1e-3 * most) };
 }
 
 bool IsEven(const std::vector<int64_t>& planes)
@@ -169,18 +173,38 @@ vtkSmartPointer<vtkDataSet> MakeGrid(const std::vector<int64_t> planes[3], const
   return grid;
 }
 
-// Fills the values of a leaf's grid, layer by layer.
-void Fill(const vtkStratusAMRField& field, const vtkStratusAMRLeaf& leaf, const std::vector<int64_t> planes[3], bool nearest, double least,
-  vtkDataArray* values)
+// Makes the array of `count` values for a grid, and gives where its gradients go, in an array of the grid's field data.
+vtkSmartPointer<vtkDataArray> MakeValues(vtkDataSet* grid, int type, const vtkStratusAMRField& field, size_t count, float*& gradients)
 {
-  const size_t less = nearest ? 1 : 0;
-  const size_t counts[3] = { planes[0].size() - less, planes[1].size() - less, planes[2].size() - less };
-  const auto components = static_cast<size_t>(field.GetNumberOfComponents());
+  auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+  const auto numbers = static_cast<vtkIdType>(count) * field.GetNumberOfComponents();
   values->SetNumberOfComponents(field.GetNumberOfComponents());
-  values->SetNumberOfTuples(static_cast<vtkIdType>(counts[0] * counts[1] * counts[2]));
+  gradients = nullptr;
+  if (field.GetNumberOfNumbers() > field.GetNumberOfComponents()) {
+    vtkNew<vtkFloatArray> all;
+    all->SetName(GradientArray);
+    all->SetNumberOfValues((type == VTK_FLOAT ? 4 : 3) * numbers);
+    grid->GetFieldData()->AddArray(all);
+    gradients = all->GetPointer(all->GetNumberOfValues() - 3 * numbers);
+    if (type == VTK_FLOAT) {
+      values->SetVoidArray(all->GetPointer(0), numbers, 1); // `all` keeps the memory
+      return values;
+    }
+  }
+  values->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  return values;
+}
+
+// Fills the values of a leaf's grid, layer by layer. counts: the numbers of values along the axes. per_length: units in a length, of each
+// axis.
+void Fill(const vtkStratusAMRField& field, const vtkStratusAMRLeaf& leaf, const std::vector<int64_t> planes[3], const size_t counts[3],
+  bool nearest, double least, const double per_length[3], vtkDataArray* values, float* gradients)
+{
+  const auto components = static_cast<size_t>(field.GetNumberOfComponents());
+  const size_t count = counts[0] * counts[1] * counts[2];
   vtkSMPTools::For(0, static_cast<vtkIdType>(counts[2]), 1, [&](vtkIdType from, vtkIdType to) {
     vtkStratusAMRField::Cache cache;
-    std::vector<double> tuple(components);
+    std::vector<double> tuple(static_cast<size_t>(field.GetNumberOfNumbers()));
     for (auto k = static_cast<size_t>(from); k < static_cast<size_t>(to); ++k) {
       auto id = static_cast<vtkIdType>(k * counts[1] * counts[0]);
       for (size_t j = 0; j < counts[1]; ++j) {
@@ -195,6 +219,9 @@ void Fill(const vtkStratusAMRField& field, const vtkStratusAMRLeaf& leaf, const 
           }
           for (size_t c = 0; c < components; ++c) {
             values->SetComponent(id, static_cast<int>(c), std::fabs(tuple[c]) < least ? 0.0 : tuple[c]);
+          }
+          for (size_t d = 0; gradients && d < 3 * components; ++d) {
+            gradients[d * count + static_cast<size_t>(id)] = static_cast<float>(tuple[components + d] * per_length[d % 3]);
           }
         }
       }
@@ -261,7 +288,15 @@ bool vtkStratusAMR::GetBounds(vtkUniformGridAMR* amr, int piece, int pieces, dou
   return true;
 }
 
-bool vtkStratusAMR::Set(vtkUniformGridAMR* amr, const FindArray& find, bool nearest, std::string& error, int piece, int pieces)
+const float* vtkStratusAMR::GetGradients(vtkDataSet* grid)
+{
+  vtkDataArray* points = grid->GetPointData()->GetScalars();
+  vtkFloatArray* all = vtkFloatArray::SafeDownCast(grid->GetFieldData()->GetArray(GradientArray));
+  return all ? all->GetPointer(all->GetNumberOfValues() - 3 * (points ? points : grid->GetCellData()->GetScalars())->GetNumberOfValues())
+             : nullptr;
+}
+
+bool vtkStratusAMR::Set(vtkUniformGridAMR* amr, const FindArray& find, const Use& use, std::string& error)
 {
   this->Grids.clear();
   vtkOverlappingAMR* overlapping = vtkOverlappingAMR::SafeDownCast(amr);
@@ -270,7 +305,7 @@ bool vtkStratusAMR::Set(vtkUniformGridAMR* amr, const FindArray& find, bool near
     return false;
   }
   try {
-    return this->Make(overlapping, find, nearest, piece, pieces, error);
+    return this->Make(overlapping, find, use, error);
   } catch (const std::bad_alloc&) {
     this->Grids.clear();
     error = "the levels' grids need more memory than there is";
@@ -278,7 +313,7 @@ bool vtkStratusAMR::Set(vtkUniformGridAMR* amr, const FindArray& find, bool near
   }
 }
 
-bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, bool nearest, int piece, int pieces, std::string& error)
+bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, const Use& use, std::string& error)
 {
   std::vector<std::array<int, 3>> ratios;
   if (!FindRatios(amr, ratios, error)) {
@@ -321,7 +356,7 @@ bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, bool nea
   if (sources.empty()) {
     return true;
   }
-  if (nearest && !this->Cells) {
+  if (use.Nearest && !this->Cells) {
     error =
       "nearest interpolation of AMR's values of points is not drawn: cells about points of two levels overlap. Use linear interpolation";
     return false;
@@ -343,26 +378,36 @@ bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, bool nea
   if (!field.End(error)) {
     return false;
   }
-  double unit[3];
-  amr->GetSpacing(static_cast<unsigned int>(this->Levels - 1), unit);
-  for (double& along : unit) {
-    along *= 0.5;
+  const Kind kind = ChooseKind(field, type, use.Nearest && !use.Gradients);
+  if (use.Gradients) {
+    field.TakeGradients();
   }
-  const Kind kind = ChooseKind(field, type, nearest);
-  const vtkStratusAMRLeaves leaves(field, nearest, piece, pieces);
+  double unit[3], per_length[3], coarsest[3];
+  amr->GetSpacing(static_cast<unsigned int>(this->Levels - 1), unit);
+  amr->GetSpacing(0, coarsest);
+  for (int axis = 0; axis < 3; ++axis) {
+    unit[axis] *= 0.5;
+    per_length[axis] = 1.0 / unit[axis];
+  }
+  this->Spacing = (coarsest[0] + coarsest[1] + coarsest[2]) / 3.0;
+  const vtkStratusAMRLeaves leaves(field, use.Nearest, use.Piece, use.Pieces);
   for (const vtkStratusAMRLeaf& leaf : leaves.GetLeaves()) {
     std::vector<int64_t> planes[3];
+    size_t counts[3];
     for (int axis = 0; axis < 3; ++axis) {
       planes[axis] = leaves.GetPlanes(leaf, axis);
+      counts[axis] = planes[axis].size() - (use.Nearest ? 1 : 0);
     }
+    float* gradients = nullptr;
     const vtkSmartPointer<vtkDataSet> grid = MakeGrid(planes, amr->GetOrigin(), unit);
-    auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(kind.Type));
+    const vtkSmartPointer<vtkDataArray> values = MakeValues(grid, kind.Type, field, counts[0] * counts[1] * counts[2], gradients);
     values->SetName(this->ArrayName.c_str());
-    Fill(field, leaf, planes, nearest, kind.Least, values);
-    vtkDataSetAttributes* data = nearest ? static_cast<vtkDataSetAttributes*>(grid->GetCellData()) : grid->GetPointData();
+    Fill(field, leaf, planes, counts, use.Nearest, kind.Least, per_length, values, gradients);
+    vtkDataSetAttributes* data = use.Nearest ? static_cast<vtkDataSetAttributes*>(grid->GetCellData()) : grid->GetPointData();
     data->SetScalars(values);
     this->Grids.push_back(grid);
   }
-  this->Cells = nearest;
+  this->Cells = use.Nearest;
+  this->Gradients = use.Gradients;
   return true;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusAMRField.h"
 
+#include "vtkSMPTools.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +32,7 @@ bool vtkStratusAMRField::Begin(const std::vector<std::array<int, 3>>& ratios, bo
   this->Levels.resize(ratios.size() + 1);
   this->Boxes.clear();
   this->Cells = cells;
-  this->Components = components;
+  this->Components = this->Numbers = components;
   if (this->Levels.size() > 32) {
     error = std::to_string(this->Levels.size()) + " levels of refinement, at most 32 can be drawn";
     return false;
@@ -97,7 +99,7 @@ const double* vtkStratusAMRField::ValuesOf(int level, const Place& cell, Cache& 
 {
   size_t index;
   const Tile* tile = this->Find(level, cell, index, cache);
-  return tile && tile->State[index] & HAS_VALUE ? tile->Values.data() + index * static_cast<size_t>(this->Components) : nullptr;
+  return tile && tile->State[index] & HAS_VALUE ? tile->Values.data() + index * static_cast<size_t>(this->Numbers) : nullptr;
 }
 
 bool vtkStratusAMRField::Start(const Box& box, std::string& error)
@@ -196,15 +198,15 @@ bool vtkStratusAMRField::End(std::string& error)
 
 bool vtkStratusAMRField::GetRange(double range[2]) const
 {
-  const auto components = static_cast<size_t>(this->Components);
+  const auto components = static_cast<size_t>(this->Components), numbers = static_cast<size_t>(this->Numbers);
   range[0] = HUGE_VAL;
   range[1] = -HUGE_VAL;
   for (const Level& level : this->Levels) {
     for (const auto& tile : level.Tiles) {
       for (size_t i = 0; i < tile.second->Values.size(); ++i) {
         const double value = tile.second->Values[i];
-        const uint8_t state = tile.second->State[i / components];
-        if (state & HAS_VALUE && !(this->Cells && state & COVERED) && std::fabs(value) <= 1e30) {
+        const uint8_t state = tile.second->State[i / numbers];
+        if (i % numbers < components && state & HAS_VALUE && !(this->Cells && state & COVERED) && std::fabs(value) <= 1e30) {
           range[0] = std::min(range[0], value);
           range[1] = std::max(range[1], value);
         }
@@ -212,6 +214,79 @@ bool vtkStratusAMRField::GetRange(double range[2]) const
     }
   }
   return range[0] <= range[1];
+}
+
+// Gives the numbers of a cell (point) of a level: its values and, behind them, their derivatives.
+void vtkStratusAMRField::Differ(int level, const Place& index, Cache& cache, double* out) const
+{
+  const auto components = static_cast<size_t>(this->Components);
+  const auto evaluate = [&](const Place& at, double* values) {
+    Place place;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const int64_t width = this->GetCell(level, static_cast<int>(axis));
+      place[axis] = at[axis] * width + (this->Cells ? width / 2 : 0);
+    }
+    if (this->Cells && (this->StateOf(level, at, cache) & (EXISTS | COVERED)) == EXISTS) {
+      std::copy_n(this->ValuesOf(level, at, cache), components, values);
+    } else {
+      this->Evaluate(place, cache, values);
+    }
+  };
+  std::vector<double> here(components), sides[2] = { here, here };
+  evaluate(index, here.data());
+  std::copy_n(this->ValuesOf(level, index, cache), components, out);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (const int side : { 0, 1 }) {
+      Place at = index;
+      at[axis] += 2 * side - 1;
+      evaluate(at, sides[side].data());
+    }
+    for (size_t c = 0; c < components; ++c) {
+      const bool low = std::isfinite(sides[0][c]), high = std::isfinite(sides[1][c]);
+      const double rise = (high ? sides[1][c] : here[c]) - (low ? sides[0][c] : here[c]);
+      const auto width = static_cast<double>(this->GetCell(level, static_cast<int>(axis)));
+      out[components + 3 * c + axis] = low || high ? rise / (low && high ? 2.0 * width : width) : 0.0;
+    }
+  }
+}
+
+void vtkStratusAMRField::TakeGradients()
+{
+  struct Task {
+    int Level;
+    Place First; // cell of the tile
+    Tile* Of;
+    std::vector<double> Numbers;
+  };
+  std::vector<Task> tasks;
+  for (int level = 0; level < this->GetNumberOfLevels(); ++level) {
+    for (auto& tile : this->Levels[static_cast<size_t>(level)].Tiles) {
+      Task task = { level, {}, tile.second.get(), {} };
+      for (size_t axis = 0; axis < 3; ++axis) {
+        task.First[axis] = Side * (static_cast<int64_t>(tile.first >> 21 * (2 - axis) & (2 * Reach - 1)) - Reach);
+      }
+      tasks.push_back(task);
+    }
+  }
+  const auto numbers = static_cast<size_t>(4 * this->Components);
+  vtkSMPTools::For(0, static_cast<vtkIdType>(tasks.size()), 1, [&](vtkIdType from, vtkIdType to) {
+    Cache cache;
+    for (vtkIdType t = from; t < to; ++t) {
+      Task& task = tasks[static_cast<size_t>(t)];
+      task.Numbers.resize(task.Of->State.size() * numbers);
+      for (size_t i = 0; i < task.Of->State.size(); ++i) {
+        if (task.Of->State[i] & HAS_VALUE) {
+          const auto at = static_cast<int64_t>(i);
+          const Place index = { task.First[0] + at % Side, task.First[1] + at / Side % Side, task.First[2] + at / (Side * Side) };
+          this->Differ(task.Level, index, cache, task.Numbers.data() + i * numbers);
+        }
+      }
+    }
+  });
+  for (Task& task : tasks) {
+    task.Of->Values.swap(task.Numbers);
+  }
+  this->Numbers = static_cast<int>(numbers);
 }
 
 // Finds the coarsest level of the cells that show and touch a place; -1: there is none.
@@ -239,7 +314,7 @@ int vtkStratusAMRField::FindCoarsest(const Place& at, Cache& cache) const
 
 void vtkStratusAMRField::EvaluateNode(int level, const Place& at, Cache& cache, double* sums) const
 {
-  const auto components = static_cast<size_t>(this->Components);
+  const auto numbers = static_cast<size_t>(this->Numbers);
   int64_t first[3];
   int counts[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -251,21 +326,21 @@ void vtkStratusAMRField::EvaluateNode(int level, const Place& at, Cache& cache, 
       counts[axis] = 2;
     }
   }
-  std::fill_n(sums, components, 0.0);
+  std::fill_n(sums, numbers, 0.0);
   int found = 0;
   for (int k = 0; k < counts[2]; ++k) {
     for (int j = 0; j < counts[1]; ++j) {
       for (int i = 0; i < counts[0]; ++i) {
         if (const double* values = this->ValuesOf(level, { first[0] + i, first[1] + j, first[2] + k }, cache)) {
           ++found;
-          for (size_t c = 0; c < components; ++c) {
+          for (size_t c = 0; c < numbers; ++c) {
             sums[c] += values[c];
           }
         }
       }
     }
   }
-  for (size_t c = 0; c < components && found > 1; ++c) {
+  for (size_t c = 0; c < numbers && found > 1; ++c) {
     sums[c] /= found;
   }
 }
@@ -273,9 +348,9 @@ void vtkStratusAMRField::EvaluateNode(int level, const Place& at, Cache& cache, 
 void vtkStratusAMRField::Evaluate(const Place& at, Cache& cache, double* sums) const
 {
   const int level = this->FindCoarsest(at, cache);
-  const auto components = static_cast<size_t>(this->Components);
+  const auto numbers = static_cast<size_t>(this->Numbers);
   if (level < 0) {
-    std::fill_n(sums, components, std::numeric_limits<double>::quiet_NaN());
+    std::fill_n(sums, numbers, std::numeric_limits<double>::quiet_NaN());
     return;
   }
   Place lo;
@@ -292,7 +367,7 @@ void vtkStratusAMRField::Evaluate(const Place& at, Cache& cache, double* sums) c
     this->EvaluateNode(level, at, cache, sums);
     return;
   }
-  std::fill_n(sums, components, 0.0);
+  std::fill_n(sums, numbers, 0.0);
   for (size_t c = 0; c < 8; ++c) {
     double weight = 1.0;
     Place node = lo;
@@ -303,7 +378,7 @@ void vtkStratusAMRField::Evaluate(const Place& at, Cache& cache, double* sums) c
     }
     if (weight > 0.0) {
       const double* corner = this->EvaluateCorner(level, lo, c, node, cache);
-      for (size_t i = 0; i < components; ++i) {
+      for (size_t i = 0; i < numbers; ++i) {
         sums[i] += weight * corner[i];
       }
     }
@@ -313,14 +388,14 @@ void vtkStratusAMRField::Evaluate(const Place& at, Cache& cache, double* sums) c
 // Returns the field at a corner of a part of a cell. The cache holds the last part.
 const double* vtkStratusAMRField::EvaluateCorner(int level, const Place& part, size_t corner, const Place& node, Cache& cache) const
 {
-  const auto components = static_cast<size_t>(this->Components);
+  const auto numbers = static_cast<size_t>(this->Numbers);
   Part& kept = cache.Parts[level];
   if (kept.Values.empty() || kept.Lo != part) {
     kept.Lo = part;
     kept.Known = 0;
-    kept.Values.resize(8 * components);
+    kept.Values.resize(8 * numbers);
   }
-  double* values = kept.Values.data() + corner * components;
+  double* values = kept.Values.data() + corner * numbers;
   if (!(kept.Known >> corner & 1)) {
     this->Evaluate(node, cache, values); // at a corner of its own or in a part of a coarser level
     kept.Known |= 1 << corner;
@@ -336,7 +411,7 @@ bool vtkStratusAMRField::EvaluateCell(const Place& lo, const Place& hi, Cache& c
       cell[axis] = Floor(lo[axis] + (hi[axis] - lo[axis]) / 2, this->GetCell(level, static_cast<int>(axis)));
     }
     if (this->StateOf(level, cell, cache) & EXISTS) {
-      std::copy_n(this->ValuesOf(level, cell, cache), static_cast<size_t>(this->Components), values);
+      std::copy_n(this->ValuesOf(level, cell, cache), static_cast<size_t>(this->Numbers), values);
       return true;
     }
   }

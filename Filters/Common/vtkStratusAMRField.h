@@ -9,6 +9,10 @@
 // included, has the mean of the cells of that level around it, as in linear interpolation between centres. A corner that touches a coarser
 // visible cell has the coarser side's value there. Within a part the field is trilinear. Two levels therefore have equal values where they
 // meet, whatever their ratio: there is no crack. Point values work alike, with whole cells in place of parts.
+//
+// The gradient of each cell (point) of each level, covered ones included, is by differences of this field at places one width of the cell
+// before and behind its centre (the point). A place without the field leaves the one-sided difference. These gradients are interpolated as
+// values are, across levels, too: so they are continuous wherever the field is, and do not depend on the grids that hold it.
 #ifndef vtkStratusAMRField_h
 #define vtkStratusAMRField_h
 
@@ -41,12 +45,16 @@ public:
   template <class Value, class Hidden> bool Add(const Box& box, const Value& value, const Hidden& hidden, std::string& error);
   // Must follow the last Add(). Returns false, with the reason, if a box does not cover whole cells of the next coarser level.
   bool End(std::string& error);
+  // Makes the gradients. Must follow End().
+  void TakeGradients();
 
   // Results that one thread keeps from one place to the next.
   struct Cache;
 
   int GetNumberOfLevels() const { return static_cast<int>(this->Levels.size()); }
   int GetNumberOfComponents() const { return this->Components; }
+  // Numbers at each place: the components, and behind them each one's derivatives, per unit, along the axes, if there are gradients.
+  int GetNumberOfNumbers() const { return this->Numbers; }
   bool IsOfCells() const { return this->Cells; }
   const std::vector<Box>& GetBoxes() const { return this->Boxes; }
   // Gets the range of the visible values, without values beyond 1e30, which mean "no value". Returns false if there are none.
@@ -54,7 +62,7 @@ public:
   // Units along a cell of a level.
   int64_t GetCell(int level, int axis) const { return this->Levels[static_cast<size_t>(level)].Cell[static_cast<size_t>(axis)]; }
 
-  // Gives the field at a place in units, whose closed surroundings hold a cell at least. sums: as many as there are components.
+  // Gives the field at a place in units, whose closed surroundings hold a cell at least; NaN elsewhere. sums: as many as there are numbers.
   void Evaluate(const Place& at, Cache& cache, double* sums) const;
   // Gives what Evaluate() does at a corner of parts of `level`, or a point, that touches no coarser cell.
   void EvaluateNode(int level, const Place& at, Cache& cache, double* sums) const;
@@ -88,6 +96,7 @@ private:
   const double* ValuesOf(int level, const Place& cell, Cache& cache) const;
   bool Start(const Box& box, std::string& error);
   int FindCoarsest(const Place& at, Cache& cache) const;
+  void Differ(int level, const Place& index, Cache& cache, double* out) const;
   const double* EvaluateCorner(int level, const Place& part, size_t corner, const Place& node, Cache& cache) const;
   bool Cover(const Box& box, std::string& error);
   void TakeFiner(int level);
@@ -95,7 +104,7 @@ private:
   std::vector<Level> Levels;
   std::vector<Box> Boxes;
   bool Cells = true;
-  int Components = 1;
+  int Components = 1, Numbers = 1;
 };
 
 struct vtkStratusAMRField::Cache {

@@ -37,6 +37,7 @@ public:
     int component = -1);
   // Takes a filter's input and the array that the filter is to process. Either may be nullptr, which is reported as an error.
   bool SetInput(vtkDataSet* image, vtkDataArray* array, int association, std::string& error);
+  void SetGradients(const float* gradients) { this->Volume.gradients = gradients; } // borrowed; until the next Set()
   const stratus_volume& GetVolume() const { return this->Volume; }
   // The offset from VTK's cropping planes to the core's: crop_bounds = planes + offset. VTK's planes ignore the image's direction.
   const double* GetCropOffset() const { return this->CropOffset; }

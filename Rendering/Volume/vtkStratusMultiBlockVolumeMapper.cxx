@@ -27,6 +27,7 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <new>
 #include <string>
@@ -177,20 +178,19 @@ std::vector<Block> vtkStratusMultiBlockVolumeMapper::Internals::FindRefined(
   const bool solid = this->Settings->GetRenderMode() == vtkStratusVolumeMapper::FIRST_HIT_MODE;
   const bool nearest = solid || property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION;
   const bool composite = !solid && mapper->GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND;
-  const bool shade = property->GetShade() && (composite || mapper->GetBlendMode() == vtkVolumeMapper::ISOSURFACE_BLEND);
-  const bool lit = solid ? this->Settings->GetNormals() == vtkStratusVolumeMapper::GRADIENT_NORMALS : shade;
-  if (lit || (composite && (property->HasGradientOpacity() || property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D))) {
-    error = std::string(lit                      ? "light by gradients"
-                : property->HasGradientOpacity() ? "gradient opacity"
-                                                 : "a function of two variables") +
-      " is not drawn of AMR: each grid has gradients in its own spacing, so that borders of levels would show";
-    return {};
+  bool by_gradient = solid && this->Settings->GetNormals() == vtkStratusVolumeMapper::GRADIENT_NORMALS;
+  for (int c = 0; c < STRATUS_COMPONENTS_MAX; ++c) {
+    by_gradient = by_gradient || (composite && property->HasGradientOpacity(c)) ||
+      (property->GetShade(c) && (composite || (!solid && mapper->GetBlendMode() == vtkVolumeMapper::ISOSURFACE_BLEND)));
   }
+  by_gradient =
+    by_gradient || (composite && (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D || property->HasLabelGradientOpacity()));
   const std::string wanted = std::to_string(mapper->GetScalarMode()) + " " + std::to_string(mapper->GetArrayAccessMode()) + " " +
     std::to_string(mapper->GetArrayId()) + " " + std::to_string(nearest) + " " + std::to_string(mapper->GetPiece()) + "/" +
     std::to_string(mapper->GetNumberOfPieces()) + " " + (mapper->GetArrayName() ? mapper->GetArrayName() : "");
   const vtkMTimeType time = vtkStratusAMR::GetTime(input);
-  if (input != this->RefinedOf || time != this->RefinedTime || wanted != this->RefinedFor) {
+  const bool same = input == this->RefinedOf && time == this->RefinedTime && wanted == this->RefinedFor;
+  if (!same || (by_gradient && !this->Refined.HasGradients())) {
     const auto find = [mapper](vtkDataSet* box, bool& cells) {
       int on_cells = 0;
       vtkDataArray* array = vtkAbstractMapper::GetScalars(
@@ -199,7 +199,7 @@ std::vector<Block> vtkStratusMultiBlockVolumeMapper::Internals::FindRefined(
       return array;
     };
     this->RefinedError.clear();
-    this->Refined.Set(input, find, nearest, this->RefinedError, mapper->GetPiece(), mapper->GetNumberOfPieces());
+    this->Refined.Set(input, find, { nearest, by_gradient, mapper->GetPiece(), mapper->GetNumberOfPieces() }, this->RefinedError);
     this->RefinedOf = input;
     this->RefinedTime = time;
     this->RefinedFor = wanted;
@@ -256,6 +256,8 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
       this->Mappers[i] = vtkSmartPointer<vtkStratusVolumeMapper>::New();
     }
     this->Configure(from, this->Mappers[i]);
+    this->Mappers[i]->Internal->Gradients = this->IsRefined ? vtkStratusAMR::GetGradients(blocks[i].Grid) : nullptr;
+    this->Mappers[i]->Internal->GradientLength = this->IsRefined ? this->Refined.GetSpacing() : 0.0;
     if (this->IsRefined) { // grids made here, which have the one array
       this->Mappers[i]->SetScalarMode(VTK_SCALAR_MODE_DEFAULT);
       this->Mappers[i]->SetArrayAccessMode(VTK_GET_ARRAY_BY_NAME);
@@ -336,11 +338,18 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
 bool vtkStratusMultiBlockVolumeMapper::Internals::Describe(vtkRenderer* renderer, vtkVolume* volume, std::string& error)
 {
   const size_t count = this->Mappers.size();
+  double ranges[4] = { HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL }; // of all blocks
+  for (size_t i = 0; i<count&& this->Transfer2DRanges[0]> this->Transfer2DRanges[1]; ++i) {
+    this->Mappers[i]->Internal->AddTransfer2DRanges(volume->GetProperty(), ranges);
+  }
   this->Options.resize(count);
   this->Inputs.assign(count, stratus_ray_cast_input());
   this->Scene.Boxes.clear();
   for (size_t i = 0; i < count; ++i) {
     vtkStratusVolumeMapper::Internals& block = *this->Mappers[i]->Internal;
+    if (ranges[0] <= ranges[1]) {
+      std::copy_n(ranges, 4, block.Transfer2DRanges);
+    }
     if (!block.Describe(renderer, volume, this->Options[i], error)) {
       error = "block " + std::to_string(i) + ": " + error;
       return false;

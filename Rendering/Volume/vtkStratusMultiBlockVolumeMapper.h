@@ -16,8 +16,11 @@
  * side. Nearest interpolation, and first hits, show each cell's own value. The mapper makes adjacent grids that hold this field exactly:
  * the finer cells of a place and, around them, the coarser ones at their own spacing. These grids are its blocks. Vectors are interpolated
  * by components before their magnitude is computed. Levels must nest: a box covers whole cells of the next coarser level, which has boxes
- * there. Light by gradients, gradient opacity, functions of two variables and nearest interpolation of point values are refused by an
- * error, and so is vtkNonOverlappingAMR.
+ * there. Nearest interpolation of point values is refused by an error, and so is vtkNonOverlappingAMR.
+ *
+ * Gradients in AMR are differences of this field over the width of each level's cells, about the centres of all its cells, and between
+ * these as values are. So light has no seams between levels. Magnitudes are in values per mean spacing of the coarsest level. The grids of
+ * lit pictures keep their gradients, and take four times the memory.
  *
  * Set the members of vtkVolumeMapper (scalars, blend mode, cropping, clipping planes) at this mapper, and all other settings at
  * GetSettings(). Both hold for all blocks. The blocks' frames are blended as floats, so that their borders do not show. All blend modes
@@ -66,7 +69,7 @@ public:
 
   /**
    * Set the ranges of a two-dimensional function's columns and rows, if this input is a part of larger data: first and last value, and
-   * first and last value of the second variable. If first > last (default), each block's own data set the range.
+   * first and last value of the second variable. If first > last (default), the data of all blocks set the range.
    */
   void SetTransfer2DRanges(const double ranges[4]);
 

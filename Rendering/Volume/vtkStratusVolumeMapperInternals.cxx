@@ -259,12 +259,16 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
   const int component = this->GetVectorComponent(array);
   const bool magnitude = mapper->VectorMode == MAGNITUDE && array->GetNumberOfComponents() > 1;
   this->Vectors.Sweep();
+  const float* gradients = this->FindGradients(array, component, magnitude);
   array = magnitude ? this->Vectors.Get(array, vtkStratusVectors::Magnitude, image->GetMTime()) : array;
   if (HasTransfer2D(prop->GetProperty())) {
-    return this->PrepareTransfer2D(prop, image, array, cells, component, error);
+    return this->PrepareTransfer2D(prop, image, array, cells, component, gradients, error);
   }
-  return this->Image.Set(image, array, cells, prop->GetMatrix(), error, STRATUS_COMPONENTS_MAX, component) &&
-    this->SetTransfers(prop->GetProperty(), error);
+  if (!this->Image.Set(image, array, cells, prop->GetMatrix(), error, STRATUS_COMPONENTS_MAX, component)) {
+    return false;
+  }
+  this->Image.SetGradients(gradients);
+  return this->SetTransfers(prop->GetProperty(), error);
 }
 
 vtkDataArray* vtkStratusVolumeMapper::Internals::FindArray(vtkDataSet* image, bool& cells, std::string& error) const
@@ -357,6 +361,7 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
   options.sampling.termination = mapper->Termination;
   options.sampling.tolerance = mapper->ImageErrorTolerance;
   options.optics.gradient_distance = this->GetGradientOpacityDistance();
+  options.optics.gradient_length = this->GradientLength;
   options.optics.mean_components = mapper->ComponentMixing == MEAN_COMPONENTS ? 1 : 0;
   options.optics.dependent = property->GetIndependentComponents() ? 0 : 1;
   options.skipping.block_size = mapper->BlockSize;

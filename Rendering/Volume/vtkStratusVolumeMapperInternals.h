@@ -44,6 +44,8 @@ public:
   bool Describe(vtkRenderer* renderer, vtkVolume* prop, stratus_ray_cast_options& options, std::string& error);
   // Offers the input's tree to a caster of the context. A damaged tree is reported once, and the caster builds its own.
   void OfferTree(stratus_ray_caster* caster, stratus_context* context);
+  // Extends the ranges of a function's columns and rows by the data's ranges, if the property has a function of two variables.
+  void AddTransfer2DRanges(vtkVolumeProperty* property, double ranges[4]);
   vtkImageData* GetLastImage();
   vtkTypeUInt64 GetFunctionBuilds() const;
   bool IsSupported(vtkVolumeProperty* property) const; // whether a picture by this property may be drawn, whatever the data
@@ -74,6 +76,9 @@ public:
   double UsedCoarseness = 1.0;
   vtkSmartPointer<vtkDataObject> PickedOf;           // composite data whose block the input is; nullptr: the input is all
   double Transfer2DRanges[4] = { 0., -1., 0., -1. }; // of a function's columns and rows in place of the data's; empty: of the data
+  // Of the array, as stratus_volume has them, and the length that their magnitudes are of; nullptr and 0: differences of the values.
+  const float* Gradients = nullptr;
+  double GradientLength = 0.0;
 
 private:
   // How coarsely the picture is drawn: the factor of the sample distance, and the pixels between rays.
@@ -107,7 +112,9 @@ private:
   bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
   // Functions of two variables (vtkStratusVolumeMapperLookup.cxx).
   bool HasTransfer2D(vtkVolumeProperty* property) const; // whether the function is drawn
-  bool PrepareTransfer2D(vtkVolume* prop, vtkDataSet* image, vtkDataArray* array, bool cells, int component, std::string& error);
+  bool PrepareTransfer2D(
+    vtkVolume* prop, vtkDataSet* image, vtkDataArray* array, bool cells, int component, const float* gradients, std::string& error);
+  const float* FindGradients(vtkDataArray* array, int component, bool magnitude);
   vtkDataArray* FindSecond(vtkDataSet* image, bool cells, std::string& error) const;
   vtkDataArray* Pair(vtkDataArray* array, int component, vtkDataArray* second);
   bool SetTransfer2D(vtkVolumeProperty* property, vtkDataArray* array, int component, vtkDataArray* second, std::string& error);
@@ -136,6 +143,9 @@ private:
   vtkSmartPointer<vtkImageData> LastImage;
   std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{}; // of the picture's components
   vtkStratusVectors Vectors;
+  std::vector<float> MagnitudeGradients; // of GradientsOf, as of GradientsTime
+  const float* GradientsOf = nullptr;
+  vtkMTimeType GradientsTime = 0;
   vtkStratusSheet Sheet, MaskSheet;                       // of an input, and of a mask, of one layer of points
   stratus_transfer_2d Transfer2D = stratus_transfer_2d(); // of this picture, if the property has one
   vtkSmartPointer<vtkDataArray> PairOf[2], Pairs;         // the arrays of two variables, and both in one as of PairTime

@@ -103,7 +103,7 @@ bool vtkStratusVolumeMapper::Internals::SetTransfer2D(
 
 // Sets image, functions and function of two variables by an array, of which `component` is drawn (-1: it has one).
 bool vtkStratusVolumeMapper::Internals::PrepareTransfer2D(
-  vtkVolume* prop, vtkDataSet* image, vtkDataArray* array, bool cells, int component, std::string& error)
+  vtkVolume* prop, vtkDataSet* image, vtkDataArray* array, bool cells, int component, const float* gradients, std::string& error)
 {
   const int drawn = std::max(component, 0), components = array->GetNumberOfComponents();
   vtkDataArray* second = nullptr;
@@ -119,6 +119,63 @@ bool vtkStratusVolumeMapper::Internals::PrepareTransfer2D(
     }
   }
   this->Functions.assign(1, stratus_transfer_default()); // not read
-  return this->SetTransfer2D(prop->GetProperty(), array, drawn, second, error) &&
-    this->Image.Set(image, second ? this->Pair(array, drawn, second) : array, cells, prop->GetMatrix(), error, 2, second ? -1 : component);
+  if (!this->SetTransfer2D(prop->GetProperty(), array, drawn, second, error) ||
+    !this->Image.Set(
+      image, second ? this->Pair(array, drawn, second) : array, cells, prop->GetMatrix(), error, 2, second ? -1 : component)) {
+    return false;
+  }
+  this->Image.SetGradients(second ? nullptr : gradients);
+  return true;
+}
+
+void vtkStratusVolumeMapper::Internals::AddTransfer2DRanges(vtkVolumeProperty* property, double ranges[4])
+{
+  vtkDataSet* image = vtkStratusAsImage(this->Mapper->GetDataObjectInput());
+  bool cells = false;
+  std::string unused;
+  vtkDataArray* array = image && this->HasTransfer2D(property) ? this->FindArray(image, cells, unused) : nullptr;
+  if (!array) {
+    return;
+  }
+  const bool magnitude = this->Mapper->VectorMode == vtkStratusVolumeMapper::MAGNITUDE && array->GetNumberOfComponents() > 1;
+  const int component = magnitude ? 0 : std::max(this->GetVectorComponent(array), 0);
+  array = magnitude ? this->Vectors.Get(array, vtkStratusVectors::Magnitude, image->GetMTime()) : array;
+  vtkDataArray* second = this->Mapper->Transfer2DYAxisArray ? this->FindSecond(image, cells, unused) : nullptr;
+  double own[4] = { HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL };
+  if (component < array->GetNumberOfComponents()) {
+    array->GetFiniteRange(own, component);
+  }
+  if (second) {
+    second->GetFiniteRange(own + 2, 0);
+  }
+  for (int i = 0; i < 4; ++i) {
+    ranges[i] = i % 2 ? std::max(ranges[i], own[i]) : std::min(ranges[i], own[i]);
+  }
+}
+
+// ---------------------------------------------------------------- gradients of the data's own
+
+// Returns the gradients of an array's drawn numbers: of all its components, of one, or of the magnitude |v|, which has the sum of
+// v grad v / |v| over its components.
+const float* vtkStratusVolumeMapper::Internals::FindGradients(vtkDataArray* array, int component, bool magnitude)
+{
+  const vtkIdType count = array->GetNumberOfTuples(), components = array->GetNumberOfComponents();
+  if (!this->Gradients || !magnitude) {
+    return this->Gradients ? this->Gradients + 3 * std::max(component, 0) * count : nullptr;
+  }
+  if (this->GradientsOf != this->Gradients || this->GradientsTime != array->GetMTime()) {
+    this->MagnitudeGradients.resize(static_cast<size_t>(3 * count));
+    for (vtkIdType i = 0; i < 3 * count; ++i) {
+      double sum = 0.0, square = 0.0;
+      for (vtkIdType c = 0; c < components; ++c) {
+        const double v = array->GetComponent(i % count, static_cast<int>(c));
+        sum += v * static_cast<double>(this->Gradients[3 * c * count + i]);
+        square += v * v;
+      }
+      this->MagnitudeGradients[static_cast<size_t>(i)] = square > 0.0 ? static_cast<float>(sum / std::sqrt(square)) : 0.0f;
+    }
+    this->GradientsOf = this->Gradients;
+    this->GradientsTime = array->GetMTime();
+  }
+  return this->MagnitudeGradients.data();
 }

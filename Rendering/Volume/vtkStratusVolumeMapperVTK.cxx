@@ -131,8 +131,9 @@ double Spacing(const stratus_volume& volume, int axis)
   return at ? (at[last] - at[0]) / static_cast<double>(last) : volume.spacing[axis];
 }
 
-// Half of the mean spacing of the world, by which vtkSmartVolumeMapper samples where it chooses itself.
-double HalfMeanSpacing(const stratus_volume& volume)
+// Half of the mean spacing of the world, by which vtkSmartVolumeMapper samples where it chooses itself. length: > 0: a spacing of the data
+// that counts in place of the grid's.
+double HalfMeanSpacing(const stratus_volume& volume, double length)
 {
   double sum = 0.0;
   for (int a = 0; a < 3; ++a) {
@@ -140,7 +141,7 @@ double HalfMeanSpacing(const stratus_volume& volume)
     for (int row = 0; row < 3; ++row) {
       double step = 0.0;
       for (int b = 0; b < 3; ++b) {
-        step += volume.matrix[4 * row + b] * volume.direction[3 * b + a] * Spacing(volume, a);
+        step += volume.matrix[4 * row + b] * volume.direction[3 * b + a] * (length > 0.0 ? length : Spacing(volume, a));
       }
       square += step * step;
     }
@@ -160,7 +161,7 @@ double Difference(double opacity, double factor, double units)
 double vtkStratusVolumeMapper::Internals::GetGradientOpacityDistance() const
 {
   const double distance = this->Mapper->GradientOpacityDistance;
-  return distance < 0.0 ? HalfMeanSpacing(this->Image.GetVolume()) : distance;
+  return distance < 0.0 ? HalfMeanSpacing(this->Image.GetVolume(), this->GradientLength) : distance;
 }
 
 // Says once where a picture will differ by much from what VTK's mappers would show, because opacity is high where gradient opacity is low.
@@ -171,7 +172,7 @@ void vtkStratusVolumeMapper::Internals::WarnOfGradientOpacity(vtkVolumeProperty*
   }
   this->WarnedOf = property->GetMTime();
   for (const stratus_transfer& function : this->Functions) {
-    const double units = HalfMeanSpacing(this->Image.GetVolume()) / function.unit_distance;
+    const double units = HalfMeanSpacing(this->Image.GetVolume(), this->GradientLength) / function.unit_distance;
     double opacity = 0.0, worst = 0.0, factor = 1.0; // the difference grows with the opacity
     for (size_t o = 0; o < function.opacity_count; ++o) {
       opacity = std::max(opacity, function.opacity[2 * o + 1]);

@@ -2,7 +2,7 @@
  * Volumes that are larger than the device's largest allocation, which the test sets to a small number. Pictures from pages equal the whole
  * volume's to the bit, in every rule and mode. Pages are sent once, and again only if more blocks show. The host draws volumes that do not
  * fit, and the report says why. With the argument `--tiny` the test draws a few rays: enough for a simulator to see the kernels. */
-#include "picture_case.h"
+#include "gradients.h"
 #include "structures.h"
 
 #include "device_pair.h"
@@ -17,6 +17,7 @@
 
 static picture whole, paged;
 static uint8_t labels[VALUES];
+static float* own_gradients; /* of the last case; NULL: none */
 
 /* One picture of the pages' test. */
 typedef struct page_case {
@@ -30,6 +31,7 @@ typedef struct page_case {
   int dense;   /* 1: most blocks show, so that the pages fill several slabs */
   int divisor; /* the largest allocation is the volume's bytes over this */
   int shade, components, centered, ghosts, label_count;
+  int gradients; /* 1: the volume has its own */
 } page_case;
 
 /* clang-format off */
@@ -52,6 +54,9 @@ static const page_case cases[] = {
   { "cells, nearest", STRATUS_FLOAT32, COMPOSITE, CELLS, NEAREST, DISTANCE, 0, .divisor = 3 },
   { "lit", STRATUS_INT8, COMPOSITE, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 2, .shade = 1 },
   { "lit, pre-integrated, nearest", STRATUS_UINT32, COMPOSITE, PREINTEGRATED, NEAREST, DISTANCE, 1.1, .divisor = 3, .shade = 1 },
+  { "lit by gradients of its own", STRATUS_FLOAT32, COMPOSITE, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 1, .shade = 1, .gradients = 1 },
+  { "two components, lit by gradients of their own", STRATUS_FLOAT32, COMPOSITE, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 1, .shade = 1,
+    .components = 2, .gradients = 1 },
   { "two components", STRATUS_UINT8, COMPOSITE, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 2, .shade = 1, .components = 2 },
   { "labels", STRATUS_UINT16, COMPOSITE, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 1, .label_count = 1 },
   { "maximum", STRATUS_UINT8, STRATUS_MODE_MAXIMUM, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 2 },
@@ -99,6 +104,8 @@ static void make_case(const page_case* p, uint32_t seed, picture_case* c)
     c->volume.components = p->components;
     c->volume.value_stride = p->components;
   }
+  free(own_gradients);
+  own_gradients = p->gradients ? gradients_set(&c->volume, p->components < 2) : NULL;
   if (p->ghosts) {
     c->cell_ghosts = calloc(VALUES, 1);
     for (int i = VALUES / 2; i < VALUES / 2 + 20000; i += 7) {

@@ -2,6 +2,7 @@
  * Lit samples, gradient opacity and components on the OpenCL device against the host's: one source, so counters agree exactly and pixels to
  * a few units in the last place of the whole picture's colours. */
 #include "picture_case.h"
+#include "gradients.h"
 #include "testing.h"
 
 #include "device_state.h"
@@ -47,7 +48,7 @@ static void compare(
 
 static void device_and_host_show_the_same(void** state)
 {
-  static const double steep[] = { 0.0, 0.1, 20.0, 1.0 };
+  static const double steep[] = { 0.0, 0.1, 20.0, 1.0 }, steep_floats[] = { 0.0, 0.1, 0.5, 1.0 };
   stratus_context* host = case_context("host", 2);
   stratus_context* device = case_context("0", 2);
   assert_true(stratus_context_on_device(device));
@@ -63,6 +64,21 @@ static void device_and_host_show_the_same(void** state)
   compare(host, device, &c, &c.transfer, "lit, gradient opacity, pre-integrated");
   c.options.optics.gradient_distance = 1.5;
   compare(host, device, &c, &c.transfer, "lit, gradient opacity of opacities");
+  case_destroy(&c);
+
+  case_create(host, &c, STRATUS_FLOAT32, 26, 24, 28, 5);
+  float* memory = gradients_set(&c.volume, true);
+  c.transfer.gradient = steep_floats;
+  c.transfer.gradient_count = 2;
+  c.options.light.shade = 1;
+  compare(host, device, &c, &c.transfer, "gradients in place");
+  c.volume.values = c.values;
+  compare(host, device, &c, &c.transfer, "gradients apart");
+  c.options.mode = STRATUS_MODE_ISOSURFACE;
+  c.options.optics.contour_count = 1;
+  c.options.optics.contours[0] = case_type_values[STRATUS_FLOAT32].base + 0.2 * case_type_values[STRATUS_FLOAT32].scale;
+  compare(host, device, &c, &c.transfer, "gradients of an isosurface");
+  free(memory);
   case_destroy(&c);
 
   case_create(host, &c, STRATUS_UINT8, 26, 24, 28, 6); /* every second value the other component */

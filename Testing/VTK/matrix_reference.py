@@ -161,6 +161,8 @@ def field_of(grid, features):
     half = fields[0].spacing / fields[0].scales[-1] / 2
     field = Lattice([o + h * numpy.arange(n) for o, h, n in zip(fields[0].origin, half, values.shape[2::-1])], values)
     # Ranges are of the cells that are given, and gradient magnitudes in values per mean spacing of the coarsest level.
+    field.spacing = fields[0].spacing.mean()
+    field.slopes = numpy.stack([f.gradient() for f in fields], -1).transpose(2, 1, 0, 3, 4)
     field.finest = finest(fields)
     shown = [numpy.concatenate([v[s] for v, s in zip(f.values, f.shown)]) for f in fields]
     field.range = numpy.array([s.min() for s in shown]), numpy.array([s.max() for s in shown])

@@ -86,9 +86,30 @@ class Refined:
             values[level][covered] = (sum(parts) / len(parts))[covered]
         return values
 
-    def field(self):
-        """The field at the corners of half the finest cells."""
-        values = self.finer() if self.cells else self.values
+    def gradient(self):
+        """The field's derivatives along the axes at the corners of half the finest cells: differences over the width of a cell of each level, about
+        the centres of all its cells (at its points), and between these as values are."""
+        field, unit, result = self.field(), self.spacing / self.scales[-1] / 2, []
+        for axis in range(3):
+            slopes = []
+            for scale in self.scales:
+                cell = 2 * self.scales[-1] // scale
+                places = [numpy.arange(cell // 2 if self.cells else 0, n, cell) for n in field.shape]
+                sides, here = [], field[numpy.ix_(*places)]
+                for way in -cell, cell:
+                    there = (places[axis] + way >= 0) & (places[axis] + way < field.shape[axis])
+                    moved = [numpy.where(there, p + way, p) if a == axis else p for a, p in enumerate(places)]
+                    shape = [-1 if a == axis else 1 for a in range(3)]
+                    sides.append(numpy.where(there.reshape(shape) & numpy.isfinite(field[numpy.ix_(*moved)]), field[numpy.ix_(*moved)], numpy.nan))
+                both, one = (sides[1] - sides[0]) / (2 * cell), numpy.where(numpy.isfinite(sides[0]), here - sides[0], sides[1] - here) / cell
+                slopes.append(numpy.nan_to_num(numpy.where(numpy.isfinite(both), both, one)) / unit[axis])
+            result.append(self.field(slopes))
+        return numpy.stack(result, -1)
+
+    def field(self, values=None):
+        """The field at the corners of half the finest cells; of other values at the cells (points) of each level, if there are any."""
+        if values is None:
+            values = self.finer() if self.cells else self.values
         n = self.counts * self.scales[-1] * 2 + 1
         result, done = numpy.full(n, numpy.nan), numpy.zeros(n, bool)
         for level, scale in enumerate(self.scales):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""AMR: the mapper's grids hold the field that brute force finds, side by side; the picture equals the picture of one fine grid of this field, and is near the
-function's own; unsupported data is refused."""
+"""AMR: the mapper's grids hold the field and the gradients that brute force finds, side by side; the picture equals the picture of one fine grid of this field,
+and is near the function's own; light has no seams; unsupported data is refused."""
 import os
 import sys
 
@@ -89,18 +89,30 @@ def grids_of(scene):
     return [scene.mapper.GetBlockMapper(i).GetInputDataObject(0, 0) for i in range(scene.mapper.GetNumberOfBlocks())]
 
 
+def gradients_of(grid):
+    """The derivatives along each axis, behind the values in one array."""
+    array = vtk_to_numpy(grid.GetFieldData().GetArray("StratusGradients"))
+    return [part.reshape(grid.GetDimensions(), order="F") for part in numpy.split(array[-3 * grid.GetNumberOfPoints() :], 3)]
+
+
 def judge_field(ratios, cells, counts=(16, 12, 10), boxes=None):
     """Each drawn value equals brute force's; the grids fill the space once, and hold kinks only at their planes."""
     data = Refined(boxes or uneven(ratios), ratios, counts, SPACING, cells, origin=ORIGIN)
     meant = data.field()
     check(numpy.isfinite(meant).all(), "brute force leaves no hole")
     unit = data.spacing / data.scales[-1] / 2
+    slopes = data.gradient()
     volume, levels = 0.0, set()
-    for grid in grids_of(Scene(blocks(), data.data(vtk))):
+    scene = Scene(blocks(), data.data(vtk))
+    scene.property.ShadeOn()
+    for grid in grids_of(scene):
         places = [numpy.rint((axis - o) / h).astype(int) for axis, o, h in zip(planes(grid), data.origin, unit)]
         drawn = vtk_to_numpy(grid.GetPointData().GetScalars()).reshape(grid.GetDimensions(), order="F")
         error = abs(drawn - meant[numpy.ix_(*places)]).max()  # floats
         check(error < 1e-7, f"ratios {ratios}, cells {cells}: values differ by {error}")
+        for axis, own in enumerate(gradients_of(grid)):
+            error = abs(own - slopes[numpy.ix_(*places)][..., axis]).max()
+            check(error < 1e-5, f"ratios {ratios}, cells {cells}: derivatives along {axis} differ by {error}")
         fine = drawn.astype(float)
         for axis, at in enumerate(places):  # the grid's own interpolation
             fine = along(fine, at, axis)
@@ -167,6 +179,44 @@ def constant():
     check(filled == finest.size, "nearest: the grids fill the space")
 
 
+def vectors():
+    """The magnitude of vectors of one direction is lit as the scalar is that they are multiples of, and so is one component."""
+    pictures = []
+    for parts, mode in ((1.0,), -1), ((0.6, 0.8), 0), ((0.0, 1.0), 1):
+        amr = Refined(uneven()).data(vtk)
+        for level in range(3):
+            for box in range(2):
+                data = amr.GetDataSet(level, box).GetCellData()
+                array = numpy_to_vtk(numpy.outer(vtk_to_numpy(data.GetScalars()), parts), deep=True)
+                array.SetName("values")
+                data.SetScalars(array)
+        scene = Scene(blocks(), amr)
+        scene.property.ShadeOn()
+        scene.mapper.GetSettings().SetVectorMode(mode)
+        scene.mapper.GetSettings().SetVectorComponent(1)
+        pictures.append(scene.picture(20).copy())
+        check(not scene.errors, f"no complaint: {scene.errors}")
+    for name, other in zip(("magnitude", "component"), pictures[1:]):
+        difference = abs(pictures[0] - other).max()
+        check(difference < 1e-3 and other.max() > 0.3, f"{name}: lit otherwise than the scalar, by {difference}")
+
+
+def cuts():
+    """First hits behind a plane on faces of cells show the cells behind it, as behind a plane a hair farther."""
+    pictures = []
+    for x in 8.0, 8.0 + 1e-7:
+        scene = Scene(blocks(), Refined(uneven()).data(vtk))
+        scene.mapper.GetSettings().SetRenderModeToFirstHit()
+        plane = vtk.vtkPlane()
+        plane.SetOrigin(x, 0, 0)
+        plane.SetNormal(1, 0, 0)
+        scene.mapper.AddClippingPlane(plane)
+        pictures.append([scene.picture(azimuth, 20).copy() for azimuth in (-60, 60, -100, 100)])
+        check(not scene.errors, f"no complaint: {scene.errors}")
+    differing = [int((abs(a - b).max(-1) > 1e-3).sum()) for a, b in zip(*pictures)]
+    check(min(a.any(-1).sum() for a in pictures[0]) > 1000 and max(differing) < 5, f"pixels that show cells beyond the plane: {differing}")
+
+
 def image_of(values, halves):
     image = vtk.vtkImageData()
     image.SetDimensions(*values.shape)
@@ -197,6 +247,60 @@ def pictures():
         rms = {name: (e**2).mean() ** 0.5 for name, e in error.items()}
         check(rms["function"] < 2 and rms["of points"] < 2, f"{view}: near the function's picture")
         check(rms["function"] < 0.15 * rms["only level 0"], f"{view}: finer levels count")
+
+
+def seams():
+    """Light across borders of levels: grids that meet have the same gradients there, wherever between their values, and a smooth lit surface shows no border.
+    The same grids with gradients of their own differences show them."""
+    wave = lambda x, y, z: z - 0.12 * numpy.cos(2.6 * x) - 0.1 * numpy.sin(2.4 * y)
+    spacing = numpy.array(SPACING) * (16 / 60, 12 / 40, 10 / 40)
+    data = Refined([(0, (0, 0, 0), (60, 40, 40)), (1, (30, 4, 4), (120, 76, 76))], (2,), (60, 40, 40), spacing, origin=ORIGIN, function=wave)
+    scene = Scene(blocks(), data.data(vtk))
+    scene.mapper.SetBlendModeToIsoSurface()
+    scene.property.ShadeOn()
+    scene.property.SetAmbient(0)
+    scene.property.SetDiffuse(1)
+    scene.property.SetSpecular(0)
+    scene.property.GetIsoSurfaceValues().SetValue(0, 5.0)
+    white, solid = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
+    white.AddRGBPoint(0, 1, 1, 1)
+    solid.AddPoint(0, 1)
+    scene.property.SetColor(white)
+    scene.property.SetScalarOpacity(solid)
+    grids, worst, met = grids_of(scene), 0.0, 0
+    parts = []
+    for grid in grids:
+        places = [numpy.rint((axis - o) / (h / 4)).astype(int) for axis, o, h in zip(planes(grid), ORIGIN, spacing)]
+        fine = []
+        for own in gradients_of(grid):
+            for axis, at in enumerate(places):
+                own = along(own, at, axis)
+            fine.append(own)
+        parts.append(([(at[0], at[-1]) for at in places], numpy.stack(fine, -1)))
+    for n, (box, fine) in enumerate(parts):
+        for other, theirs in parts[:n]:
+            shared = [(max(a[0], b[0]), min(a[1], b[1])) for a, b in zip(box, other)]
+            if all(lo <= hi for lo, hi in shared):
+                cuts = [tuple(slice(lo - b[0], hi + 1 - b[0]) for (lo, hi), b in zip(shared, which)) for which in (box, other)]
+                worst = max(worst, abs(fine[cuts[0]] - theirs[cuts[1]]).max())
+                met += 1
+    check(met > 3 and worst < 1e-6, f"gradients of {met} pairs of grids that meet differ by {worst}")
+    plain = vtk.vtkMultiBlockDataSet()
+    for n, grid in enumerate(grids):
+        copy = grid.NewInstance()
+        copy.ShallowCopy(grid)
+        copy.GetFieldData().Initialize()
+        plain.SetBlock(n, copy)
+    apart = Scene(blocks(), plain)
+    apart.mapper.SetBlendModeToIsoSurface()
+    apart.volume.SetProperty(scene.property)
+    steps = []
+    for one in scene, apart:
+        picture = one.picture(0, 40)[:, 0].reshape(180, 220)
+        steps.append(255 * abs(numpy.diff(picture[60:120, 45:175], 2, axis=1)).max())  # across the border that is seen from above
+    print(f"lit surface: second differences of pixels at most {steps[0]:.2f} of 255; with the grids' own gradients {steps[1]:.2f}")
+    check(not scene.errors, f"no complaint: {scene.errors}")
+    check(steps[0] < 0.5 * steps[1], f"seams: {steps}")
 
 
 def refusals():
@@ -230,14 +334,6 @@ def refusals():
     refuses("its spacing is 0.4", of(uneven(), other))
     refuses("values for", of(uneven(), shorter))
     refuses("nearest interpolation of AMR's values of points", Scene(blocks(), Refined(uneven(), cells=False).data(vtk), nearest=True))
-    shaded, faded = (Scene(blocks(), Refined(uneven()).data(vtk)) for _ in range(2))
-    shaded.property.ShadeOn()
-    refuses("light by gradients is not drawn of AMR", shaded)
-    fade = vtk.vtkPiecewiseFunction()
-    fade.AddPoint(0, 0)
-    fade.AddPoint(1, 1)
-    faded.property.SetGradientOpacity(fade)
-    refuses("gradient opacity is not drawn of AMR", faded)
     apart = vtk.vtkNonOverlappingAMR()
     apart.Initialize(1, [1])
     apart.SetDataSet(0, 0, Refined(base).data(vtk).GetDataSet(0, 0))
@@ -283,6 +379,6 @@ def follows():
     check(scene.errors == [], f"empty: {scene.errors}")
 
 
-for test in fields, pieces, constant, pictures, refusals, follows:
+for test in fields, pieces, constant, vectors, cuts, pictures, seams, refusals, follows:
     test()
 done()

@@ -7,7 +7,9 @@
  *
  * Where spacing changes, a corner takes the slope of the parabola through it and its two neighbours: the mean of the slopes on both sides,
  * each weighted by the length of the other side. It is of second order on any spacing, as the central difference is on equal spacing,
- * whereas the difference of the neighbours over their distance is of first order only. */
+ * whereas the difference of the neighbours over their distance is of first order only.
+ *
+ * A volume may have gradients at its values instead, which are interpolated as values are. */
 #ifndef STRATUS_GRADIENT_H
 #define STRATUS_GRADIENT_H
 /* Interpolates, at t, the central differences at the neighbouring values `from` and `to`. lower, upper: lanes where `before`, or `after`,
@@ -36,6 +38,18 @@ INLINE vfloat gradient_stretched(CONSTANT stratus_ray_cast_arguments* a, GLOBAL 
   return v_lerp(left, right, t);
 }
 
+/* The derivatives along an axis that the volume has at its values. */
+INLINE value_source derivatives(CONSTANT stratus_ray_cast_arguments* a, value_source values, int axis)
+{
+#if RAY_IN_PAGES
+  (void)a;
+  values.component += 1 + axis;
+  return values;
+#else
+  return (GLOBAL const float*)values + (size_t)(1 + axis) * (size_t)(uint)a->values.gradient_at;
+#endif
+}
+
 INLINE vfloat bilinear(const vfloat v[4], vfloat f, vfloat g) { return v_lerp(v_lerp(v[0], v[1], f), v_lerp(v[2], v[3], f), g); }
 
 /* The lanes whose positions clip planes hide. */
@@ -49,6 +63,14 @@ INLINE vmask clipped_off(CONSTANT stratus_ray_cast_arguments* a, const vfloat x[
   }
   return off;
 }
+#endif
+
+/* Whether the volume has gradients at its values, which are floats then. */
+#undef RAY_STORED
+#if STRATUS_TYPE == 8 || STRATUS_TYPE == -1
+#define RAY_STORED(a) RAY_RARE(RAY_GRADIENTS, (a)->values.gradient_at)
+#else
+#define RAY_STORED(a) 0
 #endif
 
 /* The values i and i+1 of row (j, k). At the volume's end both are the last value. */
@@ -78,6 +100,13 @@ INLINE void RAY_NAME(voxel_gradient)(
       place = v_clamp(place, 0.0f, a->values.last[axis]);
     }
     at[axis] = v_to_int(place + v_set(0.5f));
+  }
+  if (RAY_STORED(a)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const vfloat stored = RAY_NAME(fetch_nearest)(a, derivatives(a, values, axis), at[0], at[1], at[2], mask);
+      g[axis] = stored * v_set(a->values.gradient_scale[axis]);
+    }
+    return;
   }
   const vfloat here = RAY_NAME(fetch_nearest)(a, values, at[0], at[1], at[2], mask), zero = v_set(0.0f);
   for (int axis = 0; axis < 3; ++axis) {
@@ -143,6 +172,13 @@ INLINE void RAY_NAME(field_gradient)(
     upper[axis] = vi_ge(at[axis], vi_set(end - 1));
     before[axis] = vi_max(at[axis] - vi_set(1), vi_set(0));
     after[axis] = vi_min(at[axis] + vi_set(2), vi_set(end));
+  }
+  if (RAY_STORED(a)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      RAY_NAME(fetch_cell)(a, derivatives(a, values, axis), at[0], at[1], at[2], mask, v);
+      g[axis] = v_lerp(bilinear(v, t[0], t[1]), bilinear(v + 4, t[0], t[1]), t[2]) * v_set(a->values.gradient_scale[axis]);
+    }
+    return;
   }
   RAY_NAME(fetch_cell)(a, values, at[0], at[1], at[2], mask, v);
   for (int row = 0; row < 4; ++row) { /* along x, on the four edges of the cell that run along x */

@@ -27,8 +27,9 @@
 #define RAY_JUMPS 0x800      /* or that jump */
 #define RAY_GRID 0x2000      /* a grid whose spacing changes */
 #define RAY_FOLLOWS 0x4000   /* samples whose length follows the ray's way through the voxels */
+#define RAY_GRADIENTS 0x8000 /* gradients that the volume has at its values */
 #ifndef RAY_HAS
-#define RAY_HAS 0x6fff
+#define RAY_HAS 0xefff
 #endif
 /* Values in pages, which only devices know, and only where the whole volume does not fit one of their allocations. */
 #define RAY_PAGES 0x1000
@@ -118,6 +119,10 @@ typedef struct stratus_ray_values {
   int type, stride;         /* read by the generic fetch only, as the next two */
   int row_high, slice_high; /* high 32 bits of row and slice */
   int bias_low, bias_high;  /* bits of the double that wide types are relative to */
+  /* > 0: so many values behind a component's values begin the planes of its derivatives along the axes, each as many floats. Times
+   * gradient_scale they are per index. 0: gradients are differences. */
+  int gradient_at;
+  float gradient_scale[3];
   int pages_across, pages_rows, page_components; /* of the page table: pages in a row, rows in a slice; and components in a page */
 } stratus_ray_values;
 

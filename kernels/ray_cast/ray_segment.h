@@ -41,12 +41,12 @@ typedef GLOBAL const void* value_source;
 
 /* Where the values of component c are. */
 #if RAY_IN_PAGES
-INLINE value_source component_values(value_source values, int c)
+INLINE value_source component_values(CONSTANT stratus_ray_cast_arguments* a, value_source values, int c)
 {
-  values.component = c;
+  values.component = c * (RAY_RARE(RAY_GRADIENTS, a->values.gradient_at != 0) ? 4 : 1);
   return values;
 }
-#define COMPONENT_VALUES(a, values, c) component_values(values, c)
+#define COMPONENT_VALUES(a, values, c) component_values(a, values, c)
 #else
 #define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->media.component_bytes)
 #endif
