@@ -187,7 +187,7 @@ def test_modes_of_grids():
         expect(0, f"mode +{words[0]}$", "render", "stretched.vts", "-o", "out.png", *LOOK, "--mode", *words)
         seen.add(open("out.png", "rb").read())
     seen.add(picture("stretched.vts", "--crop", "1,3,0,3,0,5"))
-    seen.add(picture("stretched.vts", "--crop", "1,3,0,3,0,5", "--crop-regions", "8193"))
+    seen.add(picture("stretched.vts", "--crop", "1,3,0,3,0,5", "--crop-regions", "12288"))
     seen.add(picture("stretched.vts", "--shade"))
     if len(seen) != 12:
         fail(f"of 12 pictures in other modes, cropped and lit, {len(seen)} differ")
