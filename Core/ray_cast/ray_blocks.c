@@ -5,7 +5,6 @@
 #include "camera.h"
 #include "picture.h"
 #include "ray_caster.h"
-#include "ray_frame.h"
 #include "ray_kept.h"
 #include "vector.h"
 #include "volume.h"
@@ -25,7 +24,8 @@ typedef struct blocks {
   int overlap[2];     /* two blocks that overlap; -1: none does */
   stratus_image part; /* room for the part of the picture that a block covers */
   float* ends;        /* of its rays */
-  stratus_kept* kept; /* modes whose rays keep a number; else NULL */
+  stratus_kept* kept; /* modes whose rays keep a number, and surfaces of blocks that overlap; else NULL */
+  bool more;          /* surfaces: farther ones may be seen */
 } blocks;
 
 /* Finds the pixels that a block may cover. */
@@ -74,34 +74,6 @@ static stratus_camera camera_of(const blocks* b, const int window[4])
   return part;
 }
 
-/* Gives the transparency below which a ray of the block's picture ends. */
-static float least_transparency(const stratus_ray_cast_options* options)
-{
-  return (float)(options->sampling.termination > 0.0 ? 1.0 - options->sampling.termination
-                                                     : stratus_ray_termination(options->sampling.tolerance));
-}
-
-/* Sets where the rays of a part end: at opaque geometry, and at once where the picture is opaque already. Returns whether any ray is left,
- * and in *wanted whether any ends early. */
-static bool set_ends(const blocks* b, const int window[4], float least, bool* wanted)
-{
-  const int width = window[1] - window[0];
-  const bool may_end = isfinite(b->camera->far_k) && (b->camera->parallel || b->camera->near_k > 0.0);
-  bool any = false;
-  *wanted = b->image->opaque_depth != NULL;
-  for (int y = window[2]; y < window[3]; ++y) {
-    const size_t row = (size_t)y * (size_t)b->image->width;
-    float* ends = b->ends + (size_t)(y - window[2]) * (size_t)width;
-    for (int x = window[0]; x < window[1]; ++x) {
-      const bool opaque = !b->kept && 1.0f - b->image->rgba[4 * (row + (size_t)x) + 3] <= least;
-      *ends++ = opaque ? 0.0f : b->image->opaque_depth ? b->image->opaque_depth[row + (size_t)x] : 1.0f;
-      any = any || !opaque;
-      *wanted = *wanted || (opaque && may_end);
-    }
-  }
-  return any;
-}
-
 /* Blends the part behind what the picture has. inside: the pixels of the part that show something. */
 static void blend_behind(const blocks* b, const int window[4], const int inside[4])
 {
@@ -135,7 +107,8 @@ static stratus_status draw_block(blocks* b, int number, stratus_ray_cast_report*
   int window[4];
   bool ends = false;
   find_window(b, in->volume, window);
-  if (window[0] >= window[1] || window[2] >= window[3] || !set_ends(b, window, least_transparency(&options), &ends)) {
+  if (window[0] >= window[1] || window[2] >= window[3] ||
+    !stratus_kept_ends(b->kept, number, b->image, b->camera, window, stratus_kept_least(&options), b->ends, &ends)) {
     snprintf(report->why, sizeof report->why, "not drawn: nothing of the block can be seen");
     return STRATUS_OK;
   }
@@ -147,7 +120,8 @@ static stratus_status draw_block(blocks* b, int number, stratus_ray_cast_report*
   const stratus_camera camera = camera_of(b, window);
   if (b->kept) {
     TRY(stratus_kept_draw(b->kept, number, &camera, &options, &part, report));
-    stratus_kept_join(b->kept, number, &part, window[0], window[2], report->window);
+    TRY(stratus_kept_join(b->kept, number, &part, window[0], window[2], report->window));
+    b->more = b->more || !b->kept->pixels;
   } else {
     TRY(stratus_ray_caster_render(in->caster, in->volume, in->transfer, &camera, &options, &part, report));
     blend_behind(b, window, report->window);
@@ -155,7 +129,7 @@ static stratus_status draw_block(blocks* b, int number, stratus_ray_cast_report*
   for (int side = 0; side < 4; ++side) {
     report->window[side] += window[side / 2 * 2];
   }
-  if (number == b->overlap[0] || number == b->overlap[1]) {
+  if (!b->kept && (number == b->overlap[0] || number == b->overlap[1])) {
     const size_t length = strlen(report->why);
     snprintf(report->why + length, sizeof report->why - length, "; overlaps block %d", b->overlap[number == b->overlap[0]]);
   }
@@ -259,10 +233,9 @@ static stratus_status check(const blocks* b)
   return STRATUS_OK;
 }
 
-/* Draws the blocks in the order given, of one component if rays keep a number. */
+/* Draws the blocks in the order given, of one component if rays keep a number, of one surface of each ray if they keep surfaces. */
 static stratus_status draw_all(blocks* b, const int* order, stratus_ray_cast_report* reports)
 {
-  const bool more = b->kept && b->kept->component > 0;
   for (int i = 0; i < b->count; ++i) {
     const int number = order[i];
     stratus_ray_cast_report report = { .expected_error = NAN, .tolerance_met = 1 };
@@ -272,8 +245,8 @@ static stratus_status draw_all(blocks* b, const int* order, stratus_ray_cast_rep
       memcpy(message, b->context->message, sizeof message);
       return stratus_fail(b->context, status, "block %d: %.900s", number, message);
     }
-    if (reports && more) {
-      stratus_ray_cast_report_add(&reports[number], &report);
+    if (reports && b->kept) {
+      stratus_kept_report(b->kept, &reports[number], &report);
     } else if (reports) {
       reports[number] = report;
     }
@@ -281,15 +254,19 @@ static stratus_status draw_all(blocks* b, const int* order, stratus_ray_cast_rep
   return STRATUS_OK;
 }
 
-/* Draws one component after the other. */
+/* Draws one component after the other, and surfaces from the nearest on. */
 static stratus_status draw_kept(blocks* b, const int* order, stratus_ray_cast_report* reports)
 {
-  const int components = stratus_ray_parts(b->inputs[0].volume, b->inputs[0].options);
   stratus_status status = STRATUS_OK;
   TRY(stratus_kept_create(b->kept));
+  const int components = stratus_ray_parts(b->inputs[0].volume, b->inputs[0].options);
   for (int c = 0; c < components && status == STRATUS_OK; ++c) {
     stratus_kept_begin(b->kept, c);
-    status = draw_all(b, order, reports);
+    b->more = true;
+    for (b->kept->pass = 0; b->more && status == STRATUS_OK; ++b->kept->pass) {
+      b->more = false;
+      status = draw_all(b, order, reports);
+    }
     stratus_kept_finish(b->kept);
   }
   stratus_kept_destroy(b->kept);
@@ -314,7 +291,7 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
     return stratus_ray_caster_render(inputs[0].caster, inputs[0].volume, inputs[0].transfer, camera, inputs[0].options, image, reports);
   }
   stratus_kept kept = { .context = b.context, .mode = stratus_kept_mode(inputs), .one_field = true, .inputs = inputs, .image = image };
-  b.kept = stratus_kept_is(kept.mode) && kept.mode != STRATUS_MODE_FIRST_HIT ? &kept : NULL; /* the nearest block has the hit, as light */
+  b.kept = stratus_kept_is(kept.mode) ? &kept : NULL;
   TRY(check(&b));
   TRY(stratus_image_check(b.context, image));
   TRY(stratus_camera_check(b.context, camera, image));
@@ -323,6 +300,11 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
   TRY_CLEANUP(stratus_allocate(b.context, (size_t)count, sizeof(int), &order));
   TRY_CLEANUP(measure(&b, boxes, &eye, &slack));
   TRY_CLEANUP(stratus_block_order(b.context, boxes, count, &eye, slack, order, b.overlap));
+  if (kept.mode != STRATUS_MODE_COMPOSITE && b.overlap[0] >= 0) { /* surfaces of blocks side by side are behind one another, as light */
+    b.kept = &kept;
+    kept.layers.least = stratus_kept_least(inputs[0].options);
+    TRY_CLEANUP(check(&b));
+  }
   /* as large as the largest part may be */
   TRY_CLEANUP(b.kept ? stratus_kept_part_create(b.kept, &b.part) : stratus_image_part_create(b.context, image, &b.part));
   TRY_CLEANUP(stratus_allocate(b.context, (size_t)image->width * (size_t)image->height, sizeof(float), &ends));

@@ -98,7 +98,7 @@ struct stratus_ray_caster {
 
   stratus_ray_caster* parts[STRATUS_RAY_PARTS]; /* of independent components, see ray_caster_pictures.c; NULL until such a mode is used */
 
-  bool keeps; /* pictures hold what rays keep, not its colour (ray_kept.h) */
+  int keeps; /* > 0: pictures hold what rays keep (ray_kept.h), of surfaces this one of each ray, the nearest is 1 */
 
   stratus_first_hit* first_hit; /* first_hit_picture.h; NULL until mode FIRST_HIT is used */
 
@@ -149,11 +149,11 @@ stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
 
 /* ray_caster_pictures.c. stratus_ray_parts(): the number of components that are drawn by themselves; options NULL: the defaults.
- * stratus_ray_render_kept() draws what rays keep of one of them, in maximum, minimum, average or additive, or first hits. *drawn: the
- * caster that has the component's structures. */
+ * stratus_ray_render_kept() draws what rays keep of one of them, in all modes but composite. keeps: as in the caster. *drawn: the caster
+ * that has the component's structures. */
 int stratus_ray_parts(const stratus_volume* volume, const stratus_ray_cast_options* options);
 stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  int component, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
+  int component, int keeps, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   const stratus_ray_caster** drawn, stratus_ray_cast_report* report);
 
 /* ray_frame.c: the arrays that a frame reads and writes, and the table among them with its size. */

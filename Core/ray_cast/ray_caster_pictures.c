@@ -95,7 +95,7 @@ cleanup:
 }
 
 stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
-  int component, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
+  int component, int keeps, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   const stratus_ray_caster** drawn, stratus_ray_cast_report* report)
 {
   stratus_ray_caster* one = caster;
@@ -107,9 +107,9 @@ stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus
   if (options->mode == STRATUS_MODE_QUANTITIES) { /* structures of pictures stay as they are */
     TRY(find_part(caster, STRATUS_RAY_PARTS - 1, &one));
   }
-  one->keeps = options->mode != STRATUS_MODE_FIRST_HIT;
+  one->keeps = keeps;
   const stratus_status status = stratus_ray_render_one(one, &view, transfer + component, camera, options, image, report);
-  one->keeps = false;
+  one->keeps = 0;
   *drawn = one;
   return status;
 }

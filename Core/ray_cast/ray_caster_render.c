@@ -230,7 +230,8 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   stratus_ray_drawn drawn = { .count = 0 };
   bool empty = false;
   const bool times = !image->samples; /* an image of samples must not depend on times, because samples depend on the structure */
-  const bool tries = times && options->skipping.structure == STRATUS_STRUCTURE_AUTO;
+  const bool tries =
+    times && options->skipping.structure == STRATUS_STRUCTURE_AUTO && caster->keeps <= 1; /* later pictures have few rays */
 
   caster->where[0] = '\0';
   TRY(stratus_ray_update_tables(caster, volume, transfer, options, (size_t)image->width * (size_t)image->height, report));

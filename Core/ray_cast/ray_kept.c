@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Joins what rays keep of several grids: the best value, a sum, or the nearest hit. */
+ * Joins what rays keep of several grids: the best value, a sum, or surfaces. */
 #include "ray_kept.h"
 
 #include "picture.h"
+#include "ray_frame.h"
 #include "tetra_caster.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 bool stratus_kept_is(stratus_mode mode)
 {
-  return stratus_mode_is_extreme(mode) || stratus_mode_is_sum(mode) || mode == STRATUS_MODE_FIRST_HIT || mode == STRATUS_MODE_QUANTITIES;
+  return stratus_mode_is_extreme(mode) || stratus_mode_is_sum(mode) || mode == STRATUS_MODE_QUANTITIES;
 }
 
 stratus_mode stratus_kept_mode(const stratus_ray_cast_input* input)
@@ -28,6 +28,9 @@ stratus_mode stratus_kept_mode(const stratus_ray_cast_input* input)
 stratus_status stratus_kept_create(stratus_kept* kept)
 {
   void* memory = NULL;
+  if (!stratus_kept_is(kept->mode)) {
+    return stratus_layers_create(kept->context, kept->image, &kept->layers);
+  }
   TRY(stratus_allocate(kept->context, (size_t)kept->image->width * (size_t)kept->image->height, sizeof *kept->pixels, &memory));
   kept->pixels = memory;
   return STRATUS_OK;
@@ -35,6 +38,7 @@ stratus_status stratus_kept_create(stratus_kept* kept)
 
 void stratus_kept_destroy(stratus_kept* kept)
 {
+  stratus_layers_destroy(kept->context, &kept->layers);
   stratus_release(kept->context, kept->pixels);
   kept->pixels = NULL;
 }
@@ -52,7 +56,7 @@ stratus_status stratus_kept_part_create(const stratus_kept* kept, stratus_image*
 void stratus_kept_begin(stratus_kept* kept, int component)
 {
   const size_t pixels = (size_t)kept->image->width * (size_t)kept->image->height;
-  for (size_t i = 0; i < pixels; ++i) {
+  for (size_t i = 0; kept->pixels && i < pixels; ++i) {
     kept->pixels[i] = (stratus_kept_pixel){ .depth = INFINITY, .of = -1 };
   }
   kept->component = component;
@@ -62,12 +66,39 @@ void stratus_kept_begin(stratus_kept* kept, int component)
 
 /* ---- drawing */
 
+float stratus_kept_least(const stratus_ray_cast_options* options)
+{
+  return (float)(options->sampling.termination > 0.0 ? 1.0 - options->sampling.termination
+                                                     : stratus_ray_termination(options->sampling.tolerance));
+}
+
+bool stratus_kept_ends(const stratus_kept* kept, int n, const stratus_image* image, const stratus_camera* camera, const int window[4],
+  float least, float* ends, bool* wanted)
+{
+  const bool may_end = isfinite(camera->far_k) && (camera->parallel || camera->near_k > 0.0);
+  bool any = false;
+  *wanted = image->opaque_depth != NULL;
+  for (int y = window[2]; y < window[3]; ++y) {
+    const size_t row = (size_t)y * (size_t)image->width;
+    for (int x = window[0]; x < window[1]; ++x) {
+      const size_t pixel = row + (size_t)x;
+      const bool seen =
+        !kept ? 1.0f - image->rgba[4 * pixel + 3] > least : kept->pixels || stratus_layers_wanted(&kept->layers, pixel, n, kept->pass);
+      *ends++ = !seen ? 0.0f : image->opaque_depth ? image->opaque_depth[pixel] : 1.0f;
+      any = any || seen;
+      *wanted = *wanted || (!seen && may_end);
+    }
+  }
+  return any;
+}
+
 stratus_status stratus_kept_draw(stratus_kept* kept, int n, const stratus_camera* camera, const stratus_ray_cast_options* options,
   const stratus_image* part, stratus_ray_cast_report* report)
 {
   const stratus_ray_cast_input* in = &kept->inputs[n];
   const stratus_ray_caster* caster = NULL;
-  TRY(stratus_ray_render_kept(in->caster, in->volume, in->transfer, kept->component, camera, options, part, &caster, report));
+  TRY(
+    stratus_ray_render_kept(in->caster, in->volume, in->transfer, kept->component, kept->pass + 1, camera, options, part, &caster, report));
   if (caster->ranges) {
     const stratus_value_range* ranges = stratus_mode_is_sum(kept->mode) ? stratus_ray_shading_range_of(caster, 0) : caster->ranges;
     kept->bias = ranges->bias;
@@ -83,7 +114,7 @@ stratus_status stratus_kept_draw_mesh(
   const stratus_ray_cast_input* in = &kept->inputs[n];
   stratus_tetra_report of_mesh = { 0 };
   TRY(stratus_tetra_caster_render_kept(
-    in->tetra, in->mesh, in->transfer, kept->component, camera, in->tetra_options, part, &kept->bias, &of_mesh));
+    in->tetra, in->mesh, in->transfer, kept->component, kept->pass + 1, camera, in->tetra_options, part, &kept->bias, &of_mesh));
   report->rays = of_mesh.rays;
   report->samples = of_mesh.segments;
   report->cast_ms = of_mesh.transform_ms + of_mesh.entries_ms + of_mesh.march_ms;
@@ -155,7 +186,39 @@ static void join_quantities(const stratus_kept* kept, int n, const float rgba[4]
   pixel->of = n;
 }
 
-void stratus_kept_join(stratus_kept* kept, int n, const stratus_image* part, int x0, int y0, const int inside[4])
+void stratus_kept_report(const stratus_kept* kept, stratus_ray_cast_report* sum, const stratus_ray_cast_report* report)
+{
+  if (kept->pass > 0) { /* of the caster that has drawn the nearer surfaces: builds, blocks and rays are the same */
+    sum->samples += report->samples;
+    sum->skipped += report->skipped;
+    sum->lookups += report->lookups;
+    sum->differing_pixels += report->differing_pixels;
+    sum->upload_ms += report->upload_ms;
+    sum->cast_ms += report->cast_ms;
+  } else if (kept->component > 0) {
+    stratus_ray_cast_report_add(sum, report);
+  } else {
+    *sum = *report;
+  }
+}
+
+/* Joins pixel number `from` of a part. */
+static void join_pixel(const stratus_kept* kept, int n, const stratus_image* part, size_t from, stratus_kept_pixel* pixel)
+{
+  const float *rgba = part->rgba + 4 * from, depth = part->depth[from];
+  if (!(rgba[3] > 0.0f)) {
+    return;
+  }
+  if (kept->mode == STRATUS_MODE_QUANTITIES) {
+    join_quantities(kept, n, rgba, depth, part->samples[from], pixel);
+  } else if (stratus_mode_is_extreme(kept->mode)) {
+    join_best(kept, n, rgba, depth, pixel);
+  } else {
+    join_sum(kept, n, rgba, depth, pixel);
+  }
+}
+
+stratus_status stratus_kept_join(stratus_kept* kept, int n, const stratus_image* part, int x0, int y0, const int inside[4])
 {
   const stratus_image* image = kept->image;
   if (kept->one_field) {
@@ -165,28 +228,15 @@ void stratus_kept_join(stratus_kept* kept, int n, const stratus_image* part, int
   for (int y = inside[2]; y < inside[3]; ++y) {
     for (int x = inside[0]; x < inside[1]; ++x) {
       const size_t from = (size_t)y * (size_t)part->width + (size_t)x, to = (size_t)(y0 + y) * (size_t)image->width + (size_t)(x0 + x);
-      const float *rgba = part->rgba + 4 * from, depth = part->depth[from];
-      stratus_kept_pixel* pixel = kept->pixels + to;
       if (image->samples) {
         image->samples[to] += part->samples[from];
       }
-      if (!(rgba[3] > 0.0f)) {
-        continue;
-      }
-      if (kept->mode == STRATUS_MODE_FIRST_HIT) {
-        if (depth < pixel->depth) {
-          *pixel = (stratus_kept_pixel){ .depth = depth, .of = n };
-          memcpy(image->rgba + 4 * to, rgba, 4 * sizeof *rgba);
-        }
-      } else if (kept->mode == STRATUS_MODE_QUANTITIES) {
-        join_quantities(kept, n, rgba, depth, part->samples[from], pixel);
-      } else if (stratus_mode_is_extreme(kept->mode)) {
-        join_best(kept, n, rgba, depth, pixel);
-      } else {
-        join_sum(kept, n, rgba, depth, pixel);
+      if (kept->pixels) {
+        join_pixel(kept, n, part, from, kept->pixels + to);
       }
     }
   }
+  return kept->pixels ? STRATUS_OK : stratus_layers_join(kept->context, &kept->layers, n, image, part, x0, y0, inside);
 }
 
 /* ---- colours */
@@ -235,6 +285,10 @@ void stratus_kept_finish(const stratus_kept* kept)
   const stratus_image* image = kept->image;
   const int64_t pixels = (int64_t)image->width * image->height;
   const bool opaque = !stratus_mode_is_extreme(kept->mode);
+  if (!kept->pixels) {
+    stratus_layers_finish(kept->context, &kept->layers, image);
+    return;
+  }
 #pragma omp parallel for num_threads(kept->context->threads)
   for (int64_t i = 0; i < pixels; ++i) {
     stratus_kept_pixel* pixel = kept->pixels + i;
@@ -247,7 +301,7 @@ void stratus_kept_finish(const stratus_kept* kept)
       for (int c = 0; c < 4; ++c) {
         image->rgba[4 * i + c] = (float)numbers[c];
       }
-    } else if (kept->mode != STRATUS_MODE_FIRST_HIT) {
+    } else {
       const float weight = (float)kept->inputs[pixel->of].transfer[kept->component].weight;
       if (stratus_mode_is_extreme(kept->mode)) {
         color_best(kept, pixel, add);

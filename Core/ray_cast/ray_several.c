@@ -213,7 +213,7 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
   if (count == 1 && inputs[0].caster) {
     return stratus_ray_caster_render(inputs[0].caster, inputs[0].volume, inputs[0].transfer, camera, inputs[0].options, image, reports);
   }
-  if (stratus_kept_is(stratus_kept_mode(inputs))) {
+  if (stratus_kept_mode(inputs) != STRATUS_MODE_COMPOSITE) {
     return stratus_several_kept(inputs, count, camera, image, reports);
   }
   for (int n = 0; n < count; ++n) {

@@ -39,7 +39,7 @@ stratus_status stratus_several_check_volume(stratus_context* context, int n, con
 {
   const stratus_ray_cast_options* options = &in->options;
   if (options->mode != STRATUS_MODE_COMPOSITE) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several has mode %s, which does not mix with composite, or at all", n,
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several has mode %s, which does not mix with composite", n,
       stratus_mode_name(options->mode));
   }
   for (int i = 0; options->optics.gradient_distance > 0.0 && i < stratus_ray_shading_media(in->of->volume, options); ++i) {
@@ -70,7 +70,7 @@ stratus_status stratus_several_check_mesh(stratus_context* context, int n, const
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has %d components, must have 1", n, mesh->components);
   }
   if (options->mode != STRATUS_TETRA_COMPOSITE) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has mode %s, which does not mix with composite, or at all", n,
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has mode %s, which does not mix with composite", n,
       stratus_tetra_mode_name(options->mode));
   }
   if (stratus_tetra_modes_regions(options)) {

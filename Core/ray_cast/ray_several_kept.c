@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Draws several volumes and meshes in the modes whose rays keep a number or a hit: one after the other, and joins what rays have kept. */
+ * Draws several volumes and meshes in all modes but composite: one after the other, and joins what rays have kept. */
 #include "camera.h"
 #include "picture.h"
 #include "ray_kept.h"
@@ -12,9 +12,9 @@
 /* The components that are drawn by themselves. */
 static int components_of(const stratus_ray_cast_input* input, stratus_mode mode)
 {
-  return !input->tetra                                                  ? stratus_ray_parts(input->volume, input->options)
-    : mode == STRATUS_MODE_FIRST_HIT || mode == STRATUS_MODE_QUANTITIES ? 1
-                                                                        : stratus_tetra_component_count(input->mesh);
+  return !input->tetra                                          ? stratus_ray_parts(input->volume, input->options)
+    : !stratus_kept_is(mode) || mode == STRATUS_MODE_QUANTITIES ? 1
+                                                                : stratus_tetra_component_count(input->mesh);
 }
 
 static stratus_status check(stratus_context* context, const stratus_ray_cast_input* inputs, int count)
@@ -37,30 +37,62 @@ static stratus_status check(stratus_context* context, const stratus_ray_cast_inp
   return STRATUS_OK;
 }
 
-/* Draws a component of all inputs that have it. */
-static stratus_status draw(
-  stratus_kept* kept, int count, const stratus_camera* camera, const stratus_image* part, stratus_ray_cast_report* reports)
+/* Returns the transparency below which nothing is seen behind layers, to the strictest of the inputs. */
+static float least_of(const stratus_ray_cast_input* inputs, int count)
 {
-  const bool adds = stratus_mode_is_sum(kept->mode); /* errors, too, by their squares */
-  const int all[4] = { 0, part->width, 0, part->height };
+  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
+  const stratus_tetra_options mesh_defaults = stratus_tetra_options_default();
+  float least = 1.0f;
   for (int n = 0; n < count; ++n) {
-    const stratus_ray_cast_input* in = &kept->inputs[n];
-    stratus_ray_cast_report report = { .expected_error = NAN, .tolerance_met = 1 };
-    if (kept->component >= components_of(in, kept->mode)) {
-      continue;
-    }
-    if (in->tetra) {
-      TRY(stratus_kept_draw_mesh(kept, n, camera, part, &report));
-    } else {
-      stratus_ray_cast_options options = in->options ? *in->options : stratus_ray_cast_options_default();
-      options.sampling.tolerance /= adds ? sqrt((double)count) : 1.0;
-      TRY(stratus_kept_draw(kept, n, camera, &options, part, &report));
-    }
-    stratus_kept_join(kept, n, part, 0, 0, all);
-    if (reports && kept->component > 0) {
-      stratus_ray_cast_report_add(&reports[n], &report);
-    } else if (reports) {
-      reports[n] = report;
+    const stratus_ray_cast_input* in = &inputs[n];
+    const float mine = in->tetra ? (float)stratus_tetra_termination(in->tetra_options ? in->tetra_options : &mesh_defaults)
+                                 : stratus_kept_least(in->options ? in->options : &defaults);
+    least = fminf(least, mine);
+  }
+  return least;
+}
+
+/* Draws what rays keep of an input. */
+static stratus_status draw_input(
+  stratus_kept* kept, int n, int count, const stratus_camera* camera, const stratus_image* part, stratus_ray_cast_report* report)
+{
+  const stratus_ray_cast_input* in = &kept->inputs[n];
+  if (in->tetra) {
+    return stratus_kept_draw_mesh(kept, n, camera, part, report);
+  }
+  stratus_ray_cast_options options = in->options ? *in->options : stratus_ray_cast_options_default();
+  options.sampling.tolerance /= stratus_mode_is_sum(kept->mode) ? sqrt((double)count) : 1.0; /* errors add, too, by their squares */
+  return stratus_kept_draw(kept, n, camera, &options, part, report);
+}
+
+/* Draws a component of all inputs that have it. Of surfaces, the nearest ones first, then the next ones, as long as any may be seen. ends:
+ * room for where rays end; numbers need none. */
+static stratus_status draw(
+  stratus_kept* kept, int count, const stratus_camera* camera, const stratus_image* part, float* ends, stratus_ray_cast_report* reports)
+{
+  const int all[4] = { 0, part->width, 0, part->height };
+  bool more = true;
+  for (kept->pass = 0; more; ++kept->pass) {
+    more = false;
+    for (int n = 0; n < count; ++n) {
+      stratus_ray_cast_report report = { .expected_error = NAN, .tolerance_met = 1 };
+      stratus_image to = *part;
+      if (kept->component >= components_of(&kept->inputs[n], kept->mode)) {
+        continue;
+      }
+      if (kept->pass > 0) {
+        bool wanted = false;
+        if (!stratus_kept_ends(kept, n, kept->image, camera, all, 0.0f, ends, &wanted)) {
+          continue;
+        }
+        to.opaque_depth = wanted ? ends : NULL;
+      }
+      TRY(draw_input(kept, n, count, camera, &to, &report));
+      TRY(stratus_kept_join(kept, n, &to, 0, 0, all));
+      if (reports) {
+        stratus_kept_report(kept, &reports[n], &report);
+      }
+      more = !kept->pixels;
     }
   }
   return STRATUS_OK;
@@ -70,9 +102,12 @@ stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int co
   const stratus_image* image, stratus_ray_cast_report* reports)
 {
   stratus_context* context = stratus_several_context(inputs);
-  stratus_kept kept = { .context = context, .mode = stratus_kept_mode(inputs), .inputs = inputs, .image = image };
+  stratus_kept kept = {
+    .context = context, .mode = stratus_kept_mode(inputs), .inputs = inputs, .image = image, .layers.least = least_of(inputs, count)
+  };
   stratus_image part = { 0 };
   stratus_status status = STRATUS_OK;
+  void* ends = NULL;
   int components = 1;
   TRY(stratus_image_check(context, image));
   TRY(stratus_camera_check(context, camera, image));
@@ -84,9 +119,12 @@ stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int co
   stratus_image_clear(image);
   TRY(stratus_kept_create(&kept));
   TRY_CLEANUP(stratus_kept_part_create(&kept, &part));
+  if (!kept.pixels) {
+    TRY_CLEANUP(stratus_allocate(context, (size_t)image->width * (size_t)image->height, sizeof(float), &ends));
+  }
   for (int c = 0; c < components; ++c) {
     stratus_kept_begin(&kept, c);
-    TRY_CLEANUP(draw(&kept, count, camera, &part, reports));
+    TRY_CLEANUP(draw(&kept, count, camera, &part, ends, reports));
     stratus_kept_finish(&kept);
   }
   stratus_image_fill_bytes(image);
@@ -98,6 +136,7 @@ stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int co
     memcpy(reports[n].window, window, sizeof window);
   }
 cleanup:
+  stratus_release(context, ends);
   stratus_image_part_destroy(context, &part);
   stratus_kept_destroy(&kept);
   return status;

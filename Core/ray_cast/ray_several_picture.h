@@ -40,7 +40,7 @@ stratus_status stratus_several_check_inputs(const stratus_ray_cast_input* inputs
 stratus_status stratus_several_check_volume(stratus_context* context, int n, const stratus_several_input* in);
 stratus_status stratus_several_check_mesh(stratus_context* context, int n, const stratus_several_input* in);
 
-/* ray_several_kept.c. Draws inputs, which were checked for casters, in a mode of stratus_kept_is(). */
+/* ray_several_kept.c. Draws inputs, which were checked for casters, in a mode other than composite. */
 stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
   const stratus_image* image, stratus_ray_cast_report* reports);
 

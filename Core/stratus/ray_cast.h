@@ -345,14 +345,15 @@ typedef struct stratus_ray_cast_input {
   const struct stratus_tetra_options* tetra_options; /* of a mesh; NULL: the defaults */
 } stratus_ray_cast_input;
 
-/* Draw 1..STRATUS_SEVERAL_MAX volumes as one medium, or in modes whose rays keep a number or a hit. They may overlap, and each has its own
- * place, grid, type, function and options. Where volumes overlap, their optical depths and their emitted light add up. The order of the
- * inputs matters only to rounding. A single input gives the image of stratus_ray_caster_render().
+/* Draw 1..STRATUS_SEVERAL_MAX volumes as one medium, or in another mode. They may overlap, and each has its own place, grid, type, function
+ * and options. Where volumes overlap, their optical depths and their emitted light add up. The order of the inputs matters only to
+ * rounding. A single input gives the image of stratus_ray_caster_render().
  *
- * All inputs have the same mode. In maximum, minimum, average, additive and first-hit, each input is drawn by itself, as
- * stratus_ray_caster_render() or stratus_tetra_caster_render() draws it, and what its rays keep is joined: the best of the values that
- * show, in its own input's colour and opacity; the sum of all; the mean over the lengths of all; the nearest hit. Values are fractions of
- * their own input's range. Components are joined one after the other. Meshes have no first hits.
+ * All inputs have the same mode. In all modes but composite, each input is drawn by itself, as stratus_ray_caster_render() or
+ * stratus_tetra_caster_render() draws it, and what its rays keep is joined. In maximum, minimum, average and additive this is the best of
+ * the values that show, in its own input's colour and opacity; the mean over the lengths of all; the sum of all. Values are fractions of
+ * their own input's range. Components are joined one after the other. In first-hit, isosurface and slice the surfaces of all inputs are
+ * composited by depth, at equal depth in the order of the inputs. Rays are cast once more for each further surface that may be seen.
  *
  * Composite mode, whole volumes (no DUPLICATE ghosts), and as crop regions the inside or all. gradient_distance with a gradient opacity,
  * and clip_gradients with clip planes, are not drawn. Other input gives STRATUS_UNSUPPORTED. Components, labels, functions of two
@@ -381,8 +382,9 @@ STRATUS_API stratus_status stratus_ray_caster_render_several(const stratus_ray_c
  * so that the borders stay invisible. A block behind opaque blocks is not drawn.
  *
  * inputs: volumes only, no meshes. The blocks should have the same axes: the order follows from their boxes along the axes of inputs[0], by
- * the planes across these axes that separate the boxes. Blocks whose boxes overlap are drawn one behind the other, the nearest middle
- * first, and the reports of two of them say so. stratus_ray_caster_render_several() mixes overlapping volumes.
+ * the planes across these axes that separate the boxes. In composite mode, blocks whose boxes overlap are drawn one behind the other, the
+ * nearest middle first, and the reports of two of them say so; stratus_ray_caster_render_several() mixes overlapping volumes. In other
+ * modes overlapping blocks are joined as several volumes are.
  *
  * All blocks have the same mode. Maximum, minimum, average and additive are of all blocks together: values are fractions of the range of
  * all blocks, and a value has the colour and opacity of its own block's function. Errors along a ray add up by their squares. Each block

@@ -470,7 +470,7 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
 }
 
 stratus_status stratus_tetra_caster_render_kept(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
-  int component, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, double* bias,
+  int component, int keeps, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, double* bias,
   stratus_tetra_report* report)
 {
   stratus_tetra_options marched = options ? *options : stratus_tetra_options_default();
@@ -482,9 +482,9 @@ stratus_status stratus_tetra_caster_render_kept(stratus_tetra_caster* caster, co
       "mesh of %d dependent components among several is not supported, only of one or of independent ones", mesh->components);
   }
   TRY(take(caster, &of, camera, image, &drawn, report));
-  caster->keeps = true;
+  caster->keeps = keeps;
   const stratus_status status = draw_component(caster, component, drawn, transfer + component, camera, &marched, image, report, bias);
-  caster->keeps = false;
+  caster->keeps = 0;
   fill_report(caster, report);
   return status;
 }

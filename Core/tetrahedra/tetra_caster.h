@@ -98,7 +98,7 @@ typedef struct stratus_tetra_list stratus_tetra_list;   /* tetra_lattice.h */
 
 struct stratus_tetra_caster {
   stratus_context* context;
-  bool keeps;               /* pictures hold what rays keep, not its colour */
+  int keeps;                /* > 0: pictures hold what rays keep, of surfaces this one of each ray, the nearest is 1 */
   stratus_mesh view;        /* the source of `mesh`; the list's where a lattice is listed */
   stratus_tetra_list* list; /* NULL: none */
   stratus_tetra_mesh* mesh;
@@ -125,10 +125,10 @@ typedef struct stratus_tetra_subject {
   const stratus_tetra_options* options;
 } stratus_tetra_subject;
 
-/* tetra_caster.c: draws the states of rays in one component by marching (kernels/tetrahedra/tetra_arguments.h, `kept`). Values in the image
- * are relative to *bias. */
+/* tetra_caster.c: draws what rays keep in one component by marching (kernels/tetrahedra/tetra_arguments.h, `kept`). Values in the image are
+ * relative to *bias. keeps: as in the caster. */
 stratus_status stratus_tetra_caster_render_kept(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
-  int component, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, double* bias,
+  int component, int keeps, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, double* bias,
   stratus_tetra_report* report);
 /* tetra_caster.c: makes a frame of mode composite whose rays another room marches: its entries are counted, and to be found by tile. *shows
  * false: nothing of the mesh shows, and there is no frame. */
@@ -173,6 +173,8 @@ stratus_status stratus_tetra_frame_prepare(stratus_context* context, const strat
   const stratus_camera* camera, const stratus_image* image, bool march, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
 /* Sets how a frame's cells are drawn by its table, and which part of rays is seen. */
 void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_options* options);
+/* Return the transparency at which a ray may end. */
+double stratus_tetra_termination(const stratus_tetra_options* options);
 /* tetra_modes.c: modes that gather no light. */
 stratus_status stratus_tetra_modes_check(stratus_context* context, const stratus_tetra_options* options, const stratus_mesh* mesh);
 /* Whether crop regions cut rays, other than the inside or all. */
@@ -198,7 +200,7 @@ void stratus_tetra_hits_shade(const stratus_tetra_frame* frame, const stratus_te
 void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options);
 void stratus_tetra_frame_slice(stratus_tetra_frame* frame, const stratus_tetra_options* options);
 void stratus_tetra_frame_contours(stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer,
-  const stratus_tetra_options* options, bool keeps);
+  const stratus_tetra_options* options, int keeps);
 void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);
 /* tetra_light.c: light and gradient opacity. */
 stratus_status stratus_tetra_light_check(

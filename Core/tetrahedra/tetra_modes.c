@@ -168,12 +168,14 @@ void stratus_tetra_frame_slice(stratus_tetra_frame* frame, const stratus_tetra_o
 }
 
 void stratus_tetra_frame_contours(stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer,
-  const stratus_tetra_options* options, bool keeps)
+  const stratus_tetra_options* options, int keeps)
 {
   stratus_tetra_arguments* a = &frame->arguments;
   a->grey =
     options->mode == STRATUS_TETRA_ADDITIVE ? (float)(((double)frame->table->size + 1.0) / SUM_MOST / transfer->unit_distance) : 0.0f;
-  a->kept = keeps ? (float)(((double)frame->table->size + 1.0) / SUM_MOST) : 0.0f;
+  const double sums = keeps ? ((double)frame->table->size + 1.0) / SUM_MOST : 0.0;
+  const bool surfaces = a->mode == TETRA_SURFACES || a->mode == TETRA_SLICE;
+  a->kept = surfaces ? (float)keeps : (float)sums;
   a->contour_count = 0;
   for (int n = 0; options->mode == STRATUS_TETRA_ISOSURFACE && n < options->contour_count; ++n) { /* insertion sort without duplicates */
     const float value = (float)(options->contours[n] - mesh->bias);

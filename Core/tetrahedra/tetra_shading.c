@@ -19,8 +19,7 @@
 #define TERMINATION_LEAST 0x1p-24
 #define TERMINATION_MOST 0.5
 
-/* Returns the transparency at which a ray may end. */
-static double termination_of(const stratus_tetra_options* options)
+double stratus_tetra_termination(const stratus_tetra_options* options)
 {
   return options->termination > 0.0 ? 1.0 - options->termination
                                     : fmax(fmin(TERMINATION_SHARE * options->tolerance, TERMINATION_MOST), TERMINATION_LEAST);
@@ -47,6 +46,6 @@ void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_o
       arguments->termination = (float)TERMINATION_MOST;
       break;
     default:
-      arguments->termination = (float)termination_of(options);
+      arguments->termination = (float)stratus_tetra_termination(options);
   }
 }

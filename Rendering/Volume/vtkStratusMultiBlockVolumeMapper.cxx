@@ -473,7 +473,9 @@ void vtkStratusMultiBlockVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* 
   if (error.empty()) {
     this->Internal->CutMask(error);
   }
-  for (size_t i = 0; i < blocks.size() && !this->Internal->IsRefined; ++i) {
+  const bool behind =
+    this->GetBlendMode() == COMPOSITE_BLEND && this->GetSettings()->GetRenderMode() != vtkStratusVolumeMapper::FIRST_HIT_MODE;
+  for (size_t i = 0; i < blocks.size() && behind && !this->Internal->IsRefined; ++i) {
     for (size_t j = 0; j < i && warning.empty(); ++j) {
       if (Overlap(blocks[i], blocks[j])) {
         warning = "blocks overlap, and are drawn one over the other";

@@ -5,8 +5,9 @@
  *
  * Replaces vtkMultiBlockVolumeMapper and vtkAMRVolumeMapper. The input is a vtkImageData, a vtkRectilinearGrid, composite data of them at
  * any depth (vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection), or a vtkOverlappingAMR. Blocks that a plane
- * across an axis of the data separates are drawn in exact order, however uneven their sizes. Blocks that overlap are each drawn whole, the
- * block with the farther middle first, with a warning: use vtkStratusMultiVolume for media that mix. Blocks that lack the array, and data
+ * across an axis of the data separates are drawn in exact order, however uneven their sizes. In composite mode, blocks that overlap are
+ * each drawn whole, the block with the farther middle first, with a warning: use vtkStratusMultiVolume for media that mix. Other modes join
+ * them: surfaces by depth, the best value, the mean or sum of all. Blocks that lack the array, and data
  * of other classes, are left out with a warning. Each block chooses its own structure and sampling. Its gradients are one-sided at its
  * border unless it has ghost cells.
  *

@@ -16,8 +16,9 @@
  * by cell, of blend mode composite without light and gradient opacity, by method auto or march. At least one volume must have a
  * vtkStratusVolumeMapper. Where there is a mesh the host draws.
  *
- * In maximum, minimum, average and additive intensity and in first hits, which all volumes must then have, each volume is drawn by itself,
- * and the picture shows the best of the values that show, the sum, the mean over the lengths in all volumes, or the nearest hit.
+ * In all other modes, which all volumes must then have, each volume is drawn by itself. In maximum, minimum, average and additive intensity
+ * the picture shows the best of the values that show, the mean over the lengths in all volumes, or the sum. First hits, isosurfaces and
+ * slices are composited by depth, and surfaces at equal depth in the order of the ports.
  *
  * In composite mode volumes support one to four components, point and cell data, functions of two variables (TF_2D), light, gradient
  * opacity, binary masks and label maps, crop boxes (the inside region, or all) and up to six clipping planes a volume. The prop supports

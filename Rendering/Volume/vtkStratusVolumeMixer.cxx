@@ -77,9 +77,6 @@ std::string Mixer::FindHindrance(const std::vector<vtkVolume*>& volumes)
         "vtkStratusTetrahedraMapper is";
     }
     const int mode = images ? images->GetBlendMode() : meshes->GetBlendMode();
-    if (mode > vtkVolumeMapper::ADDITIVE_BLEND) {
-      return "blend mode " + std::to_string(mode) + " is not mixed, only composite (0) to additive (4) are";
-    }
     if (!mappers.empty() && mode != first) {
       return "blend modes " + std::to_string(first) + " and " + std::to_string(mode) + " are not mixed, all volumes need the same";
     }

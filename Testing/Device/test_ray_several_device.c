@@ -111,16 +111,22 @@ static void make_media_case(stratus_context* context, uint32_t seed, several_cas
   m->of[0].options.skipping.audit = 1;
 }
 
-/* Modes whose rays keep a number or a hit. */
+/* Modes whose rays keep a number or surfaces. */
 static void make_kept_case(stratus_context* context, uint32_t seed, several_case* m)
 {
   static const stratus_mode modes[] = { STRATUS_MODE_ADDITIVE, STRATUS_MODE_MAXIMUM, STRATUS_MODE_MINIMUM, STRATUS_MODE_AVERAGE,
-    STRATUS_MODE_FIRST_HIT };
+    STRATUS_MODE_FIRST_HIT, STRATUS_MODE_ISOSURFACE, STRATUS_MODE_SLICE };
   several_create(context, m, 3, 760 + seed);
   for (int n = 0; n < m->count; ++n) {
     m->of[n].options.mode = modes[seed];
+    const double base = case_type_values[m->of[n].volume.type].base, scale = case_type_values[m->of[n].volume.type].scale;
     m->of[n].options.sampling.rule = STRATUS_SAMPLING_AUTO;
     m->of[n].options.skipping.audit = 1;
+    m->of[n].options.optics.contour_count = 2;
+    m->of[n].options.optics.contours[0] = base + 0.1 * scale;
+    m->of[n].options.optics.contours[1] = base + 0.25 * scale;
+    m->of[n].options.light.shade = seed == 5;
+    m->of[n].options.slice = (stratus_slice){ .square = { 1, 1, 1 }, .constant = -80.0 - 20.0 * n };
   }
 }
 
@@ -138,7 +144,7 @@ typedef enum compared { PLAIN, SHARP, MEDIA, KEPT } compared;
 
 static void compare(compared what, bool one_ray)
 {
-  static const uint32_t seeds[] = { [PLAIN] = 9, [SHARP] = 5, [MEDIA] = 4, [KEPT] = 5 };
+  static const uint32_t seeds[] = { [PLAIN] = 9, [SHARP] = 5, [MEDIA] = 4, [KEPT] = 7 };
   static media_case media;
   stratus_context* host = case_context("host", 2);
   stratus_context* device = case_context("0", 2);

@@ -253,6 +253,10 @@ def several():
     cells = render_several([(first, look), (mesh, other)], **host)
     lit = cells.rgba[..., 3] > 0
     check(numpy.abs(cells.rgba - mixed.rgba)[lit].mean() < 0.02 and apart(cells, render(first, **look, **host)) > 0.1, "a mesh among them")
+    surfaces = [(field, dict(mode="isosurface", contours=[0.4], opacity=1, color=how["color"])) for field, how in ((first, look), (second, other))]
+    each = [render(field, **how, **host) for field, how in surfaces]
+    nearest = numpy.where((each[0].depth <= each[1].depth)[..., None], each[0].rgba, each[1].rgba)
+    check(numpy.abs(render_several(surfaces, **host).rgba - nearest).max() < 1e-3 and each[1].rgba.max() > 0.5, "surfaces by depth")
     kept = [(Volume(first, device="host"), look), (Volume(second, device="host"), other)]
     check(apart(render_several(kept, size=(60, 60)), mixed) == 0, "what is kept, too")
     check(render_several(kept, size=(60, 60), camera=dict(azimuth=70)).counters["items"][1]["range_builds"] == 1, "and builds nothing anew")

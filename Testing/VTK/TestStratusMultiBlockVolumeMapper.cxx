@@ -5,6 +5,7 @@
 
 #include "vtkStratusMultiBlockVolumeMapper.h"
 
+#include "vtkContourValues.h"
 #include "vtkDoubleArray.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSet.h"
@@ -202,6 +203,12 @@ void Overlapping()
   data->SetPartition(1, Part(scene.Image, over));
   scene.Many->SetInputDataObject(data);
   scene.Volume->SetMapper(scene.Many);
+  scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, 0.5);
+  scene.Many->SetBlendMode(vtkVolumeMapper::ISOSURFACE_BLEND);
+  scene.Render();
+  CHECK(scene.Warnings->Count == 0 && !scene.Many->GetLastError()[0], "surfaces that are joined by depth: %s, %s",
+    scene.Warnings->Text.c_str(), scene.Many->GetLastError());
+  scene.Many->SetBlendModeToComposite();
   scene.Render();
   CHECK(scene.Warnings->Text.find("overlap") != std::string::npos, "no word of the overlap: %s", scene.Warnings->Text.c_str());
 }

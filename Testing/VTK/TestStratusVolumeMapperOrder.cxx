@@ -9,6 +9,7 @@
 
 #include "vtkActor.h"
 #include "vtkAssembly.h"
+#include "vtkContourValues.h"
 #include "vtkDataSetTriangleFilter.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkHardwareSelector.h"
@@ -429,6 +430,16 @@ void Unmixed()
   blue.Volume->SetPosition(-0.5, 0, 0);
   stage.DrawInAllOrders("maxima that overlap", { red.Volume, blue.Volume });
   CHECK(!red.Mapper->GetLastImage() && !blue.Mapper->GetLastImage(), "maxima that overlap are drawn one by one");
+  // Isosurfaces that overlap are by depth.
+  Cube along(1, 0.5, 0.1, false), across(0.1, 0.5, 1, false);
+  across.Volume->RotateZ(70);
+  for (const Cube* cube : { &along, &across }) {
+    cube->Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, 0.6);
+    cube->Mapper->SetBlendModeToIsoSurface();
+    stage.Watch(cube->Mapper);
+  }
+  stage.DrawInAllOrders("isosurfaces that overlap", { along.Volume, across.Volume });
+  CHECK(!along.Mapper->GetLastImage() && !across.Mapper->GetLastImage(), "isosurfaces that overlap are drawn one by one");
   // First hits are solid: the other volume's rays end there, wherever it is.
   blue.Mapper->SetBlendModeToComposite();
   red.Mapper->SetBlendModeToComposite();

@@ -8,9 +8,11 @@
 #include "vtkStratusTetrahedraMapper.h"
 
 #include "vtkActor.h"
+#include "vtkContourValues.h"
 #include "vtkFixedPointVolumeRayCastMapper.h"
 #include "vtkHardwareSelector.h"
 #include "vtkInformation.h"
+#include "vtkPlane.h"
 #include "vtkPlaneSource.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProperty.h"
@@ -403,6 +405,78 @@ void Meshes()
   CHECK(scene.Mixed().empty() && scene.Errors->Has("no volume has a vtkStratusVolumeMapper"), "%s", scene.Errors->Text.c_str());
 }
 
+// Opaque isosurfaces of two images and a mesh, and opaque slices of both images: the nearest of those that each draws by itself.
+void Surfaces()
+{
+  for (const int mode : { vtkVolumeMapper::ISOSURFACE_BLEND, vtkVolumeMapper::SLICE_BLEND }) {
+    const bool isosurface = mode == vtkVolumeMapper::ISOSURFACE_BLEND;
+    Pair scene;
+    Cells cells;
+    const double values[3] = { 0.45, 30.0, 0.9 };
+    vtkVolume* volumes[3] = { scene.Volume, scene.Other, cells.Volume };
+    vtkPiecewiseFunction* opacities[3] = { scene.Opacity, scene.OtherOpacity, cells.Opacity };
+    const int count = isosurface ? 3 : 2;
+    for (int n = 0; n < count; ++n) {
+      vtkNew<vtkPlane> plane;
+      plane->SetOrigin(14, 14, 13);
+      plane->SetNormal(1, n ? -1 : 1, 0.5);
+      opacities[n]->RemoveAllPoints();
+      opacities[n]->AddPoint(0.0, 1.0);
+      volumes[n]->GetProperty()->GetIsoSurfaceValues()->SetValue(0, values[n]);
+      volumes[n]->GetProperty()->SetSliceFunction(plane);
+    }
+    scene.Mapper->SetBlendMode(mode);
+    scene.OtherMapper->SetBlendMode(mode);
+    if (isosurface) {
+      cells.Mapper->SetBlendMode(mode);
+      scene.Multi->SetVolume(cells.Volume, 2);
+    }
+    scene.Renderer->ResetCamera();
+    std::vector<float> colors[3], depths[3];
+    const auto draw = [&](std::vector<float>& color, std::vector<float>& depth) {
+      color = scene.Mixed();
+      vtkImageData* image = scene.Multi->GetLastImage();
+      const float* far = image ? vtkFloatArray::SafeDownCast(image->GetPointData()->GetArray("Depth"))->GetPointer(0) : nullptr;
+      depth.assign(far, far + (image ? scene.Pixels() : 0));
+      CHECK(!color.empty() && scene.Errors->Count == 0, "mode %d: %s", mode, scene.Errors->Text.c_str());
+    };
+    std::vector<float> picture, depth;
+    draw(picture, depth);
+    for (int n = 0; n < count; ++n) { // a mesh needs an image, which has no surface then
+      for (int other = 0; other < count; ++other) {
+        volumes[other]->SetVisibility(other == n || (n == 2 && other == 0));
+      }
+      scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, n == 2 ? 1e6 : values[0]);
+      draw(colors[n], depths[n]);
+    }
+    size_t shown[3] = { 0, 0, 0 }, off = 0;
+    for (size_t p = 0; p < depth.size(); ++p) {
+      int nearest = 0;
+      for (int n = 1; n < count; ++n) {
+        nearest = depths[n][p] < depths[nearest][p] ? n : nearest;
+      }
+      float worst = 0.0f;
+      for (size_t c = 0; c < 4; ++c) {
+        worst = std::max(worst, std::fabs(picture[4 * p + c] - colors[nearest][4 * p + c]));
+      }
+      shown[nearest] += colors[nearest][4 * p + 3] > 0.0f;
+      off += worst > 0.002f;
+    }
+    CHECK(off <= depth.size() / 200, "mode %d: %d pixels are of another surface than the nearest", mode, static_cast<int>(off));
+    CHECK(shown[0] > 50 && shown[1] > 50 && (shown[2] > 50) == isosurface, "mode %d: %d, %d and %d pixels", mode,
+      static_cast<int>(shown[0]), static_cast<int>(shown[1]), static_cast<int>(shown[2]));
+    for (vtkVolume* volume : volumes) {
+      volume->SetVisibility(1);
+    }
+    scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, values[0]);
+    if (stratus_device_count() > 0) {
+      scene.Mapper->SetDevice("0");
+      CHECK(scene.Mixed() == picture && std::string(scene.Multi->GetReason(0)).find("drawn on the host") == std::string::npos,
+        "mode %d: the device draws otherwise: %s", mode, scene.Multi->GetReason(0));
+    }
+  }
+}
+
 // The second volume cell by cell, of two components, with a label map, and by a function of two variables.
 void Media()
 {
@@ -580,6 +654,7 @@ int main()
   Picking();
   Peeling();
   Meshes();
+  Surfaces();
   Media();
   Refusals();
   Interactive();

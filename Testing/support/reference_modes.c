@@ -406,6 +406,8 @@ static void draw_sum(const scene* s, const line* l, double step, float rgba[4], 
 
 /* ---- isosurfaces */
 
+enum { CROSSINGS = 4096 };
+
 typedef struct crossing {
   double t, contour;
 } crossing;
@@ -455,9 +457,8 @@ static int cross_cell(const scene* s, const line* l, const part_ends* ends, doub
   return count;
 }
 
-static void draw_surfaces(const scene* s, const line* l, float rgba[4], float* depth)
+static int find_surfaces(const scene* s, const line* l, reference_layer* layers, int most)
 {
-  enum { CROSSINGS = 4096 };
   static _Thread_local crossing planes[CROSSINGS], found[CROSSINGS];
   int plane_count = 0, count = 0;
   planes[plane_count++].t = l->begin;
@@ -487,18 +488,13 @@ static void draw_surfaces(const scene* s, const line* l, float rgba[4], float* d
     before = ends.value[PARTS];
   }
   qsort(found, (size_t)count, sizeof *found, by_distance);
-  double left = 1.0;
-  for (int i = 0; i < count; ++i) {
-    double color[4], p[3];
+  for (int i = 0; i < count && i < most; ++i) {
+    double p[3];
+    layers[i].t = found[i].t;
     point_on(l, found[i].t, p);
-    look_at(s, found[i].contour, p, color);
-    for (int c = 0; c < 3; ++c) {
-      rgba[c] += (float)(left * color[3] * color[c]);
-    }
-    left *= 1.0 - color[3];
-    *depth = color[3] > 0.0 && isinf(*depth) ? (float)found[i].t : *depth;
+    look_at(s, found[i].contour, p, layers[i].color);
   }
-  rgba[3] = (float)(1.0 - left);
+  return count < most ? count : most;
 }
 
 /* ---- slices */
@@ -521,13 +517,14 @@ static double slice_at(const scene* s, const line* l, double t)
   return sum;
 }
 
-/* Finds the surface by bisection in small parts of the ray, and shows the values there. */
-static void draw_slice(const scene* s, const line* l, float rgba[4], float* depth)
+/* Finds the surface by bisection in small parts of the ray. */
+static int find_slices(const scene* s, const line* l, reference_layer* layers, int most)
 {
   enum { SLICE_PARTS = 4000 };
-  double left = 1.0, before = slice_at(s, l, l->begin);
+  double before = slice_at(s, l, l->begin);
   kept_cell cell = NO_CELL;
-  for (int part = 0; part < SLICE_PARTS; ++part) {
+  int count = 0;
+  for (int part = 0; part < SLICE_PARTS && count < most; ++part) {
     double lo = l->begin + (l->end - l->begin) * part / SLICE_PARTS, hi = l->begin + (l->end - l->begin) * (part + 1) / SLICE_PARTS;
     const double first = before;
     before = slice_at(s, l, hi);
@@ -538,16 +535,33 @@ static void draw_slice(const scene* s, const line* l, float rgba[4], float* dept
       const double middle = 0.5 * (lo + hi);
       *((slice_at(s, l, middle) < 0.0) == (first < 0.0) ? &lo : &hi) = middle;
     }
-    double color[4], p[3];
+    double p[3];
     point_on(l, lo, p);
-    if (!mix_at(s, field_at(s, p, &cell), p, color)) {
-      continue;
-    }
+    layers[count].t = lo;
+    count += mix_at(s, field_at(s, p, &cell), p, layers[count].color);
+  }
+  return count;
+}
+
+/* ---- layers */
+
+static int find_layers(const scene* s, const line* l, reference_layer* layers, int most)
+{
+  return (s->options->mode == STRATUS_MODE_SLICE ? find_slices : find_surfaces)(s, l, layers, most);
+}
+
+static void draw_layers(const scene* s, const line* l, float rgba[4], float* depth)
+{
+  static _Thread_local reference_layer layers[CROSSINGS];
+  const int count = find_layers(s, l, layers, CROSSINGS);
+  double left = 1.0;
+  for (int i = 0; i < count; ++i) {
+    const double* color = layers[i].color;
     for (int c = 0; c < 3; ++c) {
       rgba[c] += (float)(left * color[3] * color[c]);
     }
     left *= 1.0 - color[3];
-    *depth = color[3] > 0.0 && isinf(*depth) ? (float)lo : *depth;
+    *depth = color[3] > 0.0 && isinf(*depth) ? (float)layers[i].t : *depth;
   }
   rgba[3] = (float)(1.0 - left);
 }
@@ -604,19 +618,42 @@ static void draw_quantities(const scene* s, const line* l, float rgba[4], float*
   }
 }
 
+static line line_of(const scene* s, const stratus_camera* camera, int width, int height, int pixel)
+{
+  return make_line(s, camera, (2.0 * (pixel % width) + 1.0) / width - 1.0, (2.0 * (pixel / width) + 1.0) / height - 1.0);
+}
+
+static void set_scene(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options, scene* s)
+{
+  static const size_t sizes[] = { 1, 1, 2, 2, 4, 4, 8, 8, 4, 8 }; /* of stratus_type */
+  *s = (scene){ .transfer = transfer, .options = options, .low = (double)INFINITY, .high = -(double)INFINITY };
+  s->count = volume->components > 1 ? volume->components : 1;
+  s->dependent = options->optics.dependent && s->count > 1;
+  for (int c = 0; c < s->count; ++c) {
+    s->parts[c] = *volume;
+    s->parts[c].values = (const char*)volume->values + (size_t)c * sizes[volume->type];
+  }
+  s->volume = &s->parts[s->dependent ? s->count - 1 : 0];
+  set_to_world(s);
+}
+
+void reference_modes_layers(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
+  const stratus_ray_cast_options* options, int width, int height, int most, reference_layer* layers, int* counts)
+{
+  scene s;
+  set_scene(volume, transfer, options, &s);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int pixel = 0; pixel < width * height; ++pixel) {
+    const line l = line_of(&s, camera, width, height, pixel);
+    counts[pixel] = l.begin < l.end ? find_layers(&s, &l, layers + (size_t)pixel * (size_t)most, most) : 0;
+  }
+}
+
 void reference_modes_render(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
   const stratus_ray_cast_options* options, int width, int height, double step, float* rgba, float* depth)
 {
-  static const size_t sizes[] = { 1, 1, 2, 2, 4, 4, 8, 8, 4, 8 }; /* of stratus_type */
-  scene s = { .volume = volume, .transfer = transfer, .options = options, .low = (double)INFINITY, .high = -(double)INFINITY };
-  s.count = volume->components > 1 ? volume->components : 1;
-  s.dependent = options->optics.dependent && s.count > 1;
-  for (int c = 0; c < s.count; ++c) {
-    s.parts[c] = *volume;
-    s.parts[c].values = (const char*)volume->values + (size_t)c * sizes[volume->type];
-  }
-  s.volume = &s.parts[s.dependent ? s.count - 1 : 0];
-  set_to_world(&s);
+  scene s;
+  set_scene(volume, transfer, options, &s);
   for (int64_t k = 0; k < volume->dimensions[2]; ++k) {
     for (int64_t j = 0; j < volume->dimensions[1]; ++j) {
       for (int64_t i = 0; i < volume->dimensions[0]; ++i) {
@@ -628,19 +665,17 @@ void reference_modes_render(const stratus_volume* volume, const stratus_transfer
   }
 #pragma omp parallel for schedule(dynamic, 1)
   for (int pixel = 0; pixel < width * height; ++pixel) {
-    const line l = make_line(&s, camera, (2.0 * (pixel % width) + 1.0) / width - 1.0, (2.0 * (pixel / width) + 1.0) / height - 1.0);
+    const line l = line_of(&s, camera, width, height, pixel);
     float *to = rgba + 4 * (size_t)pixel, *far = depth + pixel;
     memset(to, 0, 4 * sizeof *to);
     *far = INFINITY;
     if (!(l.begin < l.end)) {
       continue;
     }
-    if (options->mode == STRATUS_MODE_ISOSURFACE) {
-      draw_surfaces(&s, &l, to, far);
+    if (options->mode == STRATUS_MODE_ISOSURFACE || options->mode == STRATUS_MODE_SLICE) {
+      draw_layers(&s, &l, to, far);
     } else if (options->mode == STRATUS_MODE_QUANTITIES) {
       draw_quantities(&s, &l, to, far);
-    } else if (options->mode == STRATUS_MODE_SLICE) {
-      draw_slice(&s, &l, to, far);
     } else if (options->mode == STRATUS_MODE_MAXIMUM || options->mode == STRATUS_MODE_MINIMUM) {
       draw_extreme(&s, &l, step, to, far);
     } else if (options->mode == STRATUS_MODE_COMPOSITE) {

@@ -18,6 +18,16 @@ extern "C" {
 void reference_modes_render(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
   const stratus_ray_cast_options* options, int width, int height, double step, float* rgba, float* depth);
 
+/* A surface on a ray: world distance, colour and opacity. */
+typedef struct reference_layer {
+  double t, color[4];
+} reference_layer;
+
+/* Finds the surfaces on each pixel's ray, in modes isosurface and slice, from the nearest on. layers: room for `most` a pixel. counts: how
+ * many a pixel has. */
+void reference_modes_layers(const stratus_volume* volume, const stratus_transfer* transfer, const stratus_camera* camera,
+  const stratus_ray_cast_options* options, int width, int height, int most, reference_layer* layers, int* counts);
+
 #ifdef __cplusplus
 }
 #endif

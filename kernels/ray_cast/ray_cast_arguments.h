@@ -161,7 +161,9 @@ typedef struct stratus_ray_mode {
   float grey_scale, grey_offset;     /* sums: the grey of a value is value * scale + offset */
   float sum_scale;                   /* sums: factor of a sum over samples; 0: the mean is shown */
   int sum;                           /* 1: rays show something wherever they meet the bounds */
-  int kept;                          /* 1: extremes and sums store what a ray has kept (ray_modes.h) in place of its colour */
+  /* 0: a ray stores its colour. 1 and more: extremes and sums store what it has kept (ray_modes.h). Isosurfaces and slices store only
+   * this one of its surfaces, the nearest is 1. */
+  int kept;
   int contour_count;
   float contour[STRATUS_CONTOURS_MAX][5]; /* isosurfaces, sorted by value: value, colour times opacity, opacity */
 } stratus_ray_mode;

@@ -21,6 +21,24 @@ INLINE void composite(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k,
   k->transparency = v_fma(v_set(0.0f) - k->transparency, layer[3], k->transparency);
 }
 
+/* Where a ray keeps only one of its surfaces (mode.kept), which it counts in `front`: forgets the surface that the rays of the mask have
+ * composited, or ends there. A surface whose opacity is lost in 1 doesn't count, because its pixel shows nothing. */
+INLINE void surface_kept(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k, vmask mask)
+{
+  if (a->mode.kept) {
+    const vfloat zero = v_set(0.0f), one = v_set(1.0f), number = v_set((float)a->mode.kept);
+    const vmask shown = mask & v_lt(k->transparency, one);
+    k->front = v_select(shown, k->front + one, k->front);
+    const vmask passed = shown & v_lt(k->front, number);
+    k->red = v_select(passed, zero, k->red);
+    k->green = v_select(passed, zero, k->green);
+    k->blue = v_select(passed, zero, k->blue);
+    k->transparency = v_select(passed, one, k->transparency);
+    k->depth = v_select(passed, v_set(LARGEST_FLOAT), k->depth);
+    k->live = m_andnot(k->live, m_andnot(shown, passed));
+  }
+}
+
 /* Change layers of a sample distance to `weight` of the optical depth. */
 INLINE void scale_layer(
   CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* table, vint entry, vmask mask, vfloat weight, vfloat layer[4])

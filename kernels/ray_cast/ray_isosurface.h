@@ -66,6 +66,7 @@ SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments*
     layer[c] = v_select(mask, layer[c], v_set(0.0f));
   }
   composite(a, k, mask, layer, s);
+  surface_kept(a, k, mask);
   k->live = m_andnot(k->live, mask & v_lt(k->transparency, v_set(a->termination)));
 }
 

@@ -55,8 +55,9 @@ typedef struct stratus_packet {
   vfloat p[3], d[3], inverse[3], begin, end, first;
   vfloat unit; /* the length of a sample in sample distances */
   vfloat transparency, red, green, blue, depth;
-  vfloat
-    front; /* pre-integrated: the value at the segment's front; extremes: the best value so far; sums: the sum, whose weight is in `red` */
+  /* pre-integrated: the value at the segment's front; extremes: the best value so far; sums: the sum, whose weight is in `red`; surfaces of
+   * which only one is kept: how many the ray has met */
+  vfloat front;
   vint i, last; /* the current segment, and the first behind the ray's end */
   vint run;     /* segments before it need not ask the structure */
   vint octant;  /* offset of the map of the ray's octant */

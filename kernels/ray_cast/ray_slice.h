@@ -54,6 +54,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
         k->live = there;
         RAY_NAME(shade_components)(a, table, k, &sample);
         k->live = live;
+        surface_kept(a, k, there);
         continue;
       }
       const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
@@ -62,6 +63,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
       vfloat layer[4];
       gather_four((GLOBAL const float*)table, table_entry(&a->table, table, value), valid, layer);
       composite(a, k, valid, layer, s);
+      surface_kept(a, k, valid);
     }
   }
   k->live = m_none();

@@ -551,6 +551,9 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
 #endif
     }
   }
+  if ((a->mode == TETRA_SURFACES || a->mode == TETRA_SLICE) && a->kept > 0.0f) {
+    r->end = v_select(v_le(v_set(a->kept), light->most), v_set(-LARGEST_FLOAT), r->end);
+  }
   return live & (vi_lt(r->cell, vi_set(0)) | v_lt(light->transparency, v_set(a->termination)) | v_le(r->end, passage->to));
 }
 

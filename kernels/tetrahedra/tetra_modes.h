@@ -42,16 +42,31 @@ INLINE void tetra_add(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sum
   }
 }
 
-/* Composite a surface, whose colour is multiplied by its opacity, at a world distance. lit: NULL where it is not lit. */
+/* Composite a surface, whose colour is multiplied by its opacity, at a world distance. lit: NULL where it is not lit. Where rays keep only
+ * one of their surfaces, the nearer ones are forgotten, and the farther ones left out. */
 INLINE void tetra_surface(CONSTANT stratus_tetra_arguments* a, stratus_tetra_light* light, const stratus_tetra_lit* lit, vmask mask,
   const vfloat color[4], vfloat distance)
 {
-  const vfloat zero = v_set(0.0f), opacity = v_select(mask, color[3], zero);
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f), number = v_set(a->kept);
+  if (a->kept > 0.0f) {
+    mask = m_andnot(mask, v_le(number, light->most));
+  }
+  const vfloat opacity = v_select(mask, color[3], zero);
   tetra_gather(light, lit, v_select(mask, light->transparency, zero), color);
   light->transparency = v_fma(zero - light->transparency, opacity, light->transparency);
   if (a->picture.want_depth) {
     const vmask hit = mask & v_lt(zero, opacity) & v_le(v_set(LARGEST_FLOAT), light->depth);
     light->depth = v_select(hit, distance, light->depth);
+  }
+  if (a->kept > 0.0f) { /* a surface whose opacity is lost in 1 doesn't count, because its pixel shows nothing */
+    const vmask shown = mask & v_lt(light->transparency, one);
+    light->most = v_select(shown, light->most + one, light->most);
+    const vmask passed = shown & v_lt(light->most, number);
+    light->red = v_select(passed, zero, light->red);
+    light->green = v_select(passed, zero, light->green);
+    light->blue = v_select(passed, zero, light->blue);
+    light->transparency = v_select(passed, one, light->transparency);
+    light->depth = v_select(passed, v_set(LARGEST_FLOAT), light->depth);
   }
 }
 

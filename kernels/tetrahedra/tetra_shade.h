@@ -18,7 +18,7 @@
 /* The light that a ray has gathered. */
 typedef struct stratus_tetra_light {
   vfloat red, green, blue, transparency, depth;
-  vfloat most; /* maximum: the largest value */
+  vfloat most; /* maximum: the largest value; surfaces of which only one is kept: how many the ray has met */
 } stratus_tetra_light;
 
 /* A value's place in the table: the entry nearest to it, and the sums of red, green and blue times tau, and of tau, up to that entry's

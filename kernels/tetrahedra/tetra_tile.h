@@ -127,6 +127,7 @@ INLINE void lanes_load(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
 INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask, vint pixel)
 {
   const vfloat none = v_set(0.0f);
+  const int surfaces = t->arguments->mode == TETRA_SURFACES || t->arguments->mode == TETRA_SLICE;
   k->pixel = vi_select(mask, pixel, k->pixel);
   k->piece = vi_select(mask, vi_set(0), k->piece);
   lanes_load(t, k, mask);
@@ -136,7 +137,7 @@ INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
   k->light.blue = v_select(mask, none, k->light.blue);
   k->light.transparency = v_select(mask, v_set(1.0f), k->light.transparency);
   k->light.depth = v_select(mask, v_set(LARGEST_FLOAT), k->light.depth);
-  k->light.most = v_select(mask, v_set(-LARGEST_FLOAT), k->light.most);
+  k->light.most = v_select(mask, v_set(surfaces ? 0.0f : -LARGEST_FLOAT), k->light.most);
 }
 
 /* Moves rays that have ended to the next of their pieces in which they meet the mesh. Returns those that have one. */
