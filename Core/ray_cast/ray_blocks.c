@@ -6,6 +6,7 @@
 #include "picture.h"
 #include "ray_caster.h"
 #include "ray_kept.h"
+#include "ray_several_picture.h"
 #include "vector.h"
 #include "volume.h"
 
@@ -301,6 +302,10 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
   TRY_CLEANUP(measure(&b, boxes, &eye, &slack));
   TRY_CLEANUP(stratus_block_order(b.context, boxes, count, &eye, slack, order, b.overlap));
   if (kept.mode != STRATUS_MODE_COMPOSITE && b.overlap[0] >= 0) { /* surfaces of blocks side by side are behind one another, as light */
+    if (!b.kept && stratus_ray_parts(inputs[0].volume, inputs[0].options) > 1) {
+      status = stratus_several_kept(inputs, count, camera, image, reports);
+      goto cleanup;
+    }
     b.kept = &kept;
     kept.layers.least = stratus_kept_least(inputs[0].options);
     TRY_CLEANUP(check(&b));

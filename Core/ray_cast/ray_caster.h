@@ -152,6 +152,8 @@ stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_
  * stratus_ray_render_kept() draws what rays keep of one of them, in all modes but composite. keeps: as in the caster. *drawn: the caster
  * that has the component's structures. */
 int stratus_ray_parts(const stratus_volume* volume, const stratus_ray_cast_options* options);
+/* Finds the caster of an independent component, and makes it where there is none yet. */
+stratus_status stratus_ray_part(stratus_ray_caster* caster, int component, stratus_ray_caster** part);
 stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   int component, int keeps, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   const stratus_ray_caster** drawn, stratus_ray_cast_report* report);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Draws one image, or, in modes that find one value for each ray, one image of each independent component. Such a component has its own
- * caster, which keeps its structures, and the images are added. */
+ * caster, which keeps its structures, and the images are added. Surfaces of components are joined by depth, as of several volumes. */
 #include "picture.h"
 #include "ray_caster.h"
 #include "ray_several_picture.h"
@@ -8,8 +8,9 @@
 
 static bool draws_parts(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
-  const bool one_value = stratus_mode_is_extreme(options->mode) || stratus_mode_is_sum(options->mode);
-  return one_value && stratus_volume_components(volume) > 1 && !options->optics.dependent;
+  const bool one =
+    options->mode == STRATUS_MODE_COMPOSITE || options->mode == STRATUS_MODE_SLICE || options->mode == STRATUS_MODE_QUANTITIES;
+  return !one && stratus_volume_components(volume) > 1 && !options->optics.dependent;
 }
 
 int stratus_ray_parts(const stratus_volume* volume, const stratus_ray_cast_options* options)
@@ -56,8 +57,7 @@ static void add_component(stratus_ray_cast_report* sum, const stratus_ray_cast_r
   sum->tolerance_met = sum->tolerance_met && part->tolerance_met;
 }
 
-/* Finds the caster of an independent component, and makes it where there is none yet. */
-static stratus_status find_part(stratus_ray_caster* caster, int component, stratus_ray_caster** part)
+stratus_status stratus_ray_part(stratus_ray_caster* caster, int component, stratus_ray_caster** part)
 {
   if (!caster->parts[component]) {
     TRY(stratus_ray_caster_create(caster->context, &caster->parts[component]));
@@ -79,7 +79,7 @@ static stratus_status draw_parts(stratus_ray_caster* caster, const stratus_volum
     const stratus_volume view = stratus_volume_component(volume, c);
     stratus_ray_caster* one = NULL;
     stratus_ray_cast_report mine;
-    TRY_CLEANUP(find_part(caster, c, &one));
+    TRY_CLEANUP(stratus_ray_part(caster, c, &one));
     TRY_CLEANUP(stratus_ray_render_one(one, &view, transfer + c, camera, options, &part, &mine));
     stratus_image_add(image, &part, (float)transfer[c].weight, opaque);
     if (c == 0) {
@@ -94,6 +94,14 @@ cleanup:
   return status;
 }
 
+/* Draws the volume as one of several: its components' surfaces by depth, or numbers of rays. */
+static stratus_status draw_joined(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
+{
+  const stratus_ray_cast_input input = { .caster = caster, .volume = volume, .transfer = transfer, .options = options };
+  return stratus_several_kept(&input, 1, camera, image, report);
+}
+
 stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   int component, int keeps, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   const stratus_ray_caster** drawn, stratus_ray_cast_report* report)
@@ -102,10 +110,10 @@ stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus
   stratus_volume view = *volume;
   if (draws_parts(volume, options)) {
     view = stratus_volume_component(volume, component);
-    TRY(find_part(caster, component, &one));
+    TRY(stratus_ray_part(caster, component, &one));
   }
   if (options->mode == STRATUS_MODE_QUANTITIES) { /* structures of pictures stay as they are */
-    TRY(find_part(caster, STRATUS_RAY_PARTS - 1, &one));
+    TRY(stratus_ray_part(caster, STRATUS_RAY_PARTS - 1, &one));
   }
   one->keeps = keeps;
   const stratus_status status = stratus_ray_render_one(one, &view, transfer + component, camera, options, image, report);
@@ -131,11 +139,11 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
   transfer = options->optics.transfer_2d ? &caster->transfer_2d.shown : transfer;
   TRY(stratus_ray_check_input(caster->context, volume, transfer, options));
   TRY(stratus_image_check(caster->context, image));
-  if (options->mode == STRATUS_MODE_QUANTITIES) {
-    const stratus_ray_cast_input input = { .caster = caster, .volume = volume, .transfer = transfer, .options = options };
-    return stratus_several_kept(&input, 1, camera, image, report);
-  }
-  TRY((draws_parts(volume, options) ? draw_parts : stratus_ray_render_one)(caster, volume, transfer, camera, options, image, &mine));
+  const bool joins = options->mode == STRATUS_MODE_QUANTITIES ||
+    (draws_parts(volume, options) && (options->mode == STRATUS_MODE_FIRST_HIT || options->mode == STRATUS_MODE_ISOSURFACE));
+  TRY((joins                         ? draw_joined
+      : draws_parts(volume, options) ? draw_parts
+                                     : stratus_ray_render_one)(caster, volume, transfer, camera, options, image, &mine));
   if (report) {
     *report = mine;
   }

@@ -4,6 +4,7 @@
 #include "picture.h"
 #include "ray_kept.h"
 #include "ray_several_picture.h"
+#include "ray_shading_table.h"
 #include "tetra_cells.h"
 
 #include <math.h>
@@ -98,8 +99,8 @@ static stratus_status draw(
   return STRATUS_OK;
 }
 
-stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
-  const stratus_image* image, stratus_ray_cast_report* reports)
+static stratus_status draw_all(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera, const stratus_image* image,
+  stratus_ray_cast_report* reports)
 {
   stratus_context* context = stratus_several_context(inputs);
   stratus_kept kept = {
@@ -109,9 +110,6 @@ stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int co
   stratus_status status = STRATUS_OK;
   void* ends = NULL;
   int components = 1;
-  TRY(stratus_image_check(context, image));
-  TRY(stratus_camera_check(context, camera, image));
-  TRY(check(context, inputs, count));
   for (int n = 0; n < count; ++n) {
     const int mine = components_of(&inputs[n], kept.mode);
     components = mine > components ? mine : components;
@@ -140,4 +138,104 @@ cleanup:
   stratus_image_part_destroy(context, &part);
   stratus_kept_destroy(&kept);
   return status;
+}
+
+/* ---- surfaces of several components */
+
+/* An independent component as a volume of its own. */
+typedef struct component {
+  stratus_volume volume;
+  stratus_ray_cast_options options;
+  stratus_transfer* transfer; /* a copy, whose opacities are multiplied by the component's weight */
+  int of;                     /* the input */
+} component;
+
+static void take_material(const stratus_material* material, stratus_ray_light_options* light)
+{
+  stratus_shading* shading = &light->shading;
+  light->shade = shading->on = material->shade;
+  shading->ambient = material->ambient;
+  shading->diffuse = material->diffuse;
+  shading->specular = material->specular;
+  shading->specular_power = material->specular_power;
+  light->materials = NULL;
+}
+
+static stratus_status take_component(
+  stratus_context* context, const stratus_ray_cast_input* in, int c, component* to, stratus_ray_cast_input* input)
+{
+  stratus_ray_caster* caster = NULL;
+  TRY(stratus_ray_part(in->caster, c, &caster));
+  TRY(stratus_transfer_copy(context, in->transfer + c, 1, &to->transfer));
+  double* opacity = (double*)to->transfer->opacity;
+  for (size_t i = 0; i < to->transfer->opacity_count; ++i) {
+    opacity[2 * i + 1] *= in->transfer[c].weight;
+  }
+  to->volume = stratus_volume_component(in->volume, c);
+  to->options = *in->options;
+  if (to->options.light.materials) {
+    take_material(to->options.light.materials + c, &to->options.light);
+  }
+  *input = (stratus_ray_cast_input){ .caster = caster, .volume = &to->volume, .transfer = to->transfer, .options = &to->options };
+  return STRATUS_OK;
+}
+
+/* Draws `total` inputs: those given, but each independent component as an input of its own. */
+static stratus_status draw_components(const stratus_ray_cast_input* inputs, int count, int total, const stratus_camera* camera,
+  const stratus_image* image, stratus_ray_cast_report* reports)
+{
+  stratus_context* context = stratus_several_context(inputs);
+  void *memory = NULL, *list = NULL, *results = NULL;
+  component* parts = NULL;
+  stratus_status status = STRATUS_OK;
+  int n = 0;
+  TRY_CLEANUP(stratus_allocate_zero(context, (size_t)total, sizeof(component), &memory));
+  parts = memory;
+  TRY_CLEANUP(stratus_allocate(context, (size_t)total, sizeof(stratus_ray_cast_input), &list));
+  TRY_CLEANUP(stratus_allocate_zero(context, (size_t)total, sizeof(stratus_ray_cast_report), &results));
+  stratus_ray_cast_input* const all = list;
+  stratus_ray_cast_report* const mine = results;
+  for (int i = 0; i < count; ++i) {
+    const int components = components_of(&inputs[i], stratus_kept_mode(inputs));
+    for (int c = 0; c < components; ++c) {
+      parts[n].of = i;
+      all[n] = inputs[i];
+      if (components > 1) {
+        TRY_CLEANUP(take_component(context, &inputs[i], c, &parts[n], &all[n]));
+      }
+      ++n;
+    }
+  }
+  TRY_CLEANUP(draw_all(all, total, camera, image, mine));
+  for (n = 0; reports && n < total; ++n) {
+    if (n > 0 && parts[n].of == parts[n - 1].of) {
+      stratus_ray_cast_report_add(&reports[parts[n].of], &mine[n]);
+    } else {
+      reports[parts[n].of] = mine[n];
+    }
+  }
+cleanup:
+  for (n = 0; parts && n < total; ++n) {
+    stratus_release(context, parts[n].transfer);
+  }
+  stratus_release(context, memory);
+  stratus_release(context, list);
+  stratus_release(context, results);
+  return status;
+}
+
+stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
+  const stratus_image* image, stratus_ray_cast_report* reports)
+{
+  stratus_context* context = stratus_several_context(inputs);
+  const stratus_mode mode = stratus_kept_mode(inputs);
+  int total = 0;
+  TRY(stratus_image_check(context, image));
+  TRY(stratus_camera_check(context, camera, image));
+  TRY(check(context, inputs, count));
+  for (int n = 0; n < count; ++n) {
+    total += components_of(&inputs[n], mode);
+  }
+  return stratus_kept_is(mode) || total == count ? draw_all(inputs, count, camera, image, reports)
+                                                 : draw_components(inputs, count, total, camera, image, reports);
 }

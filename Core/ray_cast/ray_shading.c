@@ -18,7 +18,9 @@ stratus_status stratus_ray_shading_check_materials(
   stratus_context* context, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   const int components = stratus_volume_components(volume);
-  const bool read = options->light.materials && components > 1 && !options->optics.dependent && options->mode == STRATUS_MODE_COMPOSITE;
+  const bool lit =
+    options->mode == STRATUS_MODE_COMPOSITE || options->mode == STRATUS_MODE_ISOSURFACE || options->mode == STRATUS_MODE_FIRST_HIT;
+  const bool read = options->light.materials && components > 1 && !options->optics.dependent && lit;
   for (int c = 0; read && c < components; ++c) {
     const stratus_material* m = options->light.materials + c;
     const double numbers[4] = { m->ambient, m->diffuse, m->specular, m->specular_power };

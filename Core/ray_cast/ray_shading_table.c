@@ -59,12 +59,8 @@ stratus_status stratus_ray_shading_check_volume(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const int components = stratus_volume_components(volume);
-  const bool surfaces =
-    options->mode == STRATUS_MODE_FIRST_HIT || options->mode == STRATUS_MODE_ISOSURFACE || options->mode == STRATUS_MODE_QUANTITIES;
-  if (components > 1 && surfaces && !options->optics.dependent) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED,
-      "mode %s of a volume of %d independent components: only modes without surfaces take more than 1", stratus_mode_name(options->mode),
-      components);
+  if (components > 1 && options->mode == STRATUS_MODE_QUANTITIES) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mode quantities of a volume of %d components, must have 1", components);
   }
   if (options->mask.label_count < 0 || options->mask.label_count > 255 || (options->mask.label_count > 0 && !options->mask.bytes)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%d labels %s a mask, must be 0..255, and there must be one",

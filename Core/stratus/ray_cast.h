@@ -175,12 +175,13 @@ typedef struct stratus_ray_skipping_options {
 
 /* The colour and opacity of samples before they are lit. */
 typedef struct stratus_ray_optics_options {
-  /* Volumes of several components. First hits and isosurface do not draw independent ones: STRATUS_UNSUPPORTED.
+  /* Volumes of several components.
    *
    * 0 (default): each component is a medium with its own transfer function. Composite: where media mix, their optical depths and their
    * emitted light add up. Slice: the same at each point, over a length of which each opacity is. Maximum, minimum, average and additive
    * draw each component by itself. Their premultiplied colours, times the components' weights, add up to at most 1, and so do the alphas of
-   * extremes.
+   * extremes. Isosurface shows each component's surfaces of the contours, and first hits the nearest hit of any component, by depth, with
+   * opacities times the components' weights.
    *
    * 1: the components are one medium with one transfer function. Of 2 components, the first has the colour and the second the opacity. Of 4
    * (up to 16 bits, or floats), the first three are red, green and blue in 0..255, and the fourth has the opacity. The gradient is the last
@@ -214,9 +215,9 @@ typedef struct stratus_ray_optics_options {
 typedef struct stratus_ray_light_options {
   int shade;               /* composite and isosurface; 1: `shading` lights the samples. Default 0. */
   stratus_shading shading; /* used in first hits, and in composite and isosurface if `shade` is 1 */
-  /* Composite, independent components: one material for each component, which replaces `shade` and the material in `shading`. The lights of
-   * `shading` are read if a material has shade. NULL (default): all components have the material of `shading`. Borrowed during the
-   * render. */
+  /* Composite, isosurface and first hits, independent components: one material for each component, which replaces `shade` and the material
+   * in `shading`. The lights of `shading` are read if a material has shade. NULL (default): all components have the material of `shading`.
+   * Borrowed during the render. */
   const stratus_material* materials;
   /* First hits; default faces. Where a clip plane or the crop cuts the hit voxel, the hit has the normal of the plane that cuts. */
   stratus_normals normals;

@@ -41,9 +41,10 @@
  * Lights of all kinds shine, with attenuation and cones (vtkLight; a ConeAngle of 90 and more is none).
  *
  * Maximum, minimum, average and additive draw each of 2 to 4 independent components by itself, and add their weighted colours, as VTK's
- * mappers do. Slices mix them as composite mode mixes them at a sample. Of dependent components, extremes keep the last one's value,
- * isosurfaces cut it, slices and first hits show it by its opacity, each in the colour of the others at that place; average and additive
- * take the last one's opacity times the first one's value, as VTK's mappers do.
+ * mappers do. Slices mix them as composite mode mixes them at a sample. Isosurfaces show the surfaces of each component, first hits the
+ * nearest hit of any, with opacities times ComponentWeight; VTK's mapper shows only the component of the greatest weight. Of dependent
+ * components, extremes keep the last one's value, isosurfaces cut it, slices and first hits show it by its opacity, each in the colour of
+ * the others at that place; average and additive take the last one's opacity times the first one's value, as VTK's mappers do.
  *
  * Cropping planes are along the image's own axes, as in VTK's mappers: at origin + spacing * index, before the direction matrix. Planes
  * that are taken from GetBounds() may miss a mirrored or turned image; a warning says so.

@@ -21,9 +21,9 @@ bool vtkStratusVolumeMapper::Internals::SetMaterials(vtkVolumeProperty* property
   const int components = this->Image.GetVolume().components;
   bool alike = true;
   const bool lit = vtkStratusSetMaterials(property, components, this->Materials.data(), alike);
-  const bool mixes = options.mode == STRATUS_MODE_COMPOSITE && components > 1 && property->GetIndependentComponents();
-  options.light.materials = mixes && !alike ? this->Materials.data() : nullptr;
-  return mixes && lit;
+  const bool several = this->HasLight() && components > 1 && property->GetIndependentComponents();
+  options.light.materials = several && !alike ? this->Materials.data() : nullptr;
+  return several && lit;
 }
 
 bool vtkStratusVolumeMapper::Internals::SetShading(

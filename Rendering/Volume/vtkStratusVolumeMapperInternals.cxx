@@ -203,12 +203,6 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
   const int labels = this->HasLabels() ? HighestLabel(property) : 0;
   this->Functions.resize(static_cast<size_t>(std::max(media, 1 + labels)));
   this->Transfers.resize(std::max(this->Functions.size(), this->Transfers.size())); // those not needed now keep their count
-  const bool surfaces = this->IsFirstHit() || this->Mapper->BlendMode == vtkVolumeMapper::ISOSURFACE_BLEND;
-  if (media > 1 && surfaces) {
-    error = "the array has " + std::to_string(components) +
-      " independent components: first hits and isosurfaces take 1, or one by VectorMode, or dependent ones";
-    return false;
-  }
   bool thins = false;
   for (int c = 0; c < media; ++c) {
     if (!this->Transfers[c].Set(property, c, error)) {

@@ -17,22 +17,22 @@
 namespace {
 void Components()
 {
-  vtkNew<vtkImageData> pairs;
-  pairs->SetDimensions(5, 5, 5);
-  pairs->AllocateScalars(VTK_UNSIGNED_CHAR, 2);
-  pairs->GetPointData()->GetScalars()->Fill(1);
-  for (int solid = 0; solid < 2; ++solid) {
+  vtkNew<vtkImageData> triples;
+  triples->SetDimensions(5, 5, 5);
+  triples->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  triples->GetPointData()->GetScalars()->Fill(1);
+  for (int blend = vtkVolumeMapper::COMPOSITE_BLEND; blend <= vtkVolumeMapper::ADDITIVE_BLEND; ++blend) {
     Refused(
-      "surfaces of two independent components", "2 independent components",
+      "three dependent components", "3 dependent components",
       [&](Scene& s) {
-        s.Mapper->SetInputData(pairs);
-        s.Mapper->SetBlendMode(solid ? vtkVolumeMapper::COMPOSITE_BLEND : vtkVolumeMapper::ISOSURFACE_BLEND);
-        s.Mapper->SetRenderMode(solid ? vtkStratusVolumeMapper::FIRST_HIT_MODE : vtkStratusVolumeMapper::COMPOSITE_MODE);
+        s.Mapper->SetInputData(triples);
+        s.Mapper->SetBlendMode(blend);
+        s.Volume->GetProperty()->IndependentComponentsOff();
       },
       [](Scene& s) {
         s.Mapper->SetInputData(s.Image);
         s.Mapper->SetBlendModeToComposite();
-        s.Mapper->SetRenderModeToComposite();
+        s.Volume->GetProperty()->IndependentComponentsOn();
       });
   }
 }

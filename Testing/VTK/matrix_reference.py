@@ -411,8 +411,7 @@ def blend(count, ray, s, rgb, alpha):
 def isosurface(layers, eyes, ways):
     ray, s, values = along(layers, eyes, ways)
     found = []
-    for layer, value in zip(layers, values):
-        m = layer.media()[0]
+    for layer, value, m in [(layer, value, m) for layer, value in zip(layers, values) for m in layer.media()]:
         contour = scenes.CONTOUR * (200 if "rgba" in layer.features else 1)
         v = value[:, m] - contour
         with numpy.errstate(invalid="ignore"):
@@ -495,10 +494,10 @@ def solid_mesh(layer, m, eyes, ways):
 
 
 def first_hits(layers, eyes, ways):
-    """The box about the first value of opacity above 0, or of tetrahedra the first place of such a value."""
+    """The box about the first value of opacity above 0, or of tetrahedra the first place of such a value; of components, the nearest."""
     light, nearest = numpy.zeros((len(eyes), 3)), numpy.full(len(eyes), numpy.inf)
-    for layer in layers:
-        field, m = layer.field, layer.media()[0]
+    for layer, m in [(layer, m) for layer in layers for m in layer.media()]:
+        field = layer.field
         if isinstance(field, Mesh):
             ray, s, shows, rgb = solid_mesh(layer, m, eyes, ways)
         else:

@@ -409,6 +409,156 @@ static void first_hits_have_the_colour_of_their_voxel(void** state)
   stratus_context_destroy(context);
 }
 
+typedef struct placed_layer {
+  reference_layer of;
+  int component;
+} placed_layer;
+
+static int nearer(const void* a, const void* b)
+{
+  const placed_layer *p = a, *q = b;
+  return p->of.t < q->of.t ? -1 : p->of.t > q->of.t ? 1 : p->component - q->component;
+}
+
+/* Surfaces of all components are behind one another by depth, with opacities times the components' weights. */
+static void surfaces_of_components_are_in_the_order_of_depth(void** state)
+{
+  (void)state;
+  enum { MOST = 64 };
+  static reference_layer found[COMPONENTS][CASE_PIXELS * MOST];
+  static int counts[COMPONENTS][CASE_PIXELS];
+  static float expected[4 * CASE_PIXELS];
+  stratus_context* context = case_context("host", 2);
+  for (int count = 2; count <= COMPONENTS; ++count) {
+    many m;
+    int mixed = 0, grazes = 0;
+    many_create(context, &m, count == 3 ? STRATUS_UINT8 : STRATUS_FLOAT32, count, 20, 17, 19, 5u + (uint32_t)count);
+    set_mode(&m, STRATUS_MODE_ISOSURFACE);
+    case_camera(context, &m.c, count, 0);
+    m.transfers[1].weight = 0.6;
+    for (int c = 0; c < count; ++c) {
+      const stratus_volume view = stratus_volume_component(&m.c.volume, c);
+      reference_modes_layers(&view, m.transfers + c, &m.c.camera, &m.c.options, CASE_WIDTH, CASE_HEIGHT, MOST, found[c], counts[c]);
+    }
+    for (int i = 0; i < CASE_PIXELS; ++i) {
+      placed_layer all[COMPONENTS * MOST];
+      double left = 1.0, rgb[3] = { 0.0, 0.0, 0.0 };
+      int layers = 0;
+      for (int c = 0; c < count; ++c) {
+        for (int l = 0; l < counts[c][i]; ++l) {
+          all[layers] = (placed_layer){ found[c][i * MOST + l], c };
+          all[layers++].of.color[3] *= m.transfers[c].weight;
+        }
+      }
+      qsort(all, (size_t)layers, sizeof *all, nearer);
+      for (int l = 0; l < layers; ++l) {
+        for (int k = 0; k < 3; ++k) {
+          rgb[k] += left * all[l].of.color[3] * all[l].of.color[k];
+        }
+        left *= 1.0 - all[l].of.color[3];
+        mixed += l > 1 && all[l].component != all[l - 1].component && all[l].component == all[l - 2].component;
+      }
+      for (int k = 0; k < 4; ++k) {
+        expected[4 * i + k] = (float)(k < 3 ? rgb[k] : 1.0 - left);
+      }
+    }
+    many_draw(context, &m, &drawn);
+    for (int i = 0; i < CASE_PIXELS; ++i) {
+      if (fabsf(drawn.rgba[4 * i + 3] - expected[4 * i + 3]) > 0.01f) { /* a ray grazes a surface */
+        memcpy(drawn.rgba + 4 * i, expected + 4 * i, 4 * sizeof *expected);
+        ++grazes;
+      }
+    }
+    const double db = reference_psnr(drawn.rgba, expected, CASE_PIXELS);
+    print_message(
+      "             %d: %.1f dB, %d pixels, %d grazing, %d surfaces between others\n", count, db, case_lit(&drawn), grazes, mixed);
+    assert_true(case_lit(&drawn) > 200 && mixed > 100);
+    assert_in_range(grazes, 0, 6);
+    assert_true(db >= 60.0);
+    m.c.options.skipping.audit = 1;
+    many_draw(context, &m, &drawn);
+    assert_int_equal(drawn.report.differing_pixels, 0);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
+/* The nearest of the hits of each component, the first component's where two are as near; nothing of a component of weight 0. */
+static void the_nearest_hit_of_any_component_shows(void** state)
+{
+  (void)state;
+  static picture each[COMPONENTS];
+  stratus_context* context = case_context("host", 2);
+  for (int turn = 0; turn < 2; ++turn) {
+    many m;
+    int of[COMPONENTS] = { 0 };
+    many_create(context, &m, STRATUS_FLOAT32, COMPONENTS, 20, 17, 19, 5u);
+    m.c.options.mode = STRATUS_MODE_FIRST_HIT;
+    m.transfers[0].weight = turn ? 0.0 : 1.0;
+    const stratus_volume all = m.c.volume;
+    many_draw(context, &m, &drawn);
+    for (int c = 0; c < COMPONENTS; ++c) {
+      many one = m;
+      one.c.volume = stratus_volume_component(&all, c);
+      one.transfers[0] = m.transfers[c];
+      many_draw(context, &one, &each[c]);
+    }
+    for (int i = 0; i < CASE_PIXELS; ++i) {
+      int nearest = turn;
+      for (int c = turn + 1; c < COMPONENTS; ++c) {
+        nearest = each[c].depth[i] < each[nearest].depth[i] ? c : nearest;
+      }
+      assert_memory_equal(&drawn.depth[i], &each[nearest].depth[i], sizeof(float));
+      assert_memory_equal(&drawn.rgba[4 * i], &each[nearest].rgba[4 * i], 4 * sizeof(float));
+      of[nearest] += isfinite(drawn.depth[i]);
+    }
+    print_message("             %d, %d, %d and %d hits\n", of[0], of[1], of[2], of[3]);
+    assert_true((of[0] > 20) == !turn && of[1] > 20 && of[2] > 20);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
+/* Components with materials of their own are the volumes with these materials. */
+static void surfaces_have_the_material_of_their_component(void** state)
+{
+  (void)state;
+  static const stratus_mode modes[] = { STRATUS_MODE_ISOSURFACE, STRATUS_MODE_FIRST_HIT };
+  const stratus_material materials[2] = { { 1, 0.1, 0.5, 0.6, 9.0 }, { 0, 0.3, 0.9, 0.0, 1.0 } };
+  stratus_context* context = case_context("host", 2);
+  for (int mode = 0; mode < 2; ++mode) {
+    many m;
+    stratus_volume views[2];
+    stratus_ray_cast_options options[2];
+    stratus_ray_cast_input inputs[2] = { { 0 } };
+    many_create(context, &m, STRATUS_FLOAT32, 2, 20, 17, 19, 5u);
+    set_mode(&m, modes[mode]);
+    for (int c = 0; c < 2; ++c) {
+      views[c] = stratus_volume_component(&m.c.volume, c);
+      options[c] = m.c.options;
+      options[c].light.shade = options[c].light.shading.on = materials[c].shade;
+      options[c].light.shading.ambient = materials[c].ambient;
+      options[c].light.shading.diffuse = materials[c].diffuse;
+      options[c].light.shading.specular = materials[c].specular;
+      options[c].light.shading.specular_power = materials[c].specular_power;
+      inputs[c] = (stratus_ray_cast_input){ .volume = &views[c], .transfer = m.transfers + c, .options = &options[c] };
+      assert_int_equal(stratus_ray_caster_create(context, &inputs[c].caster), STRATUS_OK);
+    }
+    const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba, .depth = other.depth };
+    assert_int_equal(stratus_ray_caster_render_several(inputs, 2, &m.c.camera, &image, NULL), STRATUS_OK);
+    many_draw(context, &m, &drawn);
+    assert_memory_not_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    m.c.options.light.materials = materials;
+    many_draw(context, &m, &drawn);
+    assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    assert_memory_equal(drawn.depth, other.depth, sizeof drawn.depth);
+    stratus_ray_caster_destroy(inputs[0].caster);
+    stratus_ray_caster_destroy(inputs[1].caster);
+    many_destroy(&m);
+  }
+  stratus_context_destroy(context);
+}
+
 /* A caster goes from mode to mode, by dependent and independent components, and draws what a new one draws. */
 static void a_caster_changes_what_it_follows(void** state)
 {
@@ -423,7 +573,7 @@ static void a_caster_changes_what_it_follows(void** state)
   for (int turn = 0; turn < 24; ++turn) {
     const int mode = (int)(case_random(&random) % 8);
     set_mode(&m, (stratus_mode)mode);
-    m.c.options.optics.dependent = mode == STRATUS_MODE_FIRST_HIT || mode == STRATUS_MODE_ISOSURFACE || case_random(&random) % 3 > 0;
+    m.c.options.optics.dependent = case_random(&random) % 3 > 0;
     m.c.options.sampling.distance = 0.5;
     assert_int_equal(stratus_ray_caster_render(caster, &m.c.volume, m.transfers, &m.c.camera, &m.c.options, &image, NULL), STRATUS_OK);
     many_draw(context, &m, &other);
@@ -485,12 +635,6 @@ static void what_it_cannot_show_is_refused(void** state)
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "gradient"));
   m.transfers[3].gradient_count = 0;
-  for (int mode = STRATUS_MODE_FIRST_HIT; mode <= STRATUS_MODE_ISOSURFACE; mode += STRATUS_MODE_ISOSURFACE - STRATUS_MODE_FIRST_HIT) {
-    m.c.options.mode = (stratus_mode)mode;
-    m.c.options.optics.contour_count = 1;
-    assert_int_equal(many_status(context, &m, &drawn), STRATUS_UNSUPPORTED);
-    assert_non_null(strstr(stratus_context_message(context), "surfaces"));
-  }
   m.c.options.mode = STRATUS_MODE_COMPOSITE;
   m.c.options.optics.gradient_distance = -2.5;
   assert_int_equal(many_status(context, &m, &drawn), STRATUS_INVALID_ARGUMENT);
@@ -521,6 +665,9 @@ int test_ray_components(void)
     cmocka_unit_test(dependent_components_are_drawn_in_every_mode),
     cmocka_unit_test(components_mix_on_a_slice),
     cmocka_unit_test(first_hits_have_the_colour_of_their_voxel),
+    cmocka_unit_test(surfaces_of_components_are_in_the_order_of_depth),
+    cmocka_unit_test(the_nearest_hit_of_any_component_shows),
+    cmocka_unit_test(surfaces_have_the_material_of_their_component),
     cmocka_unit_test(a_caster_changes_what_it_follows),
     cmocka_unit_test(a_function_or_weight_edited_is_seen),
     cmocka_unit_test(what_it_cannot_show_is_refused),
