@@ -96,7 +96,7 @@ struct stratus_ray_caster {
   stratus_ray_trial trial;
   const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
 
-  stratus_ray_caster* parts[STRATUS_RAY_PARTS]; /* of independent components, see ray_caster_pictures.c; NULL until such a mode is used */
+  stratus_ray_caster* parts[STRATUS_RAY_PARTS]; /* of independent components, see ray_caster_parts.c; NULL until such a mode is used */
 
   int keeps; /* > 0: pictures hold what rays keep (ray_kept.h), of surfaces this one of each ray, the nearest is 1 */
 
@@ -148,7 +148,7 @@ uint64_t stratus_ray_differing(const stratus_image* image, const float* rgba, co
 stratus_status stratus_ray_render_one(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report);
 
-/* ray_caster_pictures.c. stratus_ray_parts(): the number of components that are drawn by themselves; options NULL: the defaults.
+/* ray_caster_parts.c. stratus_ray_parts(): the number of components that are drawn by themselves; options NULL: the defaults.
  * stratus_ray_render_kept() draws what rays keep of one of them, in all modes but composite. keeps: as in the caster. *drawn: the caster
  * that has the component's structures. */
 int stratus_ray_parts(const stratus_volume* volume, const stratus_ray_cast_options* options);

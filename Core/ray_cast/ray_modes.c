@@ -9,23 +9,6 @@
 
 #include <string.h>
 
-const char* stratus_mode_name(stratus_mode mode)
-{
-  static const char* const names[] = { "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface", "slice",
-    "quantities" };
-  return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
-}
-
-bool stratus_mode_is_extreme(stratus_mode mode)
-{
-  return mode == STRATUS_MODE_MAXIMUM || mode == STRATUS_MODE_MINIMUM;
-}
-
-bool stratus_mode_is_sum(stratus_mode mode)
-{
-  return mode == STRATUS_MODE_AVERAGE || mode == STRATUS_MODE_ADDITIVE;
-}
-
 static stratus_status check_contours(stratus_context* context, const stratus_ray_cast_options* options)
 {
   if (options->optics.contour_count < 1 || options->optics.contour_count > STRATUS_CONTOURS_MAX) {

@@ -63,7 +63,9 @@ static stratus_status check(const quantities* q)
     if (!stratus_several_context(in) || (in->tetra ? !in->mesh : !in->volume)) {
       return stratus_fail(q->context, STRATUS_INVALID_ARGUMENT, "input %d has no caster, or neither a volume nor a mesh", n);
     }
-    TRY(in->tetra ? stratus_mesh_check(q->context, in->mesh) : stratus_volume_check(q->context, in->volume));
+    if (!in->tetra) { /* drawing checks a mesh */
+      TRY(stratus_volume_check(q->context, in->volume));
+    }
     const int components = in->tetra ? stratus_tetra_component_count(in->mesh) : stratus_volume_components(in->volume);
     if (w->component < 0 || w->component >= components) {
       return stratus_fail(q->context, STRATUS_INVALID_ARGUMENT, "component %d of input %d, must be 0..%d", w->component, n, components - 1);

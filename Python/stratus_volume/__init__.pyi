@@ -83,12 +83,12 @@ class Tetrahedra:
         threads: int | None = ..., matrix: _Matrix = ..., component: _Component = ...) -> None: ...
     def render(
         self, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: Any = ..., unit_distance: float | None = ...,
-        mode: Literal["composite", "maximum", "minimum", "average", "additive", "isosurface"] = ..., method: Literal["auto", "march", "project"] = ...,
+        mode: _Mode = ..., method: Literal["auto", "march", "project"] = ...,
         tolerance: float | None = ..., shade: _Shade = ..., gradient_opacity: _Points = ...,
         contours: float | Sequence[float] | None = ..., crop: Sequence[float] | None = ..., clip_planes: Sequence[Sequence[float]] | None = ...,
         average_range: Sequence[float] | None = ..., opaque_depth: ArrayLike | None = ..., progress: _Progress = ..., dependent: bool = ...,
-        weights: float | Sequence[float] | None = ..., mean_components: bool = ..., quantities: _Quantities = ...,
-        threshold: float = ...) -> Rendering: ...
+        weights: float | Sequence[float] | None = ..., mean_components: bool = ...,
+        surface: dict[str, Any] | None = ..., quantities: _Quantities = ..., threshold: float = ...) -> Rendering: ...
 
 class Tree:
     context: Context

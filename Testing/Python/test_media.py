@@ -123,7 +123,8 @@ def dependent():
     holds(render(rgba, dependent=True, **straight), [numpy.minimum(rgba[..., 3] / 255, 1 - 1e-12)], [rgba[..., :3] / 255], "bytes that are a colour")
     holds(render(rgba, opacity=[(0, 0), (255, 0.3)], dependent=True, **straight), [rgba[..., 3] / 255 * 0.3], [rgba[..., :3] / 255], "thinned")
     refuse(Unsupported, "3 dependent", render, rgba[..., :3], dependent=True, **straight)
-    refuse(Unsupported, "bytes", render, rgba.astype(numpy.float32), dependent=True, **straight)
+    holds(render(rgba.astype(numpy.float32), dependent=True, **straight), [numpy.minimum(rgba[..., 3] / 255, 1 - 1e-12)], [rgba[..., :3] / 255], "floats")
+    refuse(Unsupported, "up to 16 bits or floats", render, rgba.astype(numpy.int32), dependent=True, **straight)
 
 
 def labels():

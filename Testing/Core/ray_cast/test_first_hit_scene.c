@@ -317,7 +317,7 @@ static void what_makes_no_sense_is_refused(void** state)
   refuse(context, &c, "near");
   assert_string_equal(stratus_mode_name(STRATUS_MODE_COMPOSITE), "composite");
   assert_string_equal(stratus_mode_name(STRATUS_MODE_FIRST_HIT), "first-hit");
-  assert_string_equal(stratus_mode_name((stratus_mode)8), "unknown");
+  assert_string_equal(stratus_mode_name((stratus_mode)(STRATUS_MODE_QUANTITIES + 1)), "unknown");
   case_destroy(&c);
   stratus_context_destroy(context);
 }

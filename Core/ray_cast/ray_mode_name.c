@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Ray modes' names and kinds. */
+#include "ray_modes_render.h"
+
+const char* stratus_mode_name(stratus_mode mode)
+{
+  static const char* const names[] = { "composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface", "slice",
+    "quantities" };
+  return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
+}
+
+bool stratus_mode_is_extreme(stratus_mode mode)
+{
+  return mode == STRATUS_MODE_MAXIMUM || mode == STRATUS_MODE_MINIMUM;
+}
+
+bool stratus_mode_is_sum(stratus_mode mode)
+{
+  return mode == STRATUS_MODE_AVERAGE || mode == STRATUS_MODE_ADDITIVE;
+}
