@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Ray modes' names and kinds. */
+ * Ray modes' names and kinds, and the length that their tables are for. */
 #include "ray_modes_render.h"
 
 const char* stratus_mode_name(stratus_mode mode)
@@ -17,4 +17,9 @@ bool stratus_mode_is_extreme(stratus_mode mode)
 bool stratus_mode_is_sum(stratus_mode mode)
 {
   return mode == STRATUS_MODE_AVERAGE || mode == STRATUS_MODE_ADDITIVE;
+}
+
+double stratus_ray_modes_table_distance(stratus_mode mode, const stratus_transfer* transfer, double sample_distance)
+{
+  return mode == STRATUS_MODE_COMPOSITE ? sample_distance : transfer->unit_distance;
 }

@@ -85,11 +85,6 @@ bool stratus_ray_modes_same(const stratus_ray_shown* a, const stratus_ray_shown*
   return same;
 }
 
-double stratus_ray_modes_table_distance(stratus_mode mode, const stratus_transfer* transfer, double sample_distance)
-{
-  return mode == STRATUS_MODE_COMPOSITE ? sample_distance : transfer->unit_distance;
-}
-
 /* The contour as rays see it. */
 static float fetched_contour(double contour, double bias)
 {
