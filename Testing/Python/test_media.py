@@ -93,7 +93,7 @@ def components():
     refuse(ValueError, "1 component", render, several[..., 0], dependent=True)
     refuse(ValueError, "5)", render, numpy.zeros((4, 4, 4, 5)))
     refuse(ValueError, "2 components", distance_field, several)
-    refuse(Unsupported, "component", render, several, mode="isosurface", contours=[0.5], **host)
+    check(render(several, mode="isosurface", contours=[0.5], **host).rgba[..., 3].max() > 0, "surfaces of components")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         render(several, opacity=[[(0, 0), (1, 0)]] * 2, **host)
@@ -254,7 +254,7 @@ def several():
     cells = render_several([(first, look), (mesh, other)], **host)
     lit = cells.rgba[..., 3] > 0
     check(numpy.abs(cells.rgba - mixed.rgba)[lit].mean() < 0.02 and apart(cells, render(first, **look, **host)) > 0.1, "a mesh among them")
-    surfaces = [(field, dict(mode="isosurface", contours=[0.4], opacity=1, color=how["color"])) for field, how in ((first, look), (second, other))]
+    surfaces = [(field, dict(mode="isosurface", contours=[0.4], opacity=[(0, 1), (1, 1)], color=how["color"])) for field, how in ((first, look), (second, other))]
     each = [render(field, **how, **host) for field, how in surfaces]
     nearest = numpy.where((each[0].depth <= each[1].depth)[..., None], each[0].rgba, each[1].rgba)
     check(numpy.abs(render_several(surfaces, **host).rgba - nearest).max() < 1e-3 and each[1].rgba.max() > 0.5, "surfaces by depth")
