@@ -675,7 +675,9 @@ def test_refined():
     expect(0, r"kind +AMR: 6 boxes in 3 levels", "info", "refined.vthb")
     expect(0, "picture", "render", "refined.vthb", "-o", "out.png", *look, "--nearest")
     expect(0, "picture", "render", "refined.vthb", "-o", "lit.png", *look, "--shade")
-    expect(1, "differ", "compare", "out.png", "lit.png", "--rmse", "1")
+    with open("out.png", "rb") as plain, open("lit.png", "rb") as lit:
+        if plain.read() == lit.read():
+            fail("light changes no picture of AMR")
     expect(2, "is AMR, which is drawn without others", "render", "refined.vthb", "fine.vti", "-o", "no.png")
     write(vtkXMLUniformGridAMRWriter, Refined(uneven(), cells=False).data(vtkCommonDataModel), "points.vthb")
     expect(1, "nearest interpolation of AMR's values of points", "render", "points.vthb", "-o", "no.png", "--nearest")
