@@ -33,7 +33,7 @@ class Volume:
     def __init__(self, data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None):
         self.grid = grid_of(data, spacing, origin, axes, scalars, component)
         of_xarray = hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs")
-        self._named = (data.name, data.attrs.get("units")) if of_xarray else None
+        self._named = (getattr(data, "name", None), data.attrs.get("units")) if of_xarray else None
         self._place(matrix)
         self.context = context_of(device, threads)
         self._caster = Owned(self.context, library.stratus_ray_caster_destroy)
