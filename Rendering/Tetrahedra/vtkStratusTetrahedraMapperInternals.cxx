@@ -351,7 +351,7 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(
   }
   stratus_ray_cast_input input = stratus_ray_cast_input();
   input.tetra = this->Caster;
-  input.mesh = &this->Mesh.GetMesh();
+  input.mesh = this->Shown;
   input.transfer = this->Functions.data();
   input.tetra_options = &this->Options;
   const bool drawn =

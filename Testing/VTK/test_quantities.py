@@ -12,7 +12,7 @@ import matrix_scenes as scenes
 
 NAMES = "integral length mean maximum maximum_depth cells transmittance transmittance_depth".split()
 THRESHOLD = 0.6
-CASES = [("image", ()), ("tetrahedra", ("clip",)), ("amr", ()), ("rectilinear", ("mask",)), ("blocks", ("crop",)), ("several", ()), ("image_and_mesh", ())]
+CASES = [("image", ()), ("tetrahedra", ("clip",)), ("tetrahedra", ("mask",)), ("amr", ()), ("rectilinear", ("mask",)), ("blocks", ("crop",)), ("several", ()), ("image_and_mesh", ())]
 if os.environ.get("STRATUS_LONG"):
     CASES += [(grid, features) for grid in scenes.GRIDS for features in ((), ("clip",))]
     CASES += [(grid, (feature,)) for grid in ("image", "rectilinear", "blocks", "amr", "several") for feature in ("mask", "crop")]
