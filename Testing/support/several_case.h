@@ -3,6 +3,7 @@
 #ifndef STRATUS_TESTING_SEVERAL_CASE_H
 #define STRATUS_TESTING_SEVERAL_CASE_H
 
+#include "faulty_allocator.h"
 #include "picture_case.h"
 #include "reference_several.h"
 
@@ -153,6 +154,40 @@ static inline double several_psnr(const char* what, stratus_context* context, co
   const double db = reference_psnr(p->rgba, reference, CASE_PIXELS);
   print_message("             %s: %.1f dB, reference %.0f dB, %d pixels\n", what, db, reference_db, case_lit(p));
   return db;
+}
+
+/* Draws the volumes again and again, while one allocation after the other fails: the call says so, nothing leaks, and the next picture is
+ * right. */
+static inline void several_each_allocation_may_fail(const several_case* m)
+{
+  static picture drawn, other;
+  faulty_allocator allocator = { 0 };
+  const stratus_context_options options = faulty_options(&allocator, "host");
+  stratus_context* context = NULL;
+  several_casters casters;
+  int failures = 0;
+  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
+  several_draw(context, m, &drawn);
+  const int64_t live = allocator.live;
+  for (int64_t n = 1; n < 400; ++n) {
+    several_casters_create(context, &casters);
+    allocator.fail_at = allocator.calls + n;
+    const stratus_status status = several_draw_with(&casters, m, &other, NULL);
+    const bool failed = allocator.calls >= allocator.fail_at;
+    allocator.fail_at = 0;
+    assert_true(status == STRATUS_OK || (failed && status == STRATUS_OUT_OF_MEMORY));
+    failures += failed;
+    assert_int_equal(several_draw_with(&casters, m, &other, NULL), STRATUS_OK);
+    assert_memory_equal(other.rgba, drawn.rgba, sizeof drawn.rgba);
+    assert_memory_equal(other.depth, drawn.depth, sizeof drawn.depth);
+    several_casters_destroy(&casters);
+    assert_int_equal(allocator.live, live);
+    if (!failed) {
+      break;
+    }
+  }
+  assert_true(failures > 10 && failures < 390);
+  stratus_context_destroy(context);
 }
 
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Several volumes in one picture: against the double reference, against what must be the same by definition, and to the bit where nothing
  * may change a bit. */
-#include "faulty_allocator.h"
 #include "grid_case.h"
 #include "several_case.h"
 
@@ -403,38 +402,12 @@ static void what_does_not_mix_is_refused(void** state)
   several_destroy(&m);
 }
 
-/* Whichever allocation fails, the call says so, nothing leaks, and the next picture is right. */
 static void each_allocation_may_fail(void** state)
 {
-  faulty_allocator allocator = { 0 };
-  const stratus_context_options options = faulty_options(&allocator, "host");
-  stratus_context* context = NULL;
   several_case m;
-  several_casters casters;
-  int failures = 0;
   several_create(*state, &m, 2, 400);
   m.of[0].options.skipping.audit = 1;
-  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
-  several_draw(context, &m, &drawn);
-  const int64_t live = allocator.live;
-  for (int64_t n = 1; n < 400; ++n) {
-    several_casters_create(context, &casters);
-    allocator.fail_at = allocator.calls + n;
-    const stratus_status status = several_draw_with(&casters, &m, &other, NULL);
-    const bool failed = allocator.calls >= allocator.fail_at;
-    allocator.fail_at = 0;
-    assert_true(status == STRATUS_OK || (failed && status == STRATUS_OUT_OF_MEMORY));
-    failures += failed;
-    assert_int_equal(several_draw_with(&casters, &m, &other, NULL), STRATUS_OK);
-    expect_same(&drawn, &other);
-    several_casters_destroy(&casters);
-    assert_int_equal(allocator.live, live);
-    if (!failed) {
-      break;
-    }
-  }
-  assert_true(failures > 10 && failures < 390);
-  stratus_context_destroy(context);
+  several_each_allocation_may_fail(&m);
   several_destroy(&m);
 }
 
