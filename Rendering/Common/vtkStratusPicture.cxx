@@ -406,12 +406,24 @@ void vtkStratusPicture::FindPlace(size_t ray, float distance, double place[3], d
   }
 }
 
+template <class T> void vtkStratusPicture::Spread(const T* rays, int components, T* viewport) const
+{
+  for (int j = 0; j < (this->IsEmpty() ? 0 : this->Rectangle[3]); ++j) {
+    const size_t row = static_cast<size_t>((j + 0.5) * this->Size[1] / this->Rectangle[3]) * this->Size[0];
+    T* to = viewport + components * (static_cast<size_t>(this->Rectangle[1] + j) * this->Viewport[2] + this->Rectangle[0]);
+    for (int i = 0; i < this->Rectangle[2]; ++i) {
+      const size_t from = row + static_cast<size_t>((i + 0.5) * this->Size[0] / this->Rectangle[2]);
+      to = std::copy_n(rays + components * from, components, to);
+    }
+  }
+}
+template void vtkStratusPicture::Spread(const float* rays, int components, float* viewport) const;
+
 vtkSmartPointer<vtkImageData> vtkStratusPicture::MakeImage(
   const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const
 {
   const int width = this->Viewport[2], height = this->Viewport[3];
   const vtkIdType pixels = static_cast<vtkIdType>(width) * height;
-  const int* rectangle = this->Rectangle;
   vtkNew<vtkFloatArray> colors, depths;
   vtkNew<vtkTypeUInt32Array> counts;
   colors->SetName("RGBA");
@@ -424,17 +436,10 @@ vtkSmartPointer<vtkImageData> vtkStratusPicture::MakeImage(
   counts->SetName("Samples");
   counts->SetNumberOfTuples(samples ? pixels : 0);
   counts->Fill(0.0);
-  for (int j = 0; j < (this->IsEmpty() ? 0 : rectangle[3]); ++j) {
-    const size_t row = static_cast<size_t>((j + 0.5) * this->Size[1] / rectangle[3]) * this->Size[0];
-    for (int i = 0; i < rectangle[2]; ++i) {
-      const size_t from = row + static_cast<size_t>((i + 0.5) * this->Size[0] / rectangle[2]);
-      const vtkIdType to = static_cast<vtkIdType>(rectangle[1] + j) * width + rectangle[0] + i;
-      std::copy_n(&rgba[4 * from], 4, colors->GetPointer(4 * to));
-      depths->SetValue(to, depth[from]);
-      if (samples) {
-        counts->SetValue(to, (*samples)[from]);
-      }
-    }
+  this->Spread(rgba.data(), 4, colors->GetPointer(0));
+  this->Spread(depth.data(), 1, depths->GetPointer(0));
+  if (samples) {
+    this->Spread(samples->data(), 1, counts->GetPointer(0));
   }
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(width, height, 1);
@@ -444,17 +449,6 @@ vtkSmartPointer<vtkImageData> vtkStratusPicture::MakeImage(
     image->GetPointData()->AddArray(counts);
   }
   return image;
-}
-
-void vtkStratusPicture::Spread(const std::vector<float>& values, float* viewport) const
-{
-  for (int j = 0; j < (values.empty() ? 0 : this->Rectangle[3]); ++j) {
-    const size_t row = static_cast<size_t>((j + 0.5) * this->Size[1] / this->Rectangle[3]) * this->Size[0];
-    float* to = viewport + static_cast<size_t>(this->Rectangle[1] + j) * this->Viewport[2] + this->Rectangle[0];
-    for (int i = 0; i < this->Rectangle[2]; ++i) {
-      to[i] = values[row + static_cast<size_t>((i + 0.5) * this->Size[0] / this->Rectangle[2])];
-    }
-  }
 }
 
 bool vtkStratusClipPlanes(vtkAbstractMapper* mapper, int most, double (*planes)[4], int& count, std::string& error)

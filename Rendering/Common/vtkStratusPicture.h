@@ -63,8 +63,8 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   // Makes an image of the whole viewport from values per ray: RGBA, Depth (infinite where nothing was drawn) and, unless nullptr, Samples.
   vtkSmartPointer<vtkImageData> MakeImage(
     const std::vector<float>& rgba, const std::vector<float>& depth, const std::vector<uint32_t>* samples) const;
-  // Writes values per ray to the pixels of the whole viewport, which they cover in part. Does nothing where there are no values.
-  void Spread(const std::vector<float>& values, float* viewport) const;
+  // Writes values per ray to the pixels of the whole viewport, which rays cover in part.
+  template <class T> void Spread(const T* rays, int components, T* viewport) const;
 
 private:
   void SetRectangle(const std::vector<Box>& boxes, bool solid);

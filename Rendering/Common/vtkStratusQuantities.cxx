@@ -69,7 +69,7 @@ void vtkStratusQuantities::AddTo(vtkImageData* image, const vtkStratusPicture& p
     array->SetName(stratus_quantity_name(static_cast<stratus_quantity>(q)));
     array->SetNumberOfTuples(image->GetNumberOfPoints());
     array->Fill(nothing);
-    picture.Spread(this->Values[q], array->GetPointer(0));
+    picture.Spread(this->Values[q].data(), 1, array->GetPointer(0));
     image->GetPointData()->AddArray(array);
   }
 }
