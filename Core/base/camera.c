@@ -133,6 +133,22 @@ stratus_status stratus_camera_check(stratus_context* context, const stratus_came
   return STRATUS_OK;
 }
 
+double stratus_camera_place(const stratus_camera* camera, double depth)
+{
+  const double near_k = camera->near_k, far_k = camera->far_k, extent = depth * (far_k - near_k);
+  return camera->parallel ? near_k + extent : near_k * far_k / (far_k - extent);
+}
+
+void stratus_camera_ray(const stratus_camera* camera, const int sides[2], int x, int y, double from[3], double along[3])
+{
+  const double u = (2.0 * x + 1.0) / sides[0] - 1.0, v = (2.0 * y + 1.0) / sides[1] - 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double side = u * camera->right[axis] + v * camera->up[axis];
+    from[axis] = camera->parallel ? side : 0.0;
+    along[axis] = camera->forward[axis] + (camera->parallel ? 0.0 : side);
+  }
+}
+
 void stratus_camera_window(const double eye[3], const double right[3], const double up[3], const double forward[3], bool parallel,
   const double lo[3], const double hi[3], const int sides[2], int window[4])
 {

@@ -59,14 +59,6 @@ static void cut(double height, double size, double slope, uint32_t number, strat
   }
 }
 
-static double opaque_k(const first_hit_frame* frame, uint32_t x, uint32_t y)
-{
-  const double near_k = frame->camera->near_k, far_k = frame->camera->far_k;
-  const double depth = (double)frame->image->opaque_depth[(size_t)y * (size_t)frame->image->width + x];
-  const double extent = depth * (far_k - near_k);
-  return frame->camera->parallel ? near_k + extent : near_k * far_k / (far_k - extent);
-}
-
 /* Whether the clipped ray can meet the bounds of all voxels. */
 static bool meets(const first_hit_frame* frame, const stratus_ray* ray)
 {
@@ -98,7 +90,8 @@ static bool make_ray(const first_hit_frame* frame, uint32_t x, uint32_t y, strat
   ray->t_max = frame->camera->far_k;
   *pixel = (stratus_first_hit_pixel){ .x = x, .y = y, .cut = STRATUS_CUT_NEAR };
   if (frame->image->opaque_depth) {
-    ray->t_max = fmin(ray->t_max, opaque_k(frame, x, y));
+    const float depth = frame->image->opaque_depth[(size_t)y * (size_t)frame->image->width + x];
+    ray->t_max = fmin(ray->t_max, stratus_camera_place(frame->camera, (double)depth));
   }
   for (uint32_t side = 0; frame->options->clipping.crop && side < 6; ++side) {
     const uint32_t axis = side / 2;

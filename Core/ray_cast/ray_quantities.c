@@ -33,6 +33,14 @@ stratus_quantities stratus_quantities_default(void)
   return (stratus_quantities){ .threshold = 0.5 };
 }
 
+/* What is drawn in place of an input: its options for the picture, and a view of one component. */
+typedef struct own_input {
+  stratus_ray_cast_options options;
+  stratus_tetra_options tetra_options;
+  stratus_volume volume;
+  stratus_mesh mesh, *blocks; /* blocks: of the mesh; NULL: it has none */
+} own_input;
+
 typedef struct quantities {
   stratus_context* context;
   const stratus_ray_cast_input* inputs;
@@ -40,12 +48,8 @@ typedef struct quantities {
   const stratus_camera* camera;
   const stratus_quantities* wanted;
   stratus_image image;
-  /* of the pictures: the inputs with options of their own, and views of one component */
   stratus_ray_cast_input* drawn;
-  stratus_ray_cast_options* options;
-  stratus_tetra_options* tetra_options;
-  stratus_volume* volumes;
-  stratus_mesh *meshes, **blocks; /* blocks: of a mesh, NULL where it has none */
+  own_input* own; /* of each that is drawn */
 } quantities;
 
 static stratus_status check(const quantities* q)
@@ -60,8 +64,11 @@ static stratus_status check(const quantities* q)
   }
   for (int n = 0; n < q->count; ++n) {
     const stratus_ray_cast_input* in = &q->inputs[n];
-    if (!stratus_several_context(in) || (in->tetra ? !in->mesh : !in->volume)) {
-      return stratus_fail(q->context, STRATUS_INVALID_ARGUMENT, "input %d has no caster, or neither a volume nor a mesh", n);
+    if (!stratus_several_context(in)) {
+      return stratus_fail(q->context, STRATUS_INVALID_ARGUMENT, "input %d has no caster: caster is NULL, and so is tetra", n);
+    }
+    if (in->tetra ? !in->mesh : !in->volume) {
+      return stratus_fail(q->context, STRATUS_INVALID_ARGUMENT, "%s of input %d is NULL", in->tetra ? "mesh" : "volume", n);
     }
     if (!in->tetra) { /* drawing checks a mesh */
       TRY(stratus_volume_check(q->context, in->volume));
@@ -80,20 +87,12 @@ static stratus_status allocate(quantities* q)
   void* memory = NULL;
   TRY(stratus_allocate_zero(q->context, n, sizeof *q->drawn, &memory));
   q->drawn = memory;
-  TRY(stratus_allocate_zero(q->context, n, sizeof *q->options, &memory));
-  q->options = memory;
-  TRY(stratus_allocate_zero(q->context, n, sizeof *q->tetra_options, &memory));
-  q->tetra_options = memory;
-  TRY(stratus_allocate_zero(q->context, n, sizeof *q->volumes, &memory));
-  q->volumes = memory;
-  TRY(stratus_allocate_zero(q->context, n, sizeof *q->meshes, &memory));
-  q->meshes = memory;
-  TRY(stratus_allocate_zero(q->context, n, sizeof *q->blocks, &memory));
-  q->blocks = memory;
+  TRY(stratus_allocate_zero(q->context, n, sizeof *q->own, &memory));
+  q->own = memory;
   for (int i = 0; i < q->count; ++i) {
     if (q->inputs[i].tetra && q->inputs[i].mesh->block_count > 0) {
       TRY(stratus_allocate(q->context, (size_t)q->inputs[i].mesh->block_count, sizeof(stratus_mesh), &memory));
-      q->blocks[i] = memory;
+      q->own[i].blocks = memory;
     }
   }
   TRY(stratus_allocate(q->context, pixels, 4 * sizeof(float), &memory));
@@ -106,14 +105,10 @@ static stratus_status allocate(quantities* q)
 static void release(quantities* q)
 {
   stratus_release(q->context, q->drawn);
-  stratus_release(q->context, q->options);
-  stratus_release(q->context, q->tetra_options);
-  stratus_release(q->context, q->volumes);
-  stratus_release(q->context, q->meshes);
-  for (int n = 0; q->blocks && n < q->count; ++n) {
-    stratus_release(q->context, q->blocks[n]);
+  for (int n = 0; q->own && n < q->count; ++n) {
+    stratus_release(q->context, q->own[n].blocks);
   }
-  stratus_release(q->context, q->blocks);
+  stratus_release(q->context, q->own);
   stratus_release(q->context, q->image.rgba);
   stratus_release(q->context, q->image.depth);
 }
@@ -126,14 +121,13 @@ static stratus_mesh component_of(const stratus_mesh* mesh, int component)
   return view;
 }
 
-static void set_mesh(quantities* q, int n)
+static void set_mesh(own_input* own, const stratus_mesh* mesh, int component)
 {
-  const stratus_mesh* mesh = q->inputs[n].mesh;
-  q->meshes[n] = component_of(mesh, q->wanted->component);
+  own->mesh = component_of(mesh, component);
   for (int b = 0; b < mesh->block_count; ++b) {
-    q->blocks[n][b] = component_of(&mesh->blocks[b], q->wanted->component);
+    own->blocks[b] = component_of(&mesh->blocks[b], component);
   }
-  q->meshes[n].blocks = q->blocks[n];
+  own->mesh.blocks = own->blocks;
 }
 
 /* Numbers of the field do not depend on a function: with one of their own, a change of the picture's rebuilds nothing of theirs. */
@@ -147,40 +141,42 @@ static void set_inputs(quantities* q, bool numbers)
 {
   for (int n = 0; n < q->count; ++n) {
     const stratus_ray_cast_input* in = &q->inputs[n];
-    q->drawn[n] = *in;
-    q->drawn[n].transfer = numbers ? &any_function : in->transfer;
+    stratus_ray_cast_input* drawn = &q->drawn[n];
+    own_input* own = &q->own[n];
+    *drawn = *in;
+    drawn->transfer = numbers ? &any_function : in->transfer;
     if (in->tetra) {
-      q->tetra_options[n] = in->tetra_options ? *in->tetra_options : stratus_tetra_options_default();
-      q->tetra_options[n].mode = numbers ? STRATUS_TETRA_QUANTITIES : STRATUS_TETRA_COMPOSITE;
-      q->tetra_options[n].termination = 1.0;
-      q->tetra_options[n].shade = 0;
-      q->tetra_options[n].materials = NULL;
-      q->drawn[n].tetra_options = &q->tetra_options[n];
+      stratus_tetra_options* options = &own->tetra_options;
+      *options = in->tetra_options ? *in->tetra_options : stratus_tetra_options_default();
+      options->mode = numbers ? STRATUS_TETRA_QUANTITIES : STRATUS_TETRA_COMPOSITE;
+      options->termination = 1.0;
+      options->shade = 0;
+      options->materials = NULL;
+      drawn->tetra_options = options;
       if (numbers) {
-        set_mesh(q, n);
-        q->drawn[n].mesh = &q->meshes[n];
+        set_mesh(own, in->mesh, q->wanted->component);
+        drawn->mesh = &own->mesh;
       }
       continue;
     }
-    stratus_ray_cast_options* options = &q->options[n];
+    stratus_ray_cast_options* options = &own->options;
     *options = in->options ? *in->options : stratus_ray_cast_options_default();
     options->mode = numbers ? STRATUS_MODE_QUANTITIES : STRATUS_MODE_COMPOSITE;
     options->sampling.termination = 1.0;
     options->skipping.audit = 0;
     options->light.shade = 0;
     options->light.materials = NULL;
-    q->volumes[n] = *in->volume;
     if (numbers) {
-      q->volumes[n] = stratus_volume_component(in->volume, q->wanted->component);
+      own->volume = stratus_volume_component(in->volume, q->wanted->component);
+      drawn->volume = &own->volume;
       options->optics.dependent = 0;
       options->optics.transfer_2d = NULL;
-      options->mask.label_count = 0;
-      if (options->mask.bytes && in->options->mask.label_count > 0) { /* labels hide nothing */
+      if (options->mask.label_count > 0) { /* labels hide nothing */
         options->mask.bytes = NULL;
+        options->mask.label_count = 0;
       }
     }
-    q->drawn[n].options = options;
-    q->drawn[n].volume = &q->volumes[n];
+    drawn->options = options;
   }
 }
 
@@ -228,27 +224,49 @@ static void reach(const stratus_camera* camera, const double place[3], double* l
   *hi = fmax(*hi, k);
 }
 
-static void reach_mesh(const stratus_camera* camera, const stratus_mesh* mesh, const double matrix[16], double* lo, double* hi)
+/* The same by a box's corners, in coordinates that the matrix takes to the world. */
+static void reach_box(
+  const stratus_camera* camera, const double low[3], const double high[3], const double to_world[16], double* lo, double* hi)
 {
-  for (int b = 0; b < mesh->block_count; ++b) {
-    reach_mesh(camera, &mesh->blocks[b], matrix, lo, hi);
+  for (int corner = 0; corner < 8; ++corner) {
+    double local[3], place[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      local[axis] = (corner >> axis & 1) ? high[axis] : low[axis];
+    }
+    stratus_matrix_point(to_world, local, place);
+    reach(camera, place, lo, hi);
   }
-  double box[2][3] = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
+}
+
+static void reach_mesh(const stratus_camera* camera, const stratus_mesh* mesh, const double to_world[16], double* lo, double* hi)
+{
+  double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+  for (int b = 0; b < mesh->block_count; ++b) {
+    reach_mesh(camera, &mesh->blocks[b], to_world, lo, hi);
+  }
   for (int64_t p = 0; mesh->block_count == 0 && p < mesh->point_count; ++p) {
     for (int axis = 0; axis < 3; ++axis) {
       const double x = mesh->points ? mesh->points[3 * p + axis] : (double)mesh->float_points[3 * p + axis];
       if (isfinite(x)) {
-        box[0][axis] = fmin(box[0][axis], x);
-        box[1][axis] = fmax(box[1][axis], x);
+        low[axis] = fmin(low[axis], x);
+        high[axis] = fmax(high[axis], x);
       }
     }
   }
-  for (int corner = 0; corner < 8 && box[0][0] <= box[1][0]; ++corner) {
-    const double local[3] = { box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2] };
-    double place[3];
-    stratus_matrix_point(matrix, local, place);
-    reach(camera, place, lo, hi);
+  if (low[0] <= high[0]) {
+    reach_box(camera, low, high, to_world, lo, hi);
   }
+}
+
+static void reach_volume(const stratus_camera* camera, const stratus_volume* volume, double* lo, double* hi)
+{
+  double to_world[16], low[3], high[3];
+  for (int axis = 0; axis < 3; ++axis) { /* cells reach half a voxel beyond their middles */
+    low[axis] = -0.5;
+    high[axis] = (double)volume->dimensions[axis] - 0.5;
+  }
+  stratus_volume_index_to_world(volume, to_world);
+  reach_box(camera, low, high, to_world, lo, hi);
 }
 
 /* The camera of a search: opaque depth 0 is in front of all inputs, 1 is behind them. Returns false where all are behind the eye. */
@@ -256,20 +274,11 @@ static bool find_camera(const quantities* q, stratus_camera* camera)
 {
   double lo = INFINITY, hi = -INFINITY;
   for (int n = 0; n < q->count; ++n) {
-    if (q->inputs[n].tetra) {
-      reach_mesh(q->camera, q->inputs[n].mesh, q->inputs[n].mesh->matrix, &lo, &hi);
-      continue;
-    }
-    const stratus_volume* volume = q->inputs[n].volume;
-    double to_world[16];
-    stratus_volume_index_to_world(volume, to_world);
-    for (int corner = 0; corner < 8; ++corner) {
-      double index[3], place[3];
-      for (int axis = 0; axis < 3; ++axis) { /* cells reach half a voxel beyond their middles */
-        index[axis] = (corner >> axis & 1) ? (double)volume->dimensions[axis] - 0.5 : -0.5;
-      }
-      stratus_matrix_point(to_world, index, place);
-      reach(q->camera, place, &lo, &hi);
+    const stratus_ray_cast_input* in = &q->inputs[n];
+    if (in->tetra) {
+      reach_mesh(q->camera, in->mesh, in->mesh->matrix, &lo, &hi);
+    } else {
+      reach_volume(q->camera, in->volume, &lo, &hi);
     }
   }
   const double margin = 1e-6 * (hi - lo);
@@ -279,13 +288,7 @@ static bool find_camera(const quantities* q, stratus_camera* camera)
   return camera->near_k < camera->far_k;
 }
 
-/* The place along the ray that a window depth is, in units of forward; and back. */
-static double place_of(const stratus_camera* c, double depth)
-{
-  const double extent = depth * (c->far_k - c->near_k);
-  return c->parallel ? c->near_k + extent : c->near_k * c->far_k / (c->far_k - extent);
-}
-
+/* The window depth of a place in units of forward, as stratus_camera_place() takes it. */
 static double depth_of(const stratus_camera* c, double k)
 {
   const double part = (k - c->near_k) / (c->far_k - c->near_k);
@@ -337,7 +340,7 @@ static void narrow(const quantities* q, const stratus_camera* camera, search* se
     if (!(s->lo < s->hi)) {
       continue;
     }
-    const float at = fminf(fmaxf((float)place_of(camera, (double)ends[i]), s->lo), s->hi), above = excess(q, i);
+    const float at = fminf(fmaxf((float)stratus_camera_place(camera, (double)ends[i]), s->lo), s->hi), above = excess(q, i);
     const bool found = fabs(exp((double)above) - 1.0) * q->wanted->threshold <= THRESHOLD_ERROR;
     const bool stuck = at <= s->lo || at >= s->hi; /* floats know no depth between them */
     if (found || stuck) {
@@ -361,7 +364,7 @@ static void start(const quantities* q, const stratus_camera* camera, search* sea
     const float above = excess(q, i);
     double far_k = camera->far_k;
     if (q->wanted->opaque_depth) {
-      far_k = fmin(far_k, place_of(q->camera, (double)q->wanted->opaque_depth[i]));
+      far_k = fmin(far_k, stratus_camera_place(q->camera, (double)q->wanted->opaque_depth[i]));
     }
     searches[i] =
       (search){ .lo = (float)camera->near_k, .hi = (float)far_k, .lo_excess = (float)-log(q->wanted->threshold), .hi_excess = above };
@@ -374,12 +377,9 @@ static void start(const quantities* q, const stratus_camera* camera, search* sea
 /* The world's length of a unit of forward on a pixel's ray. */
 static double unit_of(const quantities* q, int64_t pixel)
 {
-  const int x = (int)(pixel % q->wanted->width), y = (int)(pixel / q->wanted->width);
-  const double u = (2.0 * x + 1.0) / q->wanted->width - 1.0, v = (2.0 * y + 1.0) / q->wanted->height - 1.0;
-  double along[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    along[axis] = q->camera->forward[axis] + (q->camera->parallel ? 0.0 : u * q->camera->right[axis] + v * q->camera->up[axis]);
-  }
+  const int sides[2] = { q->wanted->width, q->wanted->height };
+  double from[3], along[3];
+  stratus_camera_ray(q->camera, sides, (int)(pixel % sides[0]), (int)(pixel / sides[0]), from, along);
   return sqrt(stratus_vector_dot(along, along));
 }
 

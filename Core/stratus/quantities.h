@@ -44,7 +44,7 @@ STRATUS_API stratus_quantities stratus_quantities_default(void);
 
 /* Compute numbers of each pixel's ray.
  * - inputs, count: as in stratus_ray_caster_render_several(), or in stratus_ray_caster_render_blocks(). The mode of their options is not
- *   read. Sampling and light are read only for transmittance.
+ *   read. Transfer functions, sampling and light are read only for transmittance, without which a transfer may be NULL.
  *
  * Integral, length, maximum and cells pass from cell to cell. Along a ray the field in a cell is a cubic, and in a tetrahedron linear. Its
  * integral has a closed form, and its maximum is at an end or where it turns: there is no error but the rounding of floats. Of several

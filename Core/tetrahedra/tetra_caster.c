@@ -452,7 +452,7 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   options = options ? options : &defaults;
   if (options->mode == STRATUS_TETRA_QUANTITIES) {
     return stratus_fail(
-      caster->context, STRATUS_INVALID_ARGUMENT, "mode quantities is not drawn alone: use stratus_ray_caster_render_quantities()");
+      caster->context, STRATUS_INVALID_ARGUMENT, "mode quantities gives no picture: use stratus_ray_caster_render_quantities()");
   }
   const stratus_tetra_subject of = { mesh, transfer, options };
   TRY(take(caster, &of, camera, image, &drawn, &mine));

@@ -3,6 +3,7 @@
  * kernels/tetrahedra/tetra_march.h). From these the place in the cell, its colour and its light are found here, in double. */
 #include "tetra_caster.h"
 
+#include "camera.h"
 #include "lights.h"
 #include "matrix.h"
 #include "picture.h"
@@ -107,13 +108,8 @@ static void take_parts(const hits* h, hit_part whole, hit_ray* ray)
 static void take_ray(const hits* h, int x, int y, hit_ray* ray)
 {
   const stratus_camera* camera = &h->frame->camera;
-  const stratus_image* image = &h->frame->image;
-  const double u = (2.0 * x + 1.0) / image->width - 1.0, v = (2.0 * y + 1.0) / image->height - 1.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double side = u * camera->right[axis] + v * camera->up[axis];
-    ray->from[axis] = camera->parallel ? side : 0.0;
-    ray->along[axis] = camera->forward[axis] + (camera->parallel ? 0.0 : side);
-  }
+  const int sides[2] = { h->frame->image.width, h->frame->image.height };
+  stratus_camera_ray(camera, sides, x, y, ray->from, ray->along);
   ray->length = sqrt(stratus_vector_dot(ray->along, ray->along));
   hit_part whole = { camera->near_k, INFINITY, CUT_NEAR };
   for (int p = 0; p < h->plane_count; ++p) {

@@ -3,6 +3,7 @@
  * column of pixels, and for each tile the border faces that may cover it. */
 #include "tetra_caster.h"
 
+#include "camera.h"
 #include "mesh.h"
 #include "vector.h"
 #include "matrix.h"
@@ -275,11 +276,9 @@ static stratus_status place_ends(frame_build* build, stratus_tetra_buffers* buff
   const size_t pixels = (size_t)image->width * (size_t)image->height;
   TRY(stratus_tetra_reserve(build->context, &buffers->ends, pixels, sizeof(float)));
   float* ends = buffers->ends.memory;
-  const double range = c->far_k - c->near_k;
 #pragma omp parallel for num_threads(build->context->threads)
   for (size_t i = 0; i < pixels; ++i) {
-    const double extent = (double)image->opaque_depth[i] * range;
-    const double end = c->parallel ? c->near_k + extent : c->near_k * c->far_k / (c->far_k - extent);
+    const double end = stratus_camera_place(c, (double)image->opaque_depth[i]);
     const double from = stratus_tetra_middle(frame, (int)(i % (size_t)image->width), (int)(i / (size_t)image->width));
     ends[i] = (float)fmin((end - from) / frame->per_z, 1e30);
   }

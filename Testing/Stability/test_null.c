@@ -312,6 +312,22 @@ static void ray_casters(const small_scene* scene)
   REFUSES(stratus_ray_caster_render_blocks(several, 1, NULL, &image, NULL));
   REFUSES(stratus_ray_caster_render_blocks(several, 1, &scene->camera, NULL, NULL));
   ACCEPTS(stratus_ray_caster_render_blocks(several, 1, &scene->camera, &image, NULL));
+  stratus_quantities numbers = stratus_quantities_default();
+  numbers.width = SMALL_WIDTH;
+  numbers.height = SMALL_HEIGHT;
+  numbers.of[STRATUS_QUANTITY_INTEGRAL] = rgba;
+  IS_SILENT(stratus_ray_caster_render_quantities(NULL, 1, &scene->camera, &numbers));
+  IS_SILENT(stratus_ray_caster_render_quantities(several + 1, 1, &scene->camera, &numbers));
+  REFUSES(stratus_ray_caster_render_quantities(several, 2, &scene->camera, &numbers));
+  REFUSES(stratus_ray_caster_render_quantities(&no_volume, 1, &scene->camera, &numbers));
+  ACCEPTS(stratus_ray_caster_render_quantities(&no_transfer, 1, &scene->camera, &numbers));
+  REFUSES(stratus_ray_caster_render_quantities(several, 1, NULL, &numbers));
+  REFUSES(stratus_ray_caster_render_quantities(several, 1, &scene->camera, NULL));
+  ACCEPTS(stratus_ray_caster_render_quantities(several, 1, &scene->camera, &numbers));
+  numbers.of[STRATUS_QUANTITY_TRANSMITTANCE] = rgba;
+  REFUSES(stratus_ray_caster_render_quantities(&no_transfer, 1, &scene->camera, &numbers));
+  numbers = (stratus_quantities){ .width = 1, .height = 1, .threshold = 0.5 }; /* nothing is wanted */
+  ACCEPTS(stratus_ray_caster_render_quantities(several, 1, &scene->camera, &numbers));
   IS_SILENT(stratus_ray_caster_offer_tree(NULL, rgba, sizeof rgba));
   ACCEPTS(stratus_ray_caster_offer_tree(c, NULL, 8));
   stratus_ray_caster_destroy(c);
