@@ -17,13 +17,21 @@ int stratus_ray_cast_type_is_fast(int type)
 stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_variant variant)
 {
   typedef stratus_ray_cast_tile* tile_of(int type, stratus_ray_variant variant);
-  static tile_of* const composite[] = STRATUS_ISA_EACH(stratus_ray_cast_tile);
-  static tile_of* const modes[] = STRATUS_ISA_EACH(stratus_ray_modes_tile);
-  static tile_of* const shading[] = STRATUS_ISA_EACH(stratus_ray_shading_tile);
+  static tile_of* const of_type[] = STRATUS_ISA_EACH(stratus_ray_cast_tile);
+  static stratus_ray_cast_tile* const of_variant[][3] = {
+    [STRATUS_VARIANT_EXTREMES] = STRATUS_ISA_EACH(stratus_ray_extremes_tile),
+    [STRATUS_VARIANT_SUMS] = STRATUS_ISA_EACH(stratus_ray_sums_tile),
+    [STRATUS_VARIANT_ISOSURFACE] = STRATUS_ISA_EACH(stratus_ray_isosurface_tile),
+    [STRATUS_VARIANT_CELLS] = STRATUS_ISA_EACH(stratus_ray_cells_tile),
+    [STRATUS_VARIANT_LOCAL] = STRATUS_ISA_EACH(stratus_ray_local_tile),
+    [STRATUS_VARIANT_TRANSFER_2D] = STRATUS_ISA_EACH(stratus_ray_transfer_2d_tile),
+    [STRATUS_VARIANT_SLICE] = STRATUS_ISA_EACH(stratus_ray_slice_tile),
+    [STRATUS_VARIANT_QUANTITIES] = STRATUS_ISA_EACH(stratus_ray_quantities_tile),
+    [STRATUS_VARIANT_SHADING_MIDPOINT] = STRATUS_ISA_EACH(stratus_ray_shading_tile),
+    [STRATUS_VARIANT_SHADING_PREINTEGRATED] = STRATUS_ISA_EACH(stratus_ray_shading_pre_tile),
+  };
   isa = stratus_isa_at_most(isa);
-  return (variant <= STRATUS_VARIANT_PREINTEGRATED ? composite
-      : variant < STRATUS_VARIANT_SHADING_MIDPOINT ? modes
-                                                   : shading)[isa](type, variant);
+  return variant <= STRATUS_VARIANT_PREINTEGRATED ? of_type[isa](type, variant) : of_variant[variant][isa];
 }
 
 /* Rounds pixels [x0, x1) x [y0, y1) to rgba8, if that is wanted. */

@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-/* The variants of the traversal, each compiled separately. */
+/* The variants of the traversal, each compiled separately: the first two once for each type of values. */
 typedef enum stratus_ray_variant {
   STRATUS_VARIANT_MIDPOINT,
   STRATUS_VARIANT_PREINTEGRATED,
@@ -58,29 +58,15 @@ int stratus_ray_cast_type_is_fast(int type);
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa0(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa1(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa2(int type, stratus_ray_variant variant);
-stratus_ray_cast_tile* stratus_ray_isosurface_tile_isa0(int type);
-stratus_ray_cast_tile* stratus_ray_isosurface_tile_isa1(int type);
-stratus_ray_cast_tile* stratus_ray_isosurface_tile_isa2(int type);
-stratus_ray_cast_tile* stratus_ray_cells_tile_isa0(int type);
-stratus_ray_cast_tile* stratus_ray_cells_tile_isa1(int type);
-stratus_ray_cast_tile* stratus_ray_cells_tile_isa2(int type);
-stratus_ray_cast_tile* stratus_ray_local_tile_isa0(int type);
-stratus_ray_cast_tile* stratus_ray_local_tile_isa1(int type);
-stratus_ray_cast_tile* stratus_ray_local_tile_isa2(int type);
-stratus_ray_cast_tile* stratus_ray_transfer_2d_tile_isa0(int type);
-stratus_ray_cast_tile* stratus_ray_transfer_2d_tile_isa1(int type);
-stratus_ray_cast_tile* stratus_ray_transfer_2d_tile_isa2(int type);
-stratus_ray_cast_tile* stratus_ray_slice_tile_isa0(int type);
-stratus_ray_cast_tile* stratus_ray_slice_tile_isa1(int type);
-stratus_ray_cast_tile* stratus_ray_slice_tile_isa2(int type);
-stratus_ray_cast_tile* stratus_ray_quantities_tile_isa0(int type);
-stratus_ray_cast_tile* stratus_ray_quantities_tile_isa1(int type);
-stratus_ray_cast_tile* stratus_ray_quantities_tile_isa2(int type);
-stratus_ray_cast_tile* stratus_ray_modes_tile_isa0(int type, stratus_ray_variant variant);
-stratus_ray_cast_tile* stratus_ray_modes_tile_isa1(int type, stratus_ray_variant variant);
-stratus_ray_cast_tile* stratus_ray_modes_tile_isa2(int type, stratus_ray_variant variant);
-stratus_ray_cast_tile* stratus_ray_shading_tile_isa0(int type, stratus_ray_variant variant);
-stratus_ray_cast_tile* stratus_ray_shading_tile_isa1(int type, stratus_ray_variant variant);
-stratus_ray_cast_tile* stratus_ray_shading_tile_isa2(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile stratus_ray_extremes_tile_isa0, stratus_ray_extremes_tile_isa1, stratus_ray_extremes_tile_isa2;
+stratus_ray_cast_tile stratus_ray_sums_tile_isa0, stratus_ray_sums_tile_isa1, stratus_ray_sums_tile_isa2;
+stratus_ray_cast_tile stratus_ray_isosurface_tile_isa0, stratus_ray_isosurface_tile_isa1, stratus_ray_isosurface_tile_isa2;
+stratus_ray_cast_tile stratus_ray_cells_tile_isa0, stratus_ray_cells_tile_isa1, stratus_ray_cells_tile_isa2;
+stratus_ray_cast_tile stratus_ray_local_tile_isa0, stratus_ray_local_tile_isa1, stratus_ray_local_tile_isa2;
+stratus_ray_cast_tile stratus_ray_transfer_2d_tile_isa0, stratus_ray_transfer_2d_tile_isa1, stratus_ray_transfer_2d_tile_isa2;
+stratus_ray_cast_tile stratus_ray_slice_tile_isa0, stratus_ray_slice_tile_isa1, stratus_ray_slice_tile_isa2;
+stratus_ray_cast_tile stratus_ray_quantities_tile_isa0, stratus_ray_quantities_tile_isa1, stratus_ray_quantities_tile_isa2;
+stratus_ray_cast_tile stratus_ray_shading_tile_isa0, stratus_ray_shading_tile_isa1, stratus_ray_shading_tile_isa2;
+stratus_ray_cast_tile stratus_ray_shading_pre_tile_isa0, stratus_ray_shading_pre_tile_isa1, stratus_ray_shading_pre_tile_isa2;
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Marches a tile of rays on the host. The including file defines STRATUS_TYPE, STRATUS_PREINTEGRATED, RAY_NAME and, unless rays composite,
- * STRATUS_RAY_MODE. */
+ * STRATUS_RAY_MODE. The function is RAY_NAME(tile), or for all files RAY_TILE_NAME if that is defined. */
 #include "ray_cast.h"
 
 static void RAY_NAME(begin_packet)(const stratus_ray_cast_frame* frame, int x, int y, stratus_packet* k, stratus_crop* crop)
@@ -13,7 +13,12 @@ static void RAY_NAME(begin_packet)(const stratus_ray_cast_frame* frame, int x, i
   }
 }
 
-static void RAY_NAME(tile)(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1, stratus_ray_counts* counts)
+#ifdef RAY_TILE_NAME
+void STRATUS_ISA_NAME(RAY_TILE_NAME)
+#else
+static void RAY_NAME(tile)
+#endif
+  (const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1, stratus_ray_counts* counts)
 {
   const stratus_ray_cast_arguments* a = frame->arguments;
   tile_counts mine = { vi_set(0), vi_set(0), vi_set(0), 0 };

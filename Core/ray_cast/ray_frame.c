@@ -5,6 +5,7 @@
 #include "camera.h"
 #include "matrix.h"
 #include "ray_caster.h"
+#include "ray_fetched.h"
 #include "ray_sampling.h"
 #include "table_fill.h"
 #include "vector.h"
@@ -224,6 +225,7 @@ static void set_addressing(const stratus_volume* volume, stratus_ray_cast_argume
   a->values.slice = (int)(uint32_t)slice;
   a->values.slice_high = (int)(uint32_t)(slice >> 32);
   a->values.tail = values > 4 && values < INT32_MAX ? (int)(values - 4) : 0;
+  a->values.reading = 1 + stratus_ray_fetch_type(volume);
   a->values.type = (int)volume->type;
   a->values.stride = (int)stride;
 }

@@ -1,39 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Composite rays through several volumes, compiled for one instruction set, STRATUS_ISA. */
 #include "ray_cast_packets.h"
+#include "ray_reading.h"
 #include "ray_several_host.h"
-#include "several_state.h"
 
-#define STRATUS_TYPE -1
-#define RAY_NAME(x) JOIN(x, any)
-#include "ray_several_type.h"
-#define STRATUS_TYPE 0
-#define RAY_NAME(x) JOIN(x, int8)
-#include "ray_several_type.h"
-#define STRATUS_TYPE 1
-#define RAY_NAME(x) JOIN(x, uint8)
-#include "ray_several_type.h"
-#define STRATUS_TYPE 2
-#define RAY_NAME(x) JOIN(x, int16)
-#include "ray_several_type.h"
-#define STRATUS_TYPE 3
-#define RAY_NAME(x) JOIN(x, uint16)
-#include "ray_several_type.h"
-#define STRATUS_TYPE 8
-#define RAY_NAME(x) JOIN(x, float32)
-#include "ray_several_type.h"
-#define STRATUS_TYPE 9
-#define RAY_NAME(x) JOIN(x, float64)
-#include "ray_several_type.h"
-
+#define STRATUS_TYPE -2
+#define STRATUS_PREINTEGRATED 0
+#define STRATUS_RAY_MODE STRATUS_RAY_SHADING
+#define RAY_WITH_CELLS 1
+#define RAY_WITH_FUNCTIONS_2D 1
+#define RAY_NAME(x) JOIN(x, several)
+#include "ray_cast.h"
+#include "several_media.h"
 #include "ray_several.h"
 
 _Static_assert(SEVERAL_MOST == STRATUS_SEVERAL_MAX, "as many as the API takes");
-
-/* Of stratus_type + 1. */
-static const several_reading* const readings[11] = { &several_reading_any, &several_reading_int8, &several_reading_uint8,
-  &several_reading_int16, &several_reading_uint16, &several_reading_any, &several_reading_any, &several_reading_any, &several_reading_any,
-  &several_reading_float32, &several_reading_float64 };
 
 /* Set the mesh arrays that several_mesh.h reads, in the host's layout. */
 static void set_mesh(const stratus_several_part* part, double step, several_mesh* m)
@@ -98,7 +79,6 @@ void STRATUS_ISA_NAME(stratus_several_tile)(
       .table = frame->volumes[n].layers ? (const void*)frame->volumes[n].layers : of->table,
       .besides = of->table,
       .mesh = frame->volumes[n].mesh ? &meshes[n] : NULL,
-      .read = readings[frame->volumes[n].type + 1],
       .stride = frame->volumes[n].stride,
       .lit = frame->volumes[n].lit,
       .cells = frame->volumes[n].cells,

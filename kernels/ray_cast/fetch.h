@@ -2,9 +2,9 @@
  * Loads the volume's values for a packet, as floats. Included once for each STRATUS_TYPE (the number of a stratus_type) with 32-bit
  * indices, and once with STRATUS_TYPE -1 for the generic fetch. That takes any type, stride and size, and axes of one value; it is slow.
  * Types 6 and 7 have a fetch of their own from pages only (RAY_PAGES), which takes any size, too. A value of a page that the device does
- * not have is not finite.
+ * not have is not finite. STRATUS_TYPE -2, on the host only, calls the fetch that the arguments name (Core/ray_cast/ray_reading.h).
  *
- *   fetch_pair(a, values, index, mask, end, &v0, &v1)   values[index] and values[index+1]; not in the generic fetch
+ *   fetch_pair(a, values, index, mask, end, &v0, &v1)   values[index] and values[index+1]; of a fixed type only
  *   fetch_cell(a, values, i, j, k, mask, v)              the eight corners of cell (i,j,k): v[x + 2 y + 4 z]
  *   fetch_nearest(a, values, i, j, k, mask)              the value (i,j,k) */
 #ifndef STRATUS_TYPE
@@ -99,6 +99,19 @@ INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, va
     lv[lane] = at ? RAY_NAME(load_one)(a, at) : lm[lane] ? NAN : 0.0f;
   }
   return v_load(lv);
+}
+
+/* ------------------------------------------------------------------------------------------------ known at run time */
+#elif STRATUS_TYPE == -2
+
+INLINE void RAY_NAME(fetch_cell)(const stratus_ray_cast_arguments* a, value_source values, vint i, vint j, vint k, vmask mask, vfloat v[8])
+{
+  RAY_READING(a)->cell(a, values, i, j, k, mask, v);
+}
+
+INLINE vfloat RAY_NAME(fetch_nearest)(const stratus_ray_cast_arguments* a, value_source values, vint i, vint j, vint k, vmask mask)
+{
+  return RAY_READING(a)->nearest(a, values, i, j, k, mask);
 }
 
 /* ------------------------------------------------------------------------------------------------ generic */

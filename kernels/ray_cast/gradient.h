@@ -65,6 +65,7 @@ INLINE vmask clipped_off(CONSTANT stratus_ray_cast_arguments* a, const vfloat x[
 }
 #endif
 
+#if STRATUS_TYPE != -2
 /* Whether the volume has gradients at its values, which are floats then. */
 #undef RAY_STORED
 #if STRATUS_TYPE == 8 || STRATUS_TYPE == -1
@@ -260,13 +261,18 @@ GRID_OUTLINE void RAY_NAME(clip_gradient)(
     g[axis] = v_select(any, rise * v_select(there[0] & there[1], half_one, one), g[axis]);
   }
 }
+#endif
 
 /* g: change of the value per voxel (mean voxel) along each axis, at the position x. Lanes outside `mask` get any number. */
 INLINE void RAY_NAME(ray_gradient)(
   CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* grid, const vfloat x[3], vmask mask, vfloat g[3])
 {
+#if STRATUS_TYPE == -2
+  RAY_READING(a)->gradient(a, values, grid, x, mask, g);
+#else
   RAY_NAME(field_gradient)(a, values, grid, x, mask, g);
   if (RAY_RARE(RAY_CLIP, a->crop.clipped)) {
     RAY_NAME(clip_gradient)(a, values, x, mask, g);
   }
+#endif
 }

@@ -116,6 +116,7 @@ typedef struct stratus_ray_values {
   int dimensions[3];
   int row, slice;           /* how many values lie from one row to the next, and from one slice to the next (their low 32 bits) */
   int tail;                 /* the largest index from which 4 bytes may be read (8-bit types) */
+  int reading;              /* the host's function for them: 1 + the number of a type that has its own fetch; 0: the generic fetch */
   int type, stride;         /* read by the generic fetch only, as the next two */
   int row_high, slice_high; /* high 32 bits of row and slice */
   int bias_low, bias_high;  /* bits of the double that wide types are relative to */

@@ -46,30 +46,6 @@ typedef int64_t several_number_t;
 #define SEVERAL_FARTHEST 4e18f
 
 #ifndef STRATUS_DEVICE
-/* The field, or its gradient, at a position in a volume: RAY_NAME(ray_value) and RAY_NAME(ray_gradient) of its type of values. */
-typedef void several_value(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, GLOBAL const int* grid,
-  const vfloat x[3], vmask mask, vfloat* value);
-typedef void several_gradient(
-  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* grid, const vfloat x[3], vmask mask, vfloat g[3]);
-/* The values at the corners of a cell, and a value by its indices: RAY_NAME(fetch_cell) and RAY_NAME(fetch_nearest). */
-typedef void several_corners(CONSTANT stratus_ray_cast_arguments* a, value_source values, const vint at[3], vmask mask, vfloat v[8]);
-typedef void several_nearest(CONSTANT stratus_ray_cast_arguments* a, value_source values, const vint at[3], vmask mask, vfloat* value);
-
-/* The colour and opacity of a sample of several media: RAY_NAME(several_media). */
-typedef void several_media(CONSTANT stratus_ray_cast_arguments* a, int media, float segment, GLOBAL const void* table,
-  const stratus_packet* k, const stratus_sample* sample, vfloat rate[4]);
-
-/* How values of one type are read. */
-typedef struct several_reading {
-  several_value* value;
-  several_gradient* gradient;
-  several_corners* corners;
-  several_nearest* nearest;
-  several_media* media;
-} several_reading;
-#endif
-
-#ifndef STRATUS_DEVICE
 /* The data of a mesh of tetrahedra that all rays read: its frame, and the numbers that turn its z into segments of the lattice. */
 typedef struct several_mesh {
   stratus_tetra_view view;
@@ -96,7 +72,6 @@ typedef struct several_source {
    * segment. besides: with light or gradient opacity, the tables that these read. */
   GLOBAL const void *table, *besides;
 #ifndef STRATUS_DEVICE
-  const several_reading* read;
   const several_mesh* mesh; /* NULL: a volume */
 #endif
   int stride;        /* segments of the lattice to a sample of this volume, at least 1 */
@@ -159,46 +134,26 @@ INLINE int several_has_stretches(const several_source* from)
 #endif
 }
 
-/* The field, and its gradient, at x. A device has no pointers to functions, and one type of values for all volumes. */
+/* The field, and its gradient, at x. */
 INLINE vfloat several_value_at(const several_source* from, const vfloat x[3], vmask mask)
 {
-#ifdef STRATUS_DEVICE
   return RAY_NAME(ray_value)(from->a, from->values, from->hidden, from->grid, x, mask);
-#else
-  vfloat value;
-  from->read->value(from->a, from->values, from->hidden, from->grid, x, mask, &value);
-  return value;
-#endif
 }
 
 INLINE void several_gradient_at(const several_source* from, const vfloat x[3], vmask mask, vfloat g[3])
 {
-#ifdef STRATUS_DEVICE
   RAY_NAME(ray_gradient)(from->a, from->values, from->grid, x, mask, g);
-#else
-  from->read->gradient(from->a, from->values, from->grid, x, mask, g);
-#endif
 }
 
 #if SEVERAL_CELLS
 INLINE void several_corners_at(const several_source* from, const vint at[3], vmask mask, vfloat v[8])
 {
-#ifdef STRATUS_DEVICE
   RAY_NAME(fetch_cell)(from->a, from->values, at[0], at[1], at[2], mask, v);
-#else
-  from->read->corners(from->a, from->values, at, mask, v);
-#endif
 }
 
 INLINE vfloat several_nearest_at(const several_source* from, const vint at[3], vmask mask)
 {
-#ifdef STRATUS_DEVICE
   return RAY_NAME(fetch_nearest)(from->a, from->values, at[0], at[1], at[2], mask);
-#else
-  vfloat value;
-  from->read->nearest(from->a, from->values, at, mask, &value);
-  return value;
-#endif
 }
 #endif
 
@@ -206,11 +161,7 @@ INLINE vfloat several_nearest_at(const several_source* from, const vint at[3], v
 /* Fill `rate` with the colour and optical depth of samples over a segment's length, on the live rays of k. */
 INLINE void several_media_at(const several_source* from, const stratus_packet* k, const stratus_sample* sample, vfloat rate[4])
 {
-#ifdef STRATUS_DEVICE
   RAY_NAME(several_media)(from->a, from->media, from->segment, from->besides, k, sample, rate);
-#else
-  from->read->media(from->a, from->media, from->segment, from->besides, k, sample, rate);
-#endif
 }
 #endif
 
