@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Composite rays, compiled for one instruction set, STRATUS_ISA, under both sampling rules. */
 #include "ray_cast_packets.h"
+#include "ray_reading.h"
 
 #define STRATUS_PREINTEGRATED 0
 #define STRATUS_RAY_SET mid
