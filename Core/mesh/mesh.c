@@ -135,9 +135,10 @@ static stratus_status check_blocks(stratus_context* context, const stratus_mesh*
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "mesh block_count %d with blocks %s, must be at least 1 with blocks",
       mesh->block_count, mesh->blocks ? "there" : "NULL");
   }
-  if (mesh->points || mesh->float_points || mesh->vertices || mesh->values || mesh->hidden || n[0] != 0 || n[1] != 0 || n[2] != 0) {
+  if (mesh->points || mesh->float_points || mesh->vertices || mesh->values || mesh->hidden || mesh->labels || n[0] != 0 || n[1] != 0 ||
+    n[2] != 0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
-      "mesh of %d blocks with points, vertices, values, hidden flags or a lattice of its own, must have none", mesh->block_count);
+      "mesh of %d blocks with points, vertices, values, hidden flags, labels or a lattice of its own, must have none", mesh->block_count);
   }
   for (int b = 0; b < mesh->block_count; ++b) {
     TRY(check_block(context, mesh, b));

@@ -154,6 +154,7 @@ static void set_inputs(quantities* q, bool numbers)
       options->materials = NULL;
       drawn->tetra_options = options;
       if (numbers) {
+        options->label_count = 0; /* labels hide nothing */
         set_mesh(own, in->mesh, q->wanted->component);
         drawn->mesh = &own->mesh;
       }

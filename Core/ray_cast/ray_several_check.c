@@ -81,9 +81,9 @@ stratus_status stratus_several_check_mesh(stratus_context* context, int n, const
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "mesh %d of several is to be projected, which draws whole pictures: its rays can only be marched", n);
   }
-  if (transfer && stratus_tetra_light_wanted(transfer, options)) {
+  if (options->label_count > 0 || (transfer && stratus_tetra_light_wanted(transfer, options))) {
     return stratus_fail(
-      context, STRATUS_UNSUPPORTED, "mesh %d of several has light or gradient opacity, which only volumes have in one march", n);
+      context, STRATUS_UNSUPPORTED, "mesh %d of several has light, gradient opacity or labels, which only volumes have in one march", n);
   }
   return STRATUS_OK;
 }

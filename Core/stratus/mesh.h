@@ -25,6 +25,8 @@ typedef struct stratus_mesh {
   int cell_values; /* 1: a value belongs to a cell, and is constant in it. Default 0: to a point. */
   /* One flag for each cell: not 0 makes it transparent. NULL: none. A value that is not finite also hides its cells. */
   const uint8_t* hidden;
+  /* One label for each cell, by which stratus_tetra_options.label_count chooses a function. NULL (default): none. Only casters read it. */
+  const uint8_t* labels;
   double matrix[16]; /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */
   uint64_t revision; /* the caller raises it when anything changes under the same pointers. Default 0. */
   /* A lattice. lattice: number of points along i, j and k, each at least 2, points[(k*nj + j)*ni + i]. Default 0, 0, 0: cells are listed in
@@ -37,8 +39,8 @@ typedef struct stratus_mesh {
   const float* float_points; /* the points of a lattice whose `points` is NULL; otherwise NULL */
   /* Several lattices as one mesh. Rays pass from one to the next where a face of both has the same corners and the same diagonal. Each
    * block is a view of a lattice, with values of the mesh's type, components and cell_values; its matrix and revision are not read. The
-   * mesh's point_count and cell_count are the sums over its blocks. Its points, float_points, vertices, values and hidden are NULL, its
-   * lattice is 0, and its value_stride is not read. Default NULL, 0. Only casters accept blocks. */
+   * mesh's point_count and cell_count are the sums over its blocks. Its points, float_points, vertices, values, hidden and labels are NULL,
+   * its lattice is 0, and its value_stride is not read. Default NULL, 0. Only casters accept blocks. */
   const struct stratus_mesh* blocks;
   int block_count;
 } stratus_mesh;

@@ -367,8 +367,8 @@ typedef struct stratus_ray_cast_input {
  * whole segments as fit in its own step. Where a volume is sampled cell by cell, in all of it or in its rough blocks, light is composited
  * from one end of its cells' pieces to the next. A piece whose colour changes much is cut further, as with one volume.
  *
- * Meshes (of one component, mode composite, method auto or march, without light or gradient opacity) are drawn cell by cell: within a
- * segment of the lattice, light is composited from one face to the next. Their clip planes and crop boxes are their own. Where a mesh's
+ * Meshes (of one component, mode composite, method auto or march, without light, gradient opacity or labels) are drawn cell by cell: within
+ * a segment of the lattice, light is composited from one face to the next. Their clip planes and crop boxes are their own. Where a mesh's
  * cells overlap, one counts behind the other. The host draws meshes.
  *
  * reports: NULL, or one for each input. Structures, choices and the expected error in a report concern its own volume. Rays, samples,

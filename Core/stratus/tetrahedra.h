@@ -44,6 +44,7 @@ STRATUS_API const char* stratus_tetra_mode_name(stratus_tetra_mode mode);
 
 #define STRATUS_TETRA_CLIP_PLANES_MAX 6
 #define STRATUS_TETRA_CONTOURS_MAX 16
+#define STRATUS_TETRA_LABELS_MAX 255
 
 /* Both methods draw the same image: they find the same faces at the same depths, and shade pieces of cells by the same sums. They differ by
  * the rounding of floats: below .01 of 255 in the mean (root mean square), at any distance, and however much a parallel camera's right and
@@ -57,7 +58,7 @@ typedef enum stratus_tetra_method {
   STRATUS_TETRA_METHOD_AUTO,
   STRATUS_TETRA_METHOD_MARCH, /* follows each ray from cell to cell */
   /* Sorts the cells that can show, assigns them to tiles of pixels, and composites them there. It draws composite and maximum, one
-   * component, without light or gradient opacity. Other requests give STRATUS_UNSUPPORTED, while auto marches. */
+   * component, without light, gradient opacity or labels. Other requests give STRATUS_UNSUPPORTED, while auto marches. */
   STRATUS_TETRA_METHOD_PROJECT
 } stratus_tetra_method;
 
@@ -103,26 +104,31 @@ typedef struct stratus_tetra_options {
    * segment of half a spacing in the world. Finite. A spacing is the edge of a cube that six cells of the mean volume fill. The gradient's
    * magnitude is in values per spacing, whatever the mesh's matrix. */
   double gradient_distance;
-  /* Values of several components, by marching. A value that is not finite in any component hides its cells. Isosurface and first hits do
-   * not draw independent ones: STRATUS_UNSUPPORTED.
+  /* Values of several components, by marching. A value that is not finite in any component hides its cells.
    *
    * 0 (default): each component is a medium with its own transfer function. Composite: optical depths, times the functions' weights, and
-   * emitted light add up. Slice: the same at each point, over a length of which each opacity is. Maximum, minimum, average and additive
-   * draw each component by itself. Their premultiplied colours, times the functions' weights, add up to at most 1, and so do the alphas of
-   * extremes.
+   * emitted light add up. Slice: the same at each point, over a length of which each opacity is. Isosurface: the surfaces of all, whose
+   * opacities are times the functions' weights, are blended in their order along the ray. First hits: the nearest hit of the components
+   * whose weight is above 0. Maximum, minimum, average and additive draw each component by itself. Their premultiplied colours, times the
+   * functions' weights, add up to at most 1, and so do the alphas of extremes.
    *
    * 1: the components are one medium with one function. Of 2 components, the first has the colour and the second the opacity. Of 4
    * (up to 16 bits, or floats), the first three are red, green and blue in 0..255, and the fourth has the opacity. Maximum and minimum keep
    * the last component's value, isosurface cuts it, first hits and slice show it by its opacity, each in the colour of the others at that
    * place. Average and additive add the last one's opacity times the first one's value; average_range is of the first one. */
   int dependent;
-  /* Composite, independent components: one material for each component, which replaces `shade` and the material in `shading`. The lights of
-   * `shading` are read if a material has shade. NULL (default): all components have the material of `shading`. Each component is lit, and
-   * its opacity multiplied, by its own gradient; dependent components by the last one's gradient. Borrowed during the render. */
+  /* Composite, isosurface and first hits, independent components: one material for each component, which replaces `shade` and the material
+   * in `shading`. The lights of `shading` are read if a material has shade. NULL (default): all components have the material of `shading`.
+   * Each component is lit, and its opacity multiplied, by its own gradient; dependent components by the last one's gradient. Borrowed
+   * during the render. */
   const stratus_material* materials;
   /* Independent components, composite and slice. 1: each counts by its share of the optical depth, as in stratus_ray_cast_options. Default
    * 0. */
   int mean_components;
+  /* Composite, one component, by marching. 0 (default): no labels. 1..255: cells have the mesh's labels, which hide nothing. If a cell's
+   * label l is in 1..label_count, then transfer[l] gives the colour and opacity of its values. Other labels use transfer[0]. A label whose
+   * function has no gradient opacity uses the gradient opacity of transfer[0]. */
+  int label_count;
 } stratus_tetra_options;
 
 /* Return options with their defaults. */
@@ -181,7 +187,7 @@ STRATUS_API void stratus_tetra_caster_destroy(stratus_tetra_caster* caster);
 /* Draw an image.
  * - mesh: must have values. The caster reads it again if its pointers, counts, type, stride or revision differ from the last call's,
  *   otherwise only its matrix.
- * - transfer: one function, or one for each independent component. Opacity is per world length.
+ * - transfer: one function, or one for each independent component, or label_count + 1 functions. Opacity is per world length.
  * - image: samples receives the number of segments in the pixel; depth receives the world distance to the first segment that contributes
  *   (maximum: to the largest value).
  * - options, report: may be NULL.

@@ -104,7 +104,8 @@ static bool same_mesh(const stratus_mesh* a, const stratus_mesh* b)
   return a->points == b->points && a->point_count == b->point_count && a->vertices == b->vertices && a->cell_count == b->cell_count &&
     a->float_points == b->float_points && memcmp(a->lattice, b->lattice, sizeof a->lattice) == 0 && a->values == b->values &&
     a->type == b->type && a->value_stride == b->value_stride && a->components == b->components && a->cell_values == b->cell_values &&
-    a->hidden == b->hidden && a->blocks == b->blocks && a->block_count == b->block_count && a->revision == b->revision;
+    a->hidden == b->hidden && a->labels == b->labels && a->blocks == b->blocks && a->block_count == b->block_count &&
+    a->revision == b->revision;
 }
 
 /* Takes other values of the same points and cells; neighbours, and the order of cells, stay. *taken false: it is another mesh, or other
@@ -284,7 +285,8 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   stratus_tetra_frame frame;
   const double start = stratus_now_ms();
   const bool adds = options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE; /* black where nothing shows */
-  const bool shows = stratus_tetra_mixes(mesh, options) ? caster->components.shown : caster->look.table->shown > 0;
+  const bool shows =
+    stratus_tetra_mixes(mesh, options) || options->label_count > 0 ? caster->components.shown : caster->look.table->shown > 0;
   const bool cropped = stratus_tetra_modes_regions(options) && options->crop_regions == 0;
   const bool needs = !adds && options->mode != STRATUS_TETRA_ISOSURFACE && options->mode != STRATUS_TETRA_QUANTITIES;
   if ((!shows && needs) || caster->mesh->face_count == 0 || cropped) {
@@ -303,9 +305,9 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, mesh, camera, &marched, marches, &caster->buffers, &frame));
   frame.table = caster->look.table;
   frame.march_sums = caster->look.sums;
-  stratus_tetra_frame_shade(&frame, options);
+  stratus_tetra_frame_shade(&frame, caster, options);
   stratus_tetra_frame_slice(&frame, options);
-  stratus_tetra_frame_contours(&frame, caster->mesh, caster->look.transfer, options, caster->keeps);
+  stratus_tetra_frame_contours(&frame, caster, mesh, options);
   stratus_tetra_frame_clip(&frame, mesh, options);
   stratus_tetra_frame_light(&frame, caster, mesh, transfer, options);
   stratus_tetra_frame_components(&frame, caster, mesh, options);
@@ -411,6 +413,7 @@ static stratus_status take(stratus_tetra_caster* caster, const stratus_tetra_sub
     return stratus_fail(caster->context, STRATUS_INVALID_ARGUMENT, "mesh values is NULL, with %lld to be drawn", (long long)values);
   }
   TRY(stratus_tetra_modes_check(caster->context, of->options, mesh));
+  TRY(stratus_tetra_labels_check(caster->context, mesh, of->transfer, of->options));
   TRY(stratus_tetra_light_check(caster->context, mesh, of->transfer, of->options));
   TRY(stratus_tetra_components_check(caster->context, mesh, of->transfer, of->options));
   TRY(update(caster, mesh, of->options, drawn, &report->build_ms));
@@ -432,7 +435,7 @@ stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const 
     TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, drawn, camera, image, true, &caster->buffers, frame));
     frame->table = caster->look.table;
     frame->march_sums = caster->look.sums;
-    stratus_tetra_frame_shade(frame, of->options);
+    stratus_tetra_frame_shade(frame, caster, of->options);
     stratus_tetra_frame_clip(frame, drawn, of->options);
     TRY(stratus_tetra_count_entries(caster->context, frame, &caster->buffers, &counts));
   }

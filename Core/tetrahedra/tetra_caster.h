@@ -61,17 +61,26 @@ typedef struct stratus_tetra_components {
   int count;     /* 0: there is nothing here */
   float* places; /* of each value, in the order of stratus_tetra_mesh's values by name: four floats, places in tables */
   int32_t* sums; /* of all tables, each as stratus_tetra_sums() */
-  size_t value_count, sum_count;
+  /* Of labels: `places` has the label of each cell, in the order of `cells`, of a lattice at first corners; before `sums` are the labels'
+   * records (tetra_arguments.h); and this is what their tables have in common. */
+  stratus_table_arguments table;
+  size_t place_count, sum_count;
   int sums_at[4];
   float last[4], depth_scale[4], scale[4], offset[4]; /* the last two: from fetched values to places */
+  float least[4];                                     /* the least fetched value, which all have where the scale is 0 */
   double bias[4];
   float low, high; /* range of the first one's fetched values of shown cells */
   bool has_opaque[4], shown;
+  /* Independent components of isosurfaces have fetched values for places, and no tables, and of first hits stratus_tetra_shown_sums() */
+  stratus_tetra_mode mode;
   bool dependent;              /* inputs from which the tables were made, as are the next fields */
   stratus_transfer* transfers; /* copies */
   int transfer_count;
   uint64_t values; /* the caster's value_builds */
 } stratus_tetra_components;
+
+/* Entries of a table. Segments end at any value, which is rounded to an entry: the error of light falls with the width of entries. */
+#define STRATUS_TETRA_ENTRIES 32768
 
 /* How values are drawn: the tables of a transfer function. */
 typedef struct stratus_tetra_look {
@@ -109,10 +118,10 @@ struct stratus_tetra_caster {
   stratus_tetra_device* device; /* buffers on the OpenCL device; NULL: none */
   stratus_tetra_buffers buffers;
   stratus_tetra_gradients gradients;
-  float* factors;                     /* the gradient opacities of components, STRATUS_SHADING_FACTORS + 2 each; NULL: none */
+  float* factors;                     /* the gradient opacities of components or labels, STRATUS_SHADING_FACTORS + 2 each; NULL: none */
   stratus_transfer* factor_transfers; /* copies of the functions from which they were made */
   int factor_count;                   /* number of these copies */
-  float factor_scale[STRATUS_COMPONENTS_MAX];
+  float factor_scale[STRATUS_COMPONENTS_MAX]; /* not of labels, whose records have it */
   stratus_tetra_components components;
   uint64_t mesh_builds, value_builds, table_builds, gradient_builds, component_builds;
   const stratus_tetra_costs* costs; /* costs used instead of measured ones, for tests; NULL: none */
@@ -171,8 +180,8 @@ stratus_status stratus_tetra_sums(stratus_context* context, const stratus_table*
  * tile. Buffers grow as needed and are kept for the next frame. */
 stratus_status stratus_tetra_frame_prepare(stratus_context* context, const stratus_tetra_mesh* tetra, const stratus_mesh* mesh,
   const stratus_camera* camera, const stratus_image* image, bool march, stratus_tetra_buffers* buffers, stratus_tetra_frame* frame);
-/* Sets how a frame's cells are drawn by its table, and which part of rays is seen. */
-void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_options* options);
+/* Sets how a frame's cells are drawn by its table, or by the caster's labels, and which part of rays is seen. */
+void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_tetra_options* options);
 /* Return the transparency at which a ray may end. */
 double stratus_tetra_termination(const stratus_tetra_options* options);
 /* tetra_modes.c: modes that gather no light. */
@@ -199,14 +208,16 @@ void stratus_tetra_hits_shade(const stratus_tetra_frame* frame, const stratus_te
 /* Sets mode, slice, contours and planes of a frame whose table is set. */
 void stratus_tetra_frame_mode(stratus_tetra_frame* frame, const stratus_tetra_options* options);
 void stratus_tetra_frame_slice(stratus_tetra_frame* frame, const stratus_tetra_options* options);
-void stratus_tetra_frame_contours(stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer,
-  const stratus_tetra_options* options, int keeps);
+void stratus_tetra_frame_contours(
+  stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options);
 void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);
 /* tetra_light.c: light and gradient opacity. */
 stratus_status stratus_tetra_light_check(
   stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
 /* Whether the gradient decides how cells of one component look. */
 bool stratus_tetra_light_wanted(const stratus_transfer* transfer, const stratus_tetra_options* options);
+/* The material of component c. */
+stratus_material stratus_tetra_material(const stratus_mesh* mesh, const stratus_tetra_options* options, int c);
 /* Bit c where component c's gradient decides how cells look. */
 unsigned stratus_tetra_light_mask(const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
 /* Makes what is needed of gradients and factors. */
@@ -217,8 +228,11 @@ void stratus_tetra_light_drop_factors(stratus_tetra_caster* caster);
 /* Sets the arguments of a frame that stratus_tetra_frame_prepare() has prepared. */
 void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_tetra_options* options);
-/* tetra_components.c: values of several components that rays read together: those that mix, and dependent ones. */
+/* tetra_components.c: values of several components that rays read together: those that mix, those that surfaces have, and dependent ones.
+ */
 bool stratus_tetra_mixes(const stratus_mesh* mesh, const stratus_tetra_options* options);
+/* Whether rays meet surfaces, or solids, of each of several independent components. */
+bool stratus_tetra_meets_components(const stratus_mesh* mesh, const stratus_tetra_options* options);
 stratus_status stratus_tetra_components_check(
   stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
 stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfers,
@@ -226,6 +240,11 @@ stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, con
 void stratus_tetra_components_drop(stratus_tetra_caster* caster);
 void stratus_tetra_frame_components(
   stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options);
+/* tetra_labels.c: labels of cells. Build: the member transfer_count is set. */
+stratus_status stratus_tetra_labels_check(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
+stratus_status stratus_tetra_labels_build(
+  const stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_transfer* transfers, stratus_tetra_components* m);
 /* tetra_look.c: the tables of a transfer function. Return the values of a mesh for which a table is made; low..high: their range. */
 stratus_table_values stratus_tetra_look_values(const stratus_mesh* mesh, float low, float high, double bias);
 /* Make a look if `known` has another function, mode or range; otherwise made->table is NULL. */

@@ -15,6 +15,13 @@ void stratus_lattice_steps(const stratus_mesh* mesh, int64_t step[3])
   step[2] = step[1] * mesh->lattice[1];
 }
 
+int64_t stratus_lattice_hexahedron(const stratus_mesh* mesh, int64_t point)
+{
+  const int32_t* n = mesh->lattice;
+  const int64_t i = point % n[0], j = point / n[0] % n[1], k = point / n[0] / n[1];
+  return i < n[0] - 1 && j < n[1] - 1 && k < n[2] - 1 ? (k * (n[1] - 1) + j) * (n[0] - 1) + i : -1;
+}
+
 stratus_tetra_cells stratus_tetra_cells_of(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
 {
   return (stratus_tetra_cells){ tetra, mesh, tetra->names ? tetra->cell_count : 6 * tetra->point_count };
@@ -70,15 +77,10 @@ stratus_tetra_slots stratus_tetra_slots_of(const stratus_tetra_cells* cells, int
 
 int64_t stratus_tetra_value_at(const stratus_tetra_cells* cells, const stratus_tetra_slots* slots, int64_t slot)
 {
-  const int32_t* n = slots->mesh->lattice;
   if (cells->tetra->names) {
     return slots->mesh->cell_values ? (int64_t)cells->tetra->at[slot] : slot;
   }
-  if (!slots->mesh->cell_values) {
-    return slot;
-  }
-  const int64_t i = slot % n[0], j = slot / n[0] % n[1], k = slot / n[0] / n[1];
-  return i < n[0] - 1 && j < n[1] - 1 && k < n[2] - 1 ? (k * (n[1] - 1) + j) * (n[0] - 1) + i : -1;
+  return slots->mesh->cell_values ? stratus_lattice_hexahedron(slots->mesh, slot) : slot;
 }
 
 /* ---- components */

@@ -7,6 +7,8 @@
 
 /* The axes along which a tetrahedron goes from the first corner of its hexahedron to the last. */
 extern const int stratus_lattice_ways[6][3];
+/* The hexahedron of a lattice whose first corner is a point; -1: there is none. */
+int64_t stratus_lattice_hexahedron(const stratus_mesh* mesh, int64_t point);
 /* The distances between the numbers of points that are neighbours along i, j and k. */
 void stratus_lattice_steps(const stratus_mesh* mesh, int64_t step[3]);
 

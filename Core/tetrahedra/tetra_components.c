@@ -8,13 +8,17 @@
 
 #include <string.h>
 
-/* Entries of a table, as of one component (tetra_caster.c). */
-#define ENTRIES 32768
-
 bool stratus_tetra_mixes(const stratus_mesh* mesh, const stratus_tetra_options* options)
 {
-  return stratus_tetra_component_count(mesh) > 1 &&
-    (options->dependent || options->mode == STRATUS_TETRA_COMPOSITE || options->mode == STRATUS_TETRA_SLICE);
+  return stratus_tetra_meets_components(mesh, options) ||
+    (stratus_tetra_component_count(mesh) > 1 &&
+      (options->dependent || options->mode == STRATUS_TETRA_COMPOSITE || options->mode == STRATUS_TETRA_SLICE));
+}
+
+bool stratus_tetra_meets_components(const stratus_mesh* mesh, const stratus_tetra_options* options)
+{
+  return stratus_tetra_component_count(mesh) > 1 && !options->dependent &&
+    (options->mode == STRATUS_TETRA_ISOSURFACE || options->mode == STRATUS_TETRA_FIRST_HIT);
 }
 
 stratus_status stratus_tetra_components_check(
@@ -23,11 +27,6 @@ stratus_status stratus_tetra_components_check(
   const int count = stratus_tetra_component_count(mesh);
   if (count == 1) {
     return STRATUS_OK;
-  }
-  if (!options->dependent && (options->mode == STRATUS_TETRA_ISOSURFACE || options->mode == STRATUS_TETRA_FIRST_HIT)) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED,
-      "mode %s of %d independent components is not supported, only of one, or of dependent ones", stratus_tetra_mode_name(options->mode),
-      count);
   }
   if (options->method == STRATUS_TETRA_METHOD_PROJECT) {
     return stratus_fail(
@@ -108,8 +107,10 @@ static stratus_status add_table(components_build* b, int c)
   stratus_table* table = NULL;
   int32_t* sums = NULL;
   void* memory = NULL;
-  stratus_status status = stratus_table_create_fine(context, &function, &values, STRATUS_SAMPLING_PREINTEGRATED, 1.0, ENTRIES, &table);
-  status = status == STRATUS_OK ? stratus_tetra_sums(context, table, &sums) : status;
+  const bool hits = m->mode == STRATUS_TETRA_FIRST_HIT;
+  stratus_status status = stratus_table_create_fine(context, &function, &values,
+    hits ? STRATUS_SAMPLING_MIDPOINT : STRATUS_SAMPLING_PREINTEGRATED, hits ? function.unit_distance : 1.0, STRATUS_TETRA_ENTRIES, &table);
+  status = status == STRATUS_OK ? (hits ? stratus_tetra_shown_sums : stratus_tetra_sums)(context, table, &sums) : status;
   const size_t words = status == STRATUS_OK ? STRATUS_TETRA_SUMS * (size_t)table->size : 0, at = (m->sum_count + 3) / 4 * 4;
   status = status == STRATUS_OK ? stratus_allocate_zero(context, at + words, sizeof(int32_t), &memory) : status;
   if (status == STRATUS_OK) {
@@ -124,9 +125,10 @@ static stratus_status add_table(components_build* b, int c)
     m->last[c] = (float)(table->size - 1);
     m->depth_scale[c] = stratus_table_arguments_of(table).tau_scale * (m->dependent ? 1.0f : (float)function.weight);
     m->has_opaque[c] = table->has_opaque != 0 && (m->dependent || function.weight > 0.0);
-    m->shown = m->shown || (table->shown > 0 && (!m->dependent || c + 1 == m->count));
-    b->made.scale[c] = table->scale;
-    b->made.offset[c] = table->offset;
+    m->shown = m->shown || (table->shown > 0 && (m->dependent ? c + 1 == m->count : function.weight > 0.0));
+    m->scale[c] = table->scale;
+    m->offset[c] = table->offset;
+    m->least[c] = values.lo;
   }
   stratus_release(context, sums);
   stratus_table_destroy(table);
@@ -143,7 +145,7 @@ static stratus_status fill_places(components_build* b)
   void* memory = NULL;
   TRY(stratus_allocate_zero(b->caster->context, tetra->value_count, 4 * sizeof(float), &memory));
   m->places = memory;
-  m->value_count = tetra->value_count;
+  m->place_count = 4 * tetra->value_count;
   for (int part = 0; part < stratus_mesh_part_count(b->mesh); ++part) {
     const stratus_tetra_slots slots = stratus_tetra_slots_of(&cells, part);
     stratus_volume component[4];
@@ -171,6 +173,8 @@ static stratus_status build(components_build* b)
     if (m->dependent && m->count == 4 && c < 3) { /* red, green and blue are not scaled to the range */
       b->made.scale[c] = 1.0f / 255.0f;
       b->made.offset[c] = (float)b->made.bias[c] * b->made.scale[c];
+    } else if (m->mode == STRATUS_TETRA_ISOSURFACE) {
+      m->scale[c] = 1.0f;
     } else {
       TRY(add_table(b, c));
     }
@@ -185,19 +189,24 @@ stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, con
   const int count = stratus_tetra_component_count(mesh);
   stratus_tetra_components* known = &caster->components;
   components_build b = { .caster = caster, .mesh = mesh, .transfers = transfers };
-  if (count == 1) {
+  const int labels = options->label_count;
+  if (count == 1 && labels == 0) {
     stratus_tetra_components_drop(caster);
   }
-  if (!stratus_tetra_mixes(mesh, options)) {
+  if (!stratus_tetra_mixes(mesh, options) && labels == 0) {
     return STRATUS_OK;
   }
   b.made = (stratus_tetra_components){ .count = count,
     .dependent = options->dependent != 0,
-    .transfer_count = options->dependent ? 1 : count,
+    .transfer_count = labels > 0 ? 1 + labels
+      : options->dependent       ? 1
+                                 : count,
+    .mode = stratus_tetra_meets_components(mesh, options) ? options->mode : STRATUS_TETRA_COMPOSITE,
     .values = caster->value_builds,
     .low = caster->mesh->low,
     .high = caster->mesh->high };
-  bool same = known->count == count && known->dependent == b.made.dependent && known->values == caster->value_builds;
+  bool same = known->count == count && known->dependent == b.made.dependent && known->mode == b.made.mode &&
+    known->transfer_count == b.made.transfer_count && known->values == caster->value_builds;
   for (int t = 0; t < b.made.transfer_count && same; ++t) {
     same = stratus_transfer_same(known->transfers + t, transfers + t);
   }
@@ -205,7 +214,7 @@ stratus_status stratus_tetra_components_update(stratus_tetra_caster* caster, con
     return STRATUS_OK;
   }
   const double start = stratus_now_ms();
-  const stratus_status status = build(&b);
+  const stratus_status status = labels > 0 ? stratus_tetra_labels_build(caster->mesh, mesh, transfers, &b.made) : build(&b);
   stratus_tetra_components_drop(caster);
   *known = b.made;
   ++caster->component_builds;
@@ -236,13 +245,19 @@ void stratus_tetra_frame_components(
 {
   const stratus_tetra_components* m = &caster->components;
   stratus_tetra_media_arguments* a = &frame->arguments.media;
-  if (!stratus_tetra_mixes(mesh, options) || options->mode == STRATUS_TETRA_FIRST_HIT) {
-    return; /* hits are coloured afterwards */
+  const bool labels = options->label_count > 0;
+  if ((!stratus_tetra_mixes(mesh, options) && !labels) || (options->mode == STRATUS_TETRA_FIRST_HIT && options->dependent)) {
+    return; /* hits of dependent components are of the last one's values, and coloured afterwards */
   }
   frame->lit = true;
   frame->components = m->places;
+  frame->component_floats = m->place_count;
   frame->media = m->sums;
   frame->media_count = m->sum_count;
+  a->labels = labels;
+  if (labels) {
+    return;
+  }
   a->components = m->count;
   a->dependent = m->dependent;
   a->mean = options->mean_components && !m->dependent;

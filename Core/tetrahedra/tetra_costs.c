@@ -123,7 +123,7 @@ static stratus_status draw(sample* s, int side, int turn, sample_times* times)
     TRY(stratus_tetra_frame_prepare(&s->context, s->tetra, &s->mesh, &camera, &image, march != 0, &s->buffers, &frame));
     frame.table = s->table;
     frame.march_sums = s->sums;
-    stratus_tetra_frame_shade(&frame, &options);
+    stratus_tetra_frame_shade(&frame, NULL, &options);
     if (march) {
       TRY(stratus_tetra_march(&s->context, &frame, &s->buffers, &counts, &entries_ms, &march_ms));
     } else {

@@ -14,18 +14,31 @@
 /* A cell whose volume is this part of its extent's cube is flat: its field has no slope. */
 #define FLATTEST 1e-14
 
+/* A field whose hits are looked for: the mesh's own values, or an independent component's values. */
+typedef struct hit_field {
+  const stratus_transfer* transfer;
+  const float* places;  /* of a component's values in its table, four floats apart; NULL: the mesh's own values */
+  const int32_t* shown; /* two rows of stratus_tetra_shown_sums() */
+  int size;             /* of the table, to whose entries scale and offset take values; where the scale is 0, all are the least */
+  double scale, offset, least;
+  double bias;
+  const float* gradients; /* of points */
+  bool smooth;            /* normals are the gradients of points */
+  bool lit;
+  stratus_shading shading;
+  stratus_lamps lamps;
+} hit_field;
+
 typedef struct hits {
   const stratus_tetra_frame* frame;
   const stratus_tetra_caster* caster;
-  const stratus_transfer* transfer;
   const stratus_tetra_options* options;
+  hit_field fields[STRATUS_COMPONENTS_MAX];
+  int field_count;                    /* several: the nearest of their hits counts */
   double planes[TETRA_PLANES + 6][4]; /* that cut rays, in the world, relative to the eye; then those between crop regions */
   int plane_count, crop_count;        /* of the first, and of the second */
   double to_normal[9];                /* takes gradients in local coordinates to the world */
-  const float* gradients;             /* of points */
-  bool smooth;                        /* normals are the gradients of points */
   bool dependent;                     /* values are of dependent components */
-  stratus_lamps lamps;
 } hits;
 
 /* Where a part begins or a place is: a plane's number, or one of these. */
@@ -133,7 +146,6 @@ static void take_cell(const hits* h, const float stored[4], hit_cell* cell)
   }
   for (int i = 0; i < points; ++i) {
     const float* place = frame->places + 4 * (size_t)cell->name[i];
-    cell->value[i] = (double)(frame->cell_values ? frame->cell_values[cell->name[3]] : place[3]);
     for (int axis = 0; axis < 3; ++axis) {
       cell->p[i][axis] = frame->middle * frame->camera.forward[axis];
       for (int row = 0; row < 3; ++row) {
@@ -159,6 +171,19 @@ static void take_cell(const hits* h, const float stored[4], hit_cell* cell)
         cell->slope[i][axis] /= volume;
       }
       cell->slope[0][axis] = -cell->slope[1][axis] - cell->slope[2][axis] - cell->slope[3][axis];
+    }
+  }
+}
+
+static void take_values(const hits* h, const hit_field* field, hit_cell* cell)
+{
+  const float* own = h->frame->cell_values;
+  for (int i = 0; i < (own ? 3 : 4); ++i) {
+    const size_t at = (size_t)cell->name[own ? 3 : i];
+    if (field->places) {
+      cell->value[i] = field->scale > 0.0 ? ((double)field->places[4 * at] - field->offset) / field->scale : field->least;
+    } else {
+      cell->value[i] = (double)(own ? own[at] : h->frame->places[4 * at + 3]);
     }
   }
 }
@@ -209,15 +234,16 @@ typedef struct hit_place {
   bool inside; /* the field begins to show within the cell */
 } hit_place;
 
-static int entry_of(const stratus_table* table, double value)
+static int entry_of(const hit_field* field, double value)
 {
-  return (int)fmin(fmax(floor(value * (double)table->scale + (double)table->offset), 0.0), (double)(table->size - 1));
+  return (int)fmin(fmax(floor(value * field->scale + field->offset), 0.0), (double)(field->size - 1));
 }
 
-/* Finds the first place of a cell that shows on a part of the ray. Returns false if there is none. */
-static bool find_on_part(const hits* h, const hit_ray* ray, const hit_cell* cell, const hit_part* part, hit_place* place)
+/* Finds the first place of a cell that shows on a part of the ray. Returns false if there is none. only: the march has found that this
+ * field shows. */
+static bool find_on_part(
+  const hit_field* field, const hit_ray* ray, const hit_cell* cell, const hit_part* part, bool only, hit_place* place)
 {
-  const stratus_table* table = h->caster->look.table;
   const double enters = entry(ray, cell);
   double end = part->end;
   *place = (hit_place){ .k = fmax(enters, part->begin), .cut = part->begin > enters ? part->cut : CUT_NONE };
@@ -228,20 +254,22 @@ static bool find_on_part(const hits* h, const hit_ray* ray, const hit_cell* cell
     weigh(ray, cell, enters, weight);
     end = fall < 0.0 ? fmin(end, enters - fmax(weight[i], 0.0) / fall) : end;
   }
+  const int first_entry = entry_of(field, place->value);
   if (cell->flat || !(end > place->k) || !(end < INFINITY)) {
-    return end > place->k;
+    return end > place->k && (only || field->shown[first_entry] == first_entry);
   }
   const double last = value_at(ray, cell, end);
   const bool rises = last > place->value;
-  const int first_entry = entry_of(table, place->value), last_entry = entry_of(table, last);
-  const int32_t* shown = h->caster->look.sums + (rises ? 8 : 9) * (size_t)table->size;
-  const int met = shown[first_entry]; /* the nearest entry that shows in this direction, see stratus_tetra_shown_sums() */
+  const int last_entry = entry_of(field, last);
+  const int met =
+    field
+      ->shown[first_entry + (rises ? 0 : field->size)]; /* the nearest entry that shows in this direction, see stratus_tetra_shown_sums() */
   if (met != first_entry) {
     const int into = rises ? (met < last_entry ? met : last_entry) : (met > last_entry ? met : last_entry);
-    const double border = ((double)(rises ? into : into + 1) - (double)table->offset) / (double)table->scale;
+    const double border = ((double)(rises ? into : into + 1) - field->offset) / field->scale;
     const double share = last != place->value ? (border - place->value) / (last - place->value) : 0.0;
     place->k += fmin(fmax(share, 0.0), 1.0) * (end - place->k);
-    place->value = ((double)into + 0.5 - (double)table->offset) / (double)table->scale; /* at its border a function may jump */
+    place->value = ((double)into + 0.5 - field->offset) / field->scale; /* at its border a function may jump */
     place->cut = CUT_NONE;
     place->inside = true;
     return into == met;
@@ -249,28 +277,49 @@ static bool find_on_part(const hits* h, const hit_ray* ray, const hit_cell* cell
   return true;
 }
 
-/* Finds the hit. Where no part shows by these numbers, the march's floats have found another: then the first that meets the cell counts. */
-static hit_place find_place(const hits* h, const hit_ray* ray, const hit_cell* cell)
+/* Finds a field's hit in a cell that has its values. Returns false where no part shows by these numbers: then the first counts, if the
+ * march's floats have found one. */
+static bool find_in_cell(const hits* h, const hit_field* field, const hit_ray* ray, const hit_cell* cell, hit_place* found)
 {
-  hit_place found, place;
-  bool any = find_on_part(h, ray, cell, ray->parts, &found);
+  const bool only = h->field_count == 1;
+  hit_place place;
+  bool any = find_on_part(field, ray, cell, ray->parts, only, found);
   for (int part = 1; part < ray->count && !any; ++part) {
-    any = find_on_part(h, ray, cell, ray->parts + part, &place);
-    found = any ? place : found;
+    any = find_on_part(field, ray, cell, ray->parts + part, only, &place);
+    *found = any ? place : *found;
   }
-  return found;
+  return any;
+}
+
+/* Finds the nearest hit. Returns its field, whose values the cell then has. */
+static const hit_field* find_place(const hits* h, const hit_ray* ray, hit_cell* cell, hit_place* found)
+{
+  const hit_field* of = h->fields;
+  bool any = false;
+  for (int f = 0; f < h->field_count; ++f) {
+    hit_place place;
+    take_values(h, h->fields + f, cell);
+    const bool shows = find_in_cell(h, h->fields + f, ray, cell, &place);
+    if (f == 0 || (shows && (!any || place.k < found->k))) {
+      *found = place;
+      of = h->fields + f;
+    }
+    any = any || shows;
+  }
+  take_values(h, of, cell);
+  return of;
 }
 
 /* ---- its normal and colour */
 
 /* The field's gradient at a place, in the world, by those of points. Returns false if it is 0. */
-static bool smooth_normal(const hits* h, const hit_ray* ray, const hit_cell* cell, double k, double normal[3])
+static bool smooth_normal(const hits* h, const hit_field* field, const hit_ray* ray, const hit_cell* cell, double k, double normal[3])
 {
   double weight[4], gradient[3] = { 0.0, 0.0, 0.0 };
   weigh(ray, cell, k, weight);
   for (int i = 0; i < (cell->flat ? 3 : 4); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      gradient[axis] += weight[i] * (double)h->gradients[4 * (size_t)cell->name[i] + (size_t)axis];
+      gradient[axis] += weight[i] * (double)field->gradients[4 * (size_t)cell->name[i] + (size_t)axis];
     }
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -290,13 +339,14 @@ static bool facet_normal(const hit_cell* cell, double normal[3])
   return stratus_vector_normalize(normal) > 0.0;
 }
 
-static void find_normal(const hits* h, const hit_ray* ray, const hit_cell* cell, const hit_place* place, double normal[3])
+static void find_normal(
+  const hits* h, const hit_field* field, const hit_ray* ray, const hit_cell* cell, const hit_place* place, double normal[3])
 {
   const bool cut = place->cut != CUT_NONE;
   if (cut) {
     memcpy(normal, place->cut == CUT_NEAR ? ray->along : h->planes[place->cut], 3 * sizeof *normal);
   }
-  if (cut || !((h->smooth && smooth_normal(h, ray, cell, place->k, normal)) || (place->inside && facet_normal(cell, normal)))) {
+  if (cut || !((field->smooth && smooth_normal(h, field, ray, cell, place->k, normal)) || (place->inside && facet_normal(cell, normal)))) {
     memcpy(normal, cut ? normal : cell->slope[3], 3 * sizeof *normal);
     (void)stratus_vector_normalize(normal);
   }
@@ -307,10 +357,11 @@ static void find_normal(const hits* h, const hit_ray* ray, const hit_cell* cell,
 }
 
 /* Finds the colour of a place. Of dependent components the last one's function is not asked: the others have the colour. */
-static void find_color(const hits* h, const hit_ray* ray, const hit_cell* cell, const hit_place* place, double shown[4])
+static void find_color(
+  const hits* h, const hit_field* field, const hit_ray* ray, const hit_cell* cell, const hit_place* place, double shown[4])
 {
   const stratus_tetra_components* m = &h->caster->components;
-  double value = place->value + h->caster->mesh->bias;
+  double value = place->value + field->bias;
   if (h->dependent) {
     double weight[4], at[4] = { 0.0, 0.0, 0.0, 0.0 };
     const bool own = h->frame->cell_values != NULL;
@@ -322,10 +373,10 @@ static void find_color(const hits* h, const hit_ray* ray, const hit_cell* cell, 
       }
     }
     memcpy(shown, at, 3 * sizeof *shown);
-    value = m->scale[0] > 0.0f ? (at[0] - (double)m->offset[0]) / (double)m->scale[0] + m->bias[0] : m->bias[0] + (double)m->low;
+    value = m->scale[0] > 0.0f ? (at[0] - (double)m->offset[0]) / (double)m->scale[0] + m->bias[0] : m->bias[0] + (double)m->least[0];
   }
   if (!h->dependent || m->count == 2) {
-    stratus_transfer_at(h->transfer, value, shown);
+    stratus_transfer_at(field->transfer, value, shown);
   }
 }
 
@@ -334,21 +385,22 @@ static float shade(const hits* h, int x, int y, float rgba[4])
 {
   hit_ray ray;
   hit_cell cell;
+  hit_place place = { .cut = CUT_NONE };
   double shown[4], normal[3], direction[3], point[3];
   if (!(rgba[3] > 0.0f)) {
     return INFINITY;
   }
   take_ray(h, x, y, &ray);
   take_cell(h, rgba, &cell);
-  const hit_place place = find_place(h, &ray, &cell);
-  find_color(h, &ray, &cell, &place, shown);
-  if (h->options->shade) {
-    find_normal(h, &ray, &cell, &place, normal);
+  const hit_field* field = find_place(h, &ray, &cell, &place);
+  find_color(h, field, &ray, &cell, &place, shown);
+  if (field->lit) {
+    find_normal(h, field, &ray, &cell, &place, normal);
     for (int axis = 0; axis < 3; ++axis) {
       direction[axis] = ray.along[axis] / ray.length;
       point[axis] = h->frame->camera.eye[axis] + ray.from[axis] + place.k * ray.along[axis];
     }
-    stratus_lamps_shine(&h->lamps, point, normal, direction, shown);
+    stratus_lamps_shine(&field->lamps, point, normal, direction, shown);
   }
   for (int c = 0; c < 3; ++c) {
     rgba[c] = (float)fmin(fmax(shown[c], 0.0), 1.0);
@@ -357,25 +409,72 @@ static float shade(const hits* h, int x, int y, float rgba[4])
   return (float)(place.k * ray.length);
 }
 
+/* Adds a field. of: the component whose gradients and material it has. */
+static void add_field(hits* h, hit_field field, int of, const stratus_mesh* mesh)
+{
+  const stratus_tetra_gradients* g = &h->caster->gradients;
+  const stratus_material material = stratus_tetra_material(mesh, h->options, of);
+  hit_field* to = &h->fields[h->field_count++];
+  const size_t set = g->set[of] > 0 ? (size_t)g->set[of] : 0;
+  *to = field;
+  to->gradients = g->vectors ? g->vectors + 4 * (size_t)h->caster->mesh->point_count * set : NULL;
+  to->smooth = h->options->normals == STRATUS_NORMALS_GRADIENT && to->gradients && g->set[of] >= 0;
+  to->lit = material.shade != 0;
+  to->shading = h->options->shading;
+  to->shading.ambient = material.ambient;
+  to->shading.diffuse = material.diffuse;
+  to->shading.specular = material.specular;
+  to->shading.specular_power = material.specular_power;
+  if (to->lit) {
+    stratus_lamps_set(&h->frame->camera, &to->shading, &to->lamps);
+  }
+}
+
+static void add_fields(hits* h, const stratus_mesh* mesh, const stratus_transfer* transfers)
+{
+  const stratus_tetra_components* m = &h->caster->components;
+  const stratus_table* table = h->caster->look.table;
+  if (!stratus_tetra_meets_components(mesh, h->options)) {
+    const hit_field own = { .transfer = transfers,
+      .shown = h->caster->look.sums + 8 * (size_t)table->size,
+      .size = table->size,
+      .scale = (double)table->scale,
+      .offset = (double)table->offset,
+      .bias = h->caster->mesh->bias };
+    add_field(h, own, h->dependent ? m->count - 1 : 0, mesh);
+    return;
+  }
+  for (int c = 0; c < m->count; ++c) {
+    const int size = (int)m->last[c] + 1;
+    const hit_field component = { .transfer = transfers + c,
+      .places = m->places + c,
+      .shown = m->sums + m->sums_at[c] + 8 * (size_t)size,
+      .size = size,
+      .scale = (double)m->scale[c],
+      .offset = (double)m->offset[c],
+      .least = (double)m->least[c],
+      .bias = m->bias[c] };
+    if (transfers[c].weight > 0.0) {
+      add_field(h, component, c, mesh);
+    }
+  }
+}
+
 void stratus_tetra_hits_shade(const stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh,
   const stratus_transfer* transfer, const stratus_tetra_options* options, const stratus_image* image)
 {
-  hits h = { .frame = frame, .caster = caster, .transfer = transfer, .options = options, .dependent = stratus_tetra_mixes(mesh, options) };
+  hits h = { .frame = frame, .caster = caster, .options = options, .dependent = options->dependent && stratus_tetra_mixes(mesh, options) };
   double inverse[16];
   h.plane_count = stratus_tetra_planes(mesh, options, h.planes);
   h.crop_count = stratus_tetra_crop_planes(mesh, options, h.planes + TETRA_PLANES);
   for (int p = 0; p < TETRA_PLANES + h.crop_count; ++p) {
     h.planes[p][3] += stratus_vector_dot(h.planes[p], frame->camera.eye);
   }
-  const int of = h.dependent ? caster->components.count - 1 : 0, set = caster->gradients.set[of] > 0 ? caster->gradients.set[of] : 0;
-  h.gradients = caster->gradients.vectors ? caster->gradients.vectors + 4 * (size_t)caster->mesh->point_count * (size_t)set : NULL;
-  h.smooth = options->normals == STRATUS_NORMALS_GRADIENT && h.gradients && stratus_matrix_invert_affine(mesh->matrix, inverse);
-  for (int i = 0; i < 9 && h.smooth; ++i) { /* normals transform by the inverse's transpose */
+  const bool inverts = stratus_matrix_invert_affine(mesh->matrix, inverse); /* stratus_mesh_check() refuses other matrices */
+  for (int i = 0; i < 9 && inverts; ++i) {                                  /* normals transform by the inverse's transpose */
     h.to_normal[i] = inverse[4 * (i % 3) + i / 3];
   }
-  if (options->shade) {
-    stratus_lamps_set(&frame->camera, &options->shading, &h.lamps);
-  }
+  add_fields(&h, mesh, transfer);
 #pragma omp parallel for num_threads(caster->context->threads)
   for (int y = 0; y < image->height; ++y) {
     for (int x = 0; x < image->width; ++x) {

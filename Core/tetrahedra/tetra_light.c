@@ -14,8 +14,8 @@
 /* Ways of gradient_distance in a unit of length, at most and at least: products with optical depths stay floats. */
 #define WAY_MOST 1e20
 
-/* The material of component c: the shading's own where there are none of components. */
-static stratus_material material_of(const stratus_mesh* mesh, const stratus_tetra_options* options, int c)
+/* The shading's own where there are none of components. */
+stratus_material stratus_tetra_material(const stratus_mesh* mesh, const stratus_tetra_options* options, int c)
 {
   const stratus_shading* shading = &options->shading;
   const bool own = options->materials && stratus_tetra_mixes(mesh, options) && !options->dependent;
@@ -28,9 +28,14 @@ static bool lights(const stratus_tetra_options* options)
   return options->mode == STRATUS_TETRA_COMPOSITE || options->mode == STRATUS_TETRA_ISOSURFACE || options->mode == STRATUS_TETRA_FIRST_HIT;
 }
 
+/* Whether a component's function, or the function of any label, has a gradient opacity. */
 static bool thins(const stratus_transfer* transfer, const stratus_tetra_options* options)
 {
-  return transfer->gradient_count > 0 && options->mode == STRATUS_TETRA_COMPOSITE;
+  bool any = false;
+  for (int l = 0; l <= options->label_count && options->mode == STRATUS_TETRA_COMPOSITE; ++l) {
+    any = any || transfer[l].gradient_count > 0;
+  }
+  return any;
 }
 
 bool stratus_tetra_light_wanted(const stratus_transfer* transfer, const stratus_tetra_options* options)
@@ -44,7 +49,7 @@ unsigned stratus_tetra_light_mask(const stratus_mesh* mesh, const stratus_transf
   const int count = lights(options) && !faces ? stratus_tetra_component_count(mesh) : 0;
   unsigned mask = 0;
   for (int c = options->dependent && count > 0 ? count - 1 : 0; c < count; ++c) {
-    const bool counts = material_of(mesh, options, c).shade || thins(transfers + (options->dependent ? 0 : c), options);
+    const bool counts = stratus_tetra_material(mesh, options, c).shade || thins(transfers + (options->dependent ? 0 : c), options);
     mask |= counts ? 1u << c : 0;
   }
   return mask;
@@ -54,7 +59,7 @@ static stratus_status check_materials(stratus_context* context, const stratus_me
 {
   const int count = stratus_tetra_component_count(mesh);
   for (int c = 0; c < count; ++c) {
-    const stratus_material m = material_of(mesh, options, c);
+    const stratus_material m = stratus_tetra_material(mesh, options, c);
     const double numbers[4] = { m.ambient, m.diffuse, m.specular, m.specular_power };
     if (m.shade) {
       TRY(stratus_shading_check(context, &options->shading));
@@ -98,7 +103,8 @@ void stratus_tetra_light_drop_factors(stratus_tetra_caster* caster)
   caster->factor_count = 0;
 }
 
-/* Make the factors of `count` components again if they were made for other functions. */
+/* Make the factors of `count` components or labels again if they were made for other functions. A label without a gradient opacity has that
+ * of label 0, and 1 if there is none. */
 static stratus_status update_factors(stratus_tetra_caster* caster, const stratus_transfer* transfers, int count, bool dependent)
 {
   const int functions = dependent ? 1 : count;
@@ -121,9 +127,16 @@ static stratus_status update_factors(stratus_tetra_caster* caster, const stratus
   caster->factors = memory;
   caster->factor_count = count;
   for (int c = 0; c < count; ++c) {
-    const stratus_transfer* transfer = transfers + (dependent ? 0 : c);
+    const stratus_transfer* transfer = transfers + (dependent || transfers[c].gradient_count == 0 ? 0 : c);
+    float *own = caster->factors + (size_t)c * factors, scale = 0.0f;
+    for (size_t i = 0; i < factors; ++i) {
+      own[i] = 1.0f;
+    }
     if (transfer->gradient_count > 0) {
-      caster->factor_scale[c] = stratus_gradient_factors(transfer, caster->factors + (size_t)c * factors);
+      scale = stratus_gradient_factors(transfer, own);
+    }
+    if (c < STRATUS_COMPONENTS_MAX) {
+      caster->factor_scale[c] = scale;
     }
   }
   return STRATUS_OK;
@@ -157,8 +170,9 @@ stratus_status stratus_tetra_light_update(stratus_tetra_caster* caster, const st
     ++caster->gradient_builds;
     *ms += stratus_now_ms() - start;
   }
+  const int labels = options->label_count, count = labels > 0 ? 1 + labels : stratus_tetra_component_count(mesh);
   return thinned(mesh, transfers, options)
-    ? update_factors(caster, transfers, stratus_tetra_component_count(mesh), options->dependent && stratus_tetra_mixes(mesh, options))
+    ? update_factors(caster, transfers, count, options->dependent && stratus_tetra_mixes(mesh, options))
     : STRATUS_OK;
 }
 
@@ -206,7 +220,7 @@ static void set_lights(stratus_tetra_frame* frame, const stratus_mesh* mesh, con
     }
   }
   for (int m = 0; m < stratus_tetra_component_count(mesh); ++m) {
-    const stratus_material material = material_of(mesh, options, m);
+    const stratus_material material = stratus_tetra_material(mesh, options, m);
     const double numbers[4] = { material.ambient, material.diffuse, material.specular, material.specular_power };
     for (int i = 0; i < 4; ++i) {
       a->light.material[m][i] = (float)numbers[i];
@@ -250,7 +264,8 @@ void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_c
   }
   for (int c = 0; c < STRATUS_COMPONENTS_MAX; ++c) {
     if (a->thins >> c & 1) {
-      a->factor_scale[c] = (float)fmin(g->unit[c] * g->spacing * (double)caster->factor_scale[c], 1e30);
+      const double scale = options->label_count > 0 ? 1.0 : (double)caster->factor_scale[c];
+      a->factor_scale[c] = (float)fmin(g->unit[c] * g->spacing * scale, 1e30);
     }
   }
   set_lights(frame, mesh, options, mask);

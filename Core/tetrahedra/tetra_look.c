@@ -8,9 +8,6 @@
 
 #include <string.h>
 
-/* Entries of a table. Segments end at any value, which is rounded to an entry: the error of light falls with the width of entries. */
-#define ENTRIES 32768
-
 void stratus_tetra_look_drop(stratus_context* context, stratus_tetra_look* look)
 {
   stratus_table_destroy(look->table);
@@ -45,7 +42,7 @@ stratus_status stratus_tetra_look_make(stratus_context* context, const stratus_t
   TRY(stratus_transfer_copy(context, transfer, 1, &made->transfer));
   TRY_CLEANUP(stratus_table_create_fine(context, transfer, values,
     mode == STRATUS_TETRA_COMPOSITE ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT,
-    mode == STRATUS_TETRA_COMPOSITE ? 1.0 : transfer->unit_distance, ENTRIES, &made->table));
+    mode == STRATUS_TETRA_COMPOSITE ? 1.0 : transfer->unit_distance, STRATUS_TETRA_ENTRIES, &made->table));
   TRY_CLEANUP(adds                      ? stratus_tetra_value_sums(context, made->table, values, range, &made->sums)
       : mode == STRATUS_TETRA_FIRST_HIT ? stratus_tetra_shown_sums(context, made->table, &made->sums)
                                         : stratus_tetra_sums(context, made->table, &made->sums));

@@ -42,7 +42,7 @@ static stratus_status send(device_march* m, const stratus_tetra_device_source* s
   }
   if (frame->lit && (!m->slots[TETRA_COMPONENT_SUMS].memory || (frame->components && d->components != source->components))) {
     TRY(stratus_slot_keep(
-      m->context, m->slots + TETRA_COMPONENT_PLACES, frame->components, source->value_count * 4 * sizeof *frame->components));
+      m->context, m->slots + TETRA_COMPONENT_PLACES, frame->components, frame->component_floats * sizeof *frame->components));
     TRY(stratus_slot_keep(m->context, m->slots + TETRA_COMPONENT_SUMS, frame->media, frame->media_count * sizeof *frame->media));
     d->components = frame->components ? source->components : 0;
   }

@@ -58,8 +58,9 @@ typedef struct stratus_tetra_frame {
   int gradient_sets;      /* of a vector for each point */
   const float* factors;   /* gradient opacities; NULL: there is none */
   size_t factor_count;
-  const float* components; /* stratus_tetra_components.places; NULL: values have one component */
-  const int32_t* media;    /* their sums */
+  const float* components; /* stratus_tetra_components.places; NULL: values have one component, and cells no labels */
+  size_t component_floats;
+  const int32_t* media; /* their sums */
   size_t media_count;
   stratus_camera camera;
   double basis[3][3];            /* world vectors of one unit of a, b and z of the rays' coordinates */

@@ -302,7 +302,7 @@ static stratus_status build(
   tetra->nominal = NULL;
   tetra->bytes = tetra->cell_ints * sizeof(int32_t) + tetra->face_count * sizeof(stratus_tetra_face) +
     (size_t)mesh->point_count * sizeof(int32_t) + tetra->value_count * sizeof(float) +
-    (size_t)mesh->cell_count * (mesh->cell_values ? 1 + sizeof *places->at : 1);
+    (size_t)mesh->cell_count * (mesh->cell_values || mesh->labels ? 1 + sizeof *places->at : 1);
   return STRATUS_OK;
 }
 
@@ -310,8 +310,8 @@ bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh
 {
   const bool lattice = stratus_mesh_is_lattice(mesh);
   return tetra->cell_count == (lattice ? 6 : 1) * mesh->cell_count && tetra->lattices == (lattice ? stratus_mesh_part_count(mesh) : 0) &&
-    (lattice || tetra->point_count == mesh->point_count) && (tetra->values == NULL) == (mesh->cell_values != 0) &&
-    tetra->geometry == stratus_tetra_hash(tetra->context, mesh);
+    (lattice || (tetra->point_count == mesh->point_count && (tetra->at || !mesh->labels))) &&
+    (tetra->values == NULL) == (mesh->cell_values != 0) && tetra->geometry == stratus_tetra_hash(tetra->context, mesh);
 }
 
 stratus_status stratus_tetra_mesh_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken)
@@ -360,7 +360,7 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
   TRY_CLEANUP(build(tetra, mesh, adjacency, &places));
   stratus_stage_end(context, &stage, "cells and border",
     (size_t)tetra->cell_count * TETRA_CELL * sizeof *tetra->cells + tetra->face_count * sizeof *tetra->faces);
-  if (mesh->cell_values) { /* where to fetch other values from */
+  if (mesh->cell_values || mesh->labels) { /* where to fetch other values and labels from */
     tetra->at = places.at;
     places.at = NULL;
   }

@@ -43,6 +43,10 @@ stratus_status stratus_tetra_choose(const stratus_tetra_caster* caster, const st
     snprintf(report->why, sizeof report->why, "march: several components cannot be projected");
     return STRATUS_OK;
   }
+  if (options->label_count > 0) {
+    snprintf(report->why, sizeof report->why, "march: labels cannot be projected");
+    return STRATUS_OK;
+  }
   if (!caster->mesh->names) {
     snprintf(report->why, sizeof report->why, "march: the cells of a lattice are not listed, and so need no memory");
     return STRATUS_OK;

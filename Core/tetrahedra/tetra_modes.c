@@ -167,33 +167,49 @@ void stratus_tetra_frame_slice(stratus_tetra_frame* frame, const stratus_tetra_o
   }
 }
 
-void stratus_tetra_frame_contours(stratus_tetra_frame* frame, const stratus_tetra_mesh* mesh, const stratus_transfer* transfer,
-  const stratus_tetra_options* options, int keeps)
+/* Sets the surfaces of component c, whose fetched values are relative to `bias`: an insertion sort without duplicates. */
+static void set_surfaces(
+  stratus_tetra_arguments* a, int c, double bias, double weight, const stratus_transfer* transfer, const stratus_tetra_options* options)
 {
-  stratus_tetra_arguments* a = &frame->arguments;
-  a->grey =
-    options->mode == STRATUS_TETRA_ADDITIVE ? (float)(((double)frame->table->size + 1.0) / SUM_MOST / transfer->unit_distance) : 0.0f;
-  const double sums = keeps ? ((double)frame->table->size + 1.0) / SUM_MOST : 0.0;
-  const bool surfaces = a->mode == TETRA_SURFACES || a->mode == TETRA_SLICE;
-  a->kept = surfaces ? (float)keeps : (float)sums;
-  a->contour_count = 0;
-  for (int n = 0; options->mode == STRATUS_TETRA_ISOSURFACE && n < options->contour_count; ++n) { /* insertion sort without duplicates */
-    const float value = (float)(options->contours[n] - mesh->bias);
+  float(*surface)[5] = a->contour[c];
+  int count = 0;
+  for (int n = 0; n < options->contour_count; ++n) {
+    const float value = (float)(options->contours[n] - bias);
     double rgba[4];
-    int at = a->contour_count;
-    while (at > 0 && a->contour[at - 1][0] >= value) {
+    int at = count;
+    while (at > 0 && surface[at - 1][0] >= value) {
       --at;
     }
-    if (at < a->contour_count && !(value < a->contour[at][0])) {
+    if (at < count && !(value < surface[at][0])) {
       continue;
     }
-    memmove(a->contour + at + 1, a->contour + at, (size_t)(a->contour_count - at) * sizeof *a->contour);
+    memmove(surface + at + 1, surface + at, (size_t)(count - at) * sizeof *surface);
     stratus_transfer_at(transfer, options->contours[n], rgba);
-    a->contour[at][0] = value;
-    for (int c = 0; c < 4; ++c) {
-      a->contour[at][1 + c] = (float)(c < 3 ? rgba[c] * rgba[3] : rgba[3]);
+    surface[at][0] = value;
+    for (int i = 0; i < 4; ++i) {
+      surface[at][1 + i] = (float)(i < 3 ? rgba[i] * rgba[3] * weight : rgba[3] * weight);
     }
-    ++a->contour_count;
+    ++count;
+  }
+  a->contour_count[c] = count;
+}
+
+void stratus_tetra_frame_contours(
+  stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options)
+{
+  stratus_tetra_arguments* a = &frame->arguments;
+  const stratus_tetra_components* m = &caster->components;
+  const stratus_transfer* transfer = caster->look.transfer;
+  const double per_sum = ((double)frame->table->size + 1.0) / SUM_MOST;
+  const bool surfaces = a->mode == TETRA_SURFACES || a->mode == TETRA_SLICE;
+  a->grey = options->mode == STRATUS_TETRA_ADDITIVE ? (float)(per_sum / transfer->unit_distance) : 0.0f;
+  a->kept = surfaces ? (float)caster->keeps : caster->keeps ? (float)per_sum : 0.0f;
+  if (options->mode == STRATUS_TETRA_ISOSURFACE && !stratus_tetra_meets_components(mesh, options)) {
+    set_surfaces(a, 0, caster->mesh->bias, 1.0, transfer, options);
+  } else if (options->mode == STRATUS_TETRA_ISOSURFACE) {
+    for (int c = 0; c < m->count; ++c) {
+      set_surfaces(a, c, m->bias[c], m->transfers[c].weight, m->transfers + c, options);
+    }
   }
 }
 

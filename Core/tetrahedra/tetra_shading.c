@@ -25,11 +25,11 @@ double stratus_tetra_termination(const stratus_tetra_options* options)
                                     : fmax(fmin(TERMINATION_SHARE * options->tolerance, TERMINATION_MOST), TERMINATION_LEAST);
 }
 
-void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_options* options)
+void stratus_tetra_frame_shade(stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_tetra_options* options)
 {
   stratus_tetra_arguments* arguments = &frame->arguments;
   const stratus_image* image = &frame->image;
-  arguments->table = stratus_table_arguments_of(frame->table);
+  arguments->table = options->label_count > 0 ? caster->components.table : stratus_table_arguments_of(frame->table);
   const double pieces = 1.0 / (12.0 * PIECES_SHARE * fmax(options->tolerance, TOLERANCE_LEAST));
   arguments->table.color_slope *= (float)(pieces / TABLE_SLOPE);
   arguments->pieces = (float)pieces;

@@ -69,6 +69,8 @@ public:
   // Reads the functions of a label. If the property lacks one for the label, the function of `component0` replaces it; `component0` must
   // outlive this view. A label without a gradient opacity of its own has none here: the core then uses the gradient opacity of component 0.
   bool SetLabel(vtkVolumeProperty* property, int label, const vtkStratusTransferView& component0, std::string& error);
+  // Returns the highest label that has functions of its own and fits in a byte, 0 if there is none.
+  static int FindHighestLabel(vtkVolumeProperty* property);
   bool Set(vtkVolumeProperty* property, std::string& error) { return this->Set(property, 0, error); }
   const stratus_transfer& GetTransfer() const { return this->Transfer; }
   // Returns how many functions were translated since the view was made.

@@ -7,6 +7,8 @@
 #include "vtkPiecewiseFunction.h"
 #include "vtkVolumeProperty.h"
 
+#include <algorithm>
+
 void vtkStratusTransferView::PointToOpacity()
 {
   this->Transfer.opacity = this->Opacity.GetPoints();
@@ -56,6 +58,15 @@ bool vtkStratusTransferView::Set(vtkVolumeProperty* property, int index, std::st
   this->Transfer.weight = property->GetComponentWeight(index);
   this->Transfer.unit_distance = property->GetScalarOpacityUnitDistance(index);
   return true;
+}
+
+int vtkStratusTransferView::FindHighestLabel(vtkVolumeProperty* property)
+{
+  int highest = 0;
+  for (int label : property->GetLabelMapLabels()) {
+    highest = label > 0 && label < 256 ? std::max(highest, label) : highest;
+  }
+  return highest;
 }
 
 bool vtkStratusTransferView::SetLabel(vtkVolumeProperty* property, int label, const vtkStratusTransferView& component0, std::string& error)

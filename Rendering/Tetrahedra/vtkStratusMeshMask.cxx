@@ -12,10 +12,10 @@ void Add(const stratus_mesh& mesh, int64_t point, double sum[3])
   }
 }
 
-// Returns one flag for each cell of a part: whether it is hidden, by itself or by the mask.
-std::vector<uint8_t> HiddenCells(const stratus_mesh& mesh, const vtkStratusMask& mask)
+// Returns one byte for each cell of a part: its label, or whether it is hidden, by itself or by the mask.
+std::vector<uint8_t> BytesOf(const stratus_mesh& mesh, const vtkStratusMask& mask, bool labels)
 {
-  std::vector<uint8_t> hidden(static_cast<size_t>(mesh.cell_count));
+  std::vector<uint8_t> bytes(static_cast<size_t>(mesh.cell_count));
   const bool lattice = mesh.lattice[0] > 0;
   const int64_t row = mesh.lattice[0], layer = row * mesh.lattice[1];
   for (int64_t cell = 0; cell < mesh.cell_count; ++cell) {
@@ -30,13 +30,15 @@ std::vector<uint8_t> HiddenCells(const stratus_mesh& mesh, const vtkStratusMask&
     for (double& x : middle) {
       x /= corners;
     }
-    hidden[static_cast<size_t>(cell)] = (mesh.hidden && mesh.hidden[cell]) || mask.GetAt(middle) == 0 ? 1 : 0;
+    const uint8_t byte = mask.GetAt(middle);
+    const bool hides = (mesh.hidden && mesh.hidden[cell]) || byte == 0;
+    bytes[static_cast<size_t>(cell)] = labels ? byte : static_cast<uint8_t>(hides);
   }
-  return hidden;
+  return bytes;
 }
 } // namespace
 
-const stratus_mesh* vtkStratusMeshMask::Hide(const stratus_mesh& mesh, vtkImageData* mask, std::string& error)
+const stratus_mesh* vtkStratusMeshMask::Apply(const stratus_mesh& mesh, vtkImageData* mask, bool labels, std::string& error)
 {
   vtkStratusMask bytes;
   if (!bytes.Set(mask, error)) {
@@ -48,20 +50,22 @@ const stratus_mesh* vtkStratusMeshMask::Hide(const stratus_mesh& mesh, vtkImageD
     : mesh.points              ? mesh.points
                                : static_cast<const void*>(mesh.float_points);
   if (this->Mask != mask || this->Time != bytes.GetTime() || this->Revision != mesh.revision || this->Points != points ||
-    this->Hidden.size() != parts) {
-    this->Hidden.clear();
+    this->Labels != labels || this->Bytes.size() != parts) {
+    this->Bytes.clear();
     for (size_t part = 0; part < parts; ++part) {
-      this->Hidden.push_back(HiddenCells(several ? mesh.blocks[part] : mesh, bytes));
+      this->Bytes.push_back(BytesOf(several ? mesh.blocks[part] : mesh, bytes, labels));
     }
     this->Mask = mask;
     this->Time = bytes.GetTime();
     this->Revision = mesh.revision;
     this->Points = points;
+    this->Labels = labels;
   }
   this->Mesh = mesh;
   this->Blocks.assign(mesh.blocks, mesh.blocks + mesh.block_count);
   for (size_t part = 0; part < parts; ++part) {
-    (several ? this->Blocks[part] : this->Mesh).hidden = this->Hidden[part].data();
+    stratus_mesh& own = several ? this->Blocks[part] : this->Mesh;
+    (labels ? own.labels : own.hidden) = this->Bytes[part].data();
   }
   this->Mesh.blocks = several ? this->Blocks.data() : nullptr;
   this->Mesh.revision ^= static_cast<uint64_t>(this->Time) * UINT64_C(0xD6E8FEB86659FD93);

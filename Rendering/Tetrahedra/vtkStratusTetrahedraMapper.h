@@ -23,12 +23,12 @@
  *   points of equal coordinates and values are merged, so that blocks meet in whole faces. Blocks without the array or without a volume are
  *   left out with a warning. A single block is drawn as it is;
  * - point and cell scalars of any numeric type but bits; also of 2 to 4 independent components, each with functions of its own, which mix
- *   in composite and slice (ComponentMixing), while maximum, minimum, average and additive draw each by itself and add the weighted
- *   colours; and of dependent ones: 2 (colour by the first, opacity by the second) and 4 of up to 16 bits or floats (red, green, blue in
- *   0..255, and the opacity's value), in every mode as vtkStratusVolumeMapper draws them. They are marched. Of independent ones the first
- * colour function's VectorMode draws one value, as VTK's mappers of meshes do: the magnitude, or the component that VectorComponent names,
- * by the functions of component 0. The first component, the default, leaves 2 to 4 components to mix; of more components only the first is
- *   drawn;
+ *   in composite and slice (ComponentMixing), and of which isosurface shows all surfaces and first hits the nearest, while maximum,
+ *   minimum, average and additive draw each by itself and add the weighted colours; and of dependent ones: 2 (colour by the first, opacity
+ * by the second) and 4 of up to 16 bits or floats (red, green, blue in 0..255, and the opacity's value), in every mode as
+ * vtkStratusVolumeMapper draws them. They are marched. Of independent ones the first colour function's VectorMode draws one value, as VTK's
+ * mappers of meshes do: the magnitude, or the component that VectorComponent names, by the functions of component 0. The first component,
+ * the default, leaves 2 to 4 components to mix; of more components only the first is drawn;
  * - scalar opacity, colour or grey, ScalarOpacityUnitDistance in world units;
  * - the blend modes composite, maximum and minimum intensity (the largest or smallest value on a ray, at the opacity of one unit distance),
  *   average and additive intensity, isosurfaces of point scalars (IsoSurfaceValues of the property; up to 16, exact in each
@@ -45,18 +45,17 @@
  * - translucent surfaces peeled with volumes (UseDepthPeelingForVolumes). In composite mode, rays are cast up to each surface, so that the
  *   parts of the volume between surfaces are in depth order. In other modes the whole frame is placed between the surfaces, at its first
  *   depth;
- * - binary masks (MaskInput), which hide cells;
+ * - binary masks (MaskInput), which hide cells, and in composite label maps, by which each cell has functions of its own (LabelColor,
+ *   LabelScalarOpacity and LabelGradientOpacity of the property). Labels are marched;
  * - ghost and blanking arrays, and values that are not finite, which make their whole cell transparent;
  * - the volume's matrix, and parallel and perspective cameras, also inside the grid. The near plane cuts cells.
  *
  * A setting that has no meaning here is left out, as VTK's mappers leave it out, and one warning a mapper says so: Shade outside of
- * composite, isosurface and first hits, gradient opacity outside of composite, functions of two variables and of labels, transforms of
- * clipping planes and of SliceFunction.
- *
- * All else (isosurfaces and first hits of several independent components) is refused by an error, and nothing is drawn.
+ * composite, isosurface and first hits, gradient opacity and label maps outside of composite, functions of labels without a label map,
+ * functions of two variables, transforms of clipping planes and of SliceFunction.
  *
  * Volumes of one renderer are drawn by depth, as vtkStratusVolumeMapper describes. A mesh is mixed with the volumes that overlap it if one
- * of them has a vtkStratusVolumeMapper, by method auto or march and without light.
+ * of them has a vtkStratusVolumeMapper, by method auto or march, without light and label maps.
  *
  * The mapper keeps what it builds: a new view of the same grid rebuilds nothing, a new transfer function rebuilds only a table.
  *
@@ -173,8 +172,10 @@ public:
   /**
    * Set/Get the mask: an image of the input's coordinates, of any size and spacing, whose point scalars are one unsigned char each. A
    * tetrahedron, or a cell of a structured grid, has the byte of the point nearest to its middle, and 0 outside the image. A binary mask
-   * hides cells of byte 0, as a ghost array hides cells. A label map is left out, except in composite, which refuses it. Default nullptr
-   * and BinaryMaskType.
+   * hides cells of byte 0, as a ghost array hides cells. A label map hides nothing: its bytes are labels, and the functions of
+   * vtkVolumeProperty::SetLabelColor() and SetLabelScalarOpacity() replace the property's in cells of a label in 1..255 that has them. A
+   * cell has one label, and is integrated by that label's functions from face to face. Modes other than composite leave label maps out.
+   * Default nullptr and BinaryMaskType.
    */
   virtual void SetMaskInput(vtkImageData* mask);
   vtkImageData* GetMaskInput();

@@ -49,8 +49,6 @@ bool vtkStratusTetrahedraMapper::Internals::CheckMapper(std::string& error) cons
     error = "blend mode " + std::to_string(this->Mapper->BlendMode) + " is not supported, only composite (0) to slice (6) are";
   } else if (this->Mapper->RenderMode == FIRST_HIT_MODE && this->Mapper->BlendMode != COMPOSITE_BLEND) {
     error = "blend mode " + std::to_string(this->Mapper->BlendMode) + " is not supported in first hits, only composite (0) is";
-  } else if (this->HasLabelMap() && this->GetMode() == STRATUS_TETRA_COMPOSITE) {
-    error = "a MaskInput of type label map is not supported in composite mode, only a binary mask is";
   } else if (!std::isfinite(this->Mapper->GradientOpacityDistance)) {
     error = "GradientOpacityDistance is " + std::to_string(this->Mapper->GradientOpacityDistance) +
       ", it must be finite: 0 for optical depths, below 0 for half of the mean spacing";
@@ -65,9 +63,9 @@ void vtkStratusTetrahedraMapper::Internals::NoteLeftOut(vtkVolumeProperty* prope
   if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D) {
     this->LeftOut.Add("TransferFunction2D, which meshes do not use");
   }
-  if (this->HasLabelMap()) {
+  if (this->HasLabelMap() && !this->HasLabels()) {
     this->LeftOut.AddUnused("the label map", stratus_tetra_mode_name(this->GetMode()));
-  } else if (property->GetNumberOfLabels() > 0) {
+  } else if (property->GetNumberOfLabels() > 0 && !this->HasLabels()) {
     this->LeftOut.Add("functions of labels, which need a MaskInput of type label map");
   }
   this->LeftOut.AddTransforms(this->Mapper, this->Mapper->BlendMode == SLICE_BLEND ? property->GetSliceFunction() : nullptr);
@@ -220,15 +218,24 @@ const double* vtkStratusTetrahedraMapper::Internals::FindBounds()
   return nullptr;
 }
 
-// Sets one transfer function, or one for each independent component.
+// Sets one transfer function, or one for each independent component, or one for each label.
 bool vtkStratusTetrahedraMapper::Internals::SetTransfers(vtkVolumeProperty* property, std::string& error)
 {
   const int media = property->GetIndependentComponents() ? std::max(this->Mesh.GetMesh().components, 1) : 1;
+  const int labels = this->HasLabels() ? vtkStratusTransferView::FindHighestLabel(property) : 0;
+  this->Functions.resize(static_cast<size_t>(std::max(media, 1 + labels)));
+  this->Transfers.resize(std::max(this->Functions.size(), this->Transfers.size())); // those not needed now keep their count
   for (int c = 0; c < media; ++c) {
     if (!this->Transfers[c].Set(property, c, error)) {
       return false;
     }
     this->Functions[c] = this->Transfers[c].GetTransfer();
+  }
+  for (int l = 1; l <= labels; ++l) {
+    if (!this->Transfers[l].SetLabel(property, l, this->Transfers[0], error)) {
+      return false;
+    }
+    this->Functions[l] = this->Transfers[l].GetTransfer();
   }
   return true;
 }
@@ -263,14 +270,16 @@ bool vtkStratusTetrahedraMapper::Internals::PrepareInput(vtkVolume* prop, bool& 
     vtkWarningWithObjectMacro(this->Mapper, << left << (left.find(" blocks ") == std::string::npos ? " is" : " are") << " not drawn");
   }
   this->LastLeftOut = left;
-  return this->SetMesh(drawn, prop->GetMatrix(), error) && this->SetMask(error) && this->SetTransfers(prop->GetProperty(), error);
+  return this->SetMesh(drawn, prop->GetMatrix(), error) && this->SetMask(prop->GetProperty(), error) &&
+    this->SetTransfers(prop->GetProperty(), error);
 }
 
-bool vtkStratusTetrahedraMapper::Internals::SetMask(std::string& error)
+bool vtkStratusTetrahedraMapper::Internals::SetMask(vtkVolumeProperty* property, std::string& error)
 {
   const stratus_mesh& mesh = this->Mesh.GetMesh();
-  const bool hides = this->Mapper->MaskInput && !this->HasLabelMap();
-  this->Shown = hides ? this->Mask.Hide(mesh, this->Mapper->MaskInput, error) : &mesh;
+  const bool labels = this->HasLabels() && vtkStratusTransferView::FindHighestLabel(property) > 0;
+  const bool used = labels || (this->Mapper->MaskInput && !this->HasLabelMap());
+  this->Shown = used ? this->Mask.Apply(mesh, this->Mapper->MaskInput, labels, error) : &mesh;
   return this->Shown != nullptr;
 }
 
@@ -294,6 +303,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetOptions(
   options.tolerance = this->Mapper->ImageErrorTolerance;
   options.method = static_cast<stratus_tetra_method>(this->Mapper->Method);
   options.leaves = this->Mesh.GetLeaves();
+  options.label_count = this->HasLabels() ? vtkStratusTransferView::FindHighestLabel(property) : 0;
   return this->SetMode(property, options, error) && this->SetClipPlanes(options, error);
 }
 

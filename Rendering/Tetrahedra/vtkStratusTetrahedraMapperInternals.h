@@ -70,8 +70,10 @@ private:
   bool FindDrawn(Drawn& drawn, std::string& error);
   bool SetMesh(const Drawn& drawn, vtkMatrix4x4* matrix, std::string& error);
   bool PrepareInput(vtkVolume* prop, bool& empty, std::string& error);
-  bool SetMask(std::string& error);
+  bool SetMask(vtkVolumeProperty* property, std::string& error);
+  // Whether the mask is a label map, and whether that is drawn.
   bool HasLabelMap() const { return this->Mapper->MaskInput && this->Mapper->MaskType == LabelMapMaskType; }
+  bool HasLabels() const { return this->HasLabelMap() && this->GetMode() == STRATUS_TETRA_COMPOSITE; }
   stratus_tetra_mode GetMode() const; // by render mode and blend mode
   bool SetTransfers(vtkVolumeProperty* property, std::string& error);
   bool SetClipPlanes(stratus_tetra_options& options, std::string& error) const;
@@ -83,9 +85,9 @@ private:
   vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusMeshView Mesh;
   vtkStratusMeshMask Mask;
-  const stratus_mesh* Shown = nullptr;                                  // the mesh without the cells that a mask hides
-  std::array<vtkStratusTransferView, STRATUS_COMPONENTS_MAX> Transfers; // of each independent component
-  std::array<stratus_transfer, STRATUS_COMPONENTS_MAX> Functions;
+  const stratus_mesh* Shown = nullptr;           // the mesh without the cells that a mask hides, or with the labels of one
+  std::vector<vtkStratusTransferView> Transfers; // at least one per independent component, or per label
+  std::vector<stratus_transfer> Functions;
   std::array<stratus_material, STRATUS_COMPONENTS_MAX> Materials{};
   vtkStratusPicture Picture;
   vtkStratusQuantities Quantities; // of the picture

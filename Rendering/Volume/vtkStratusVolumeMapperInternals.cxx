@@ -20,18 +20,6 @@
 #include <cmath>
 #include <sstream>
 
-namespace {
-// Returns the highest label that has functions of its own and fits in a byte.
-int HighestLabel(vtkVolumeProperty* property)
-{
-  int highest = 0;
-  for (int label : property->GetLabelMapLabels()) {
-    highest = label > 0 && label < 256 ? std::max(highest, label) : highest;
-  }
-  return highest;
-}
-} // namespace
-
 vtkStratusVolumeMapper::Internals::Internals(vtkStratusVolumeMapper* mapper)
     : Mapper(mapper), Context([this](double fraction) { return this->OnProgress(fraction); })
 {
@@ -200,7 +188,7 @@ bool vtkStratusVolumeMapper::Internals::SetTransfers(vtkVolumeProperty* property
   const int components = this->Image.GetVolume().components;
   const bool composite = this->GetMode() == STRATUS_MODE_COMPOSITE;
   const int media = property->GetIndependentComponents() ? components : 1;
-  const int labels = this->HasLabels() ? HighestLabel(property) : 0;
+  const int labels = this->HasLabels() ? vtkStratusTransferView::FindHighestLabel(property) : 0;
   this->Functions.resize(static_cast<size_t>(std::max(media, 1 + labels)));
   this->Transfers.resize(std::max(this->Functions.size(), this->Transfers.size())); // those not needed now keep their count
   bool thins = false;
@@ -310,7 +298,7 @@ bool vtkStratusVolumeMapper::Internals::SetMask(vtkVolumeProperty* property, str
     error = "MaskInput's array has " + std::to_string(bytes->GetNumberOfTuples()) + " values for " +
       std::to_string(mask->GetNumberOfPoints()) + " points";
   } else {
-    options.mask.label_count = this->HasLabels() ? HighestLabel(property) : 0;
+    options.mask.label_count = this->HasLabels() ? vtkStratusTransferView::FindHighestLabel(property) : 0;
     options.mask.bytes = this->HasLabels() && options.mask.label_count == 0 ? nullptr : bytes->GetPointer(0);
     options.mask.revision = std::max<uint64_t>({ bytes->GetMTime(), mask->GetMTime(), time });
   }

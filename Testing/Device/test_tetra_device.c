@@ -137,9 +137,9 @@ static void components_draw_the_same(void** state)
 {
   stratus_context *host = open_context("host", *state), *device = open_context("0", *state);
   assert_non_null(device);
-  for (uint32_t seed = 0; seed < 16; seed += few_run() ? 3 : 1) {
-    static const stratus_tetra_mode last[6] = { STRATUS_TETRA_SLICE, STRATUS_TETRA_MINIMUM, STRATUS_TETRA_ISOSURFACE, STRATUS_TETRA_AVERAGE,
-      STRATUS_TETRA_FIRST_HIT, STRATUS_TETRA_SLICE };
+  for (uint32_t seed = 0; seed < 18; seed += few_run() ? 3 : 1) {
+    static const stratus_tetra_mode last[8] = { STRATUS_TETRA_SLICE, STRATUS_TETRA_MINIMUM, STRATUS_TETRA_ISOSURFACE, STRATUS_TETRA_AVERAGE,
+      STRATUS_TETRA_FIRST_HIT, STRATUS_TETRA_SLICE, STRATUS_TETRA_ISOSURFACE, STRATUS_TETRA_FIRST_HIT };
     static const double thicker[4] = { 0.2, 0.1, 0.9, 0.6 }, thin[4] = { 0.1, 0.0, 0.6, 1.0 };
     static const stratus_material materials[2] = { { 1, 0.1, 0.9, 0.5, 30.0 }, { 1, 0.4, 0.5, 0.0, 1.0 } };
     tetra_case c;
@@ -156,7 +156,7 @@ static void components_draw_the_same(void** state)
     c.options.slice = (stratus_slice){ .center = { 0.5 * edge, 0.5 * edge, 0.5 * edge }, .linear = { 1, 2, 3 } };
     if (seed > 6) {
       c.options.shade = 1;
-      c.options.materials = seed == 8 ? materials : NULL;
+      c.options.materials = seed == 8 || seed > 15 ? materials : NULL;
       transfers[1].gradient = thin;
       transfers[1].gradient_count = 2;
       c.options.gradient_distance = seed == 9 ? 0.5 : 0.0;
@@ -183,6 +183,47 @@ static void components_draw_the_same(void** state)
     }
     assert_true(theirs.report.segments > 0);
     assert_same();
+    tetra_destroy(&c);
+  }
+  stratus_context_destroy(device);
+  stratus_context_destroy(host);
+}
+
+/* Labels of cells, lit and thinned or not, of lists and lattices. */
+static void labels_draw_the_same(void** state)
+{
+  stratus_context *host = open_context("host", *state), *device = open_context("0", *state);
+  assert_non_null(device);
+  for (uint32_t seed = 0; seed < 4; ++seed) {
+    static const double thicker[4] = { 0.2, 0.1, 0.9, 0.6 }, opaque[4] = { 0.5, 0.0, 0.6, 1.0 }, thin[4] = { 0.1, 0.0, 0.6, 1.0 };
+    uint8_t* labels = malloc((size_t)(6 * edge * edge * edge));
+    assert_non_null(labels);
+    tetra_case c;
+    tetra_create(&c, edge, 0.2, 0.0, seed);
+    tetra_camera(host, &c, edge, (int)(seed % 8), seed & 1);
+    stratus_transfer transfers[3] = { c.transfer, c.transfer, c.transfer };
+    transfers[1].opacity = thicker;
+    transfers[2].opacity = opaque;
+    transfers[1].opacity_count = transfers[2].opacity_count = 2;
+    for (int i = 0; i < 6 * edge * edge * edge; ++i) {
+      labels[i] = (uint8_t)((uint32_t)i * 2654435761u >> 30);
+    }
+    if (seed % 2 == 1) {
+      c.options.shade = 1;
+      transfers[1].gradient = thin;
+      transfers[1].gradient_count = 2;
+    }
+    if (seed > 1) {
+      tetra_as_lattice(&c, edge);
+    }
+    c.mesh.labels = labels;
+    c.transfers = transfers;
+    c.options.label_count = 2;
+    tetra_draw(host, &c, &theirs);
+    tetra_draw(device, &c, &ours);
+    assert_true(theirs.report.segments > 0);
+    assert_same();
+    free(labels);
     tetra_destroy(&c);
   }
   stratus_context_destroy(device);
@@ -363,7 +404,9 @@ int test_tetra_device(void)
   const struct CMUnitTest all[] = {
     EACH(device_and_host_draw_the_same),
     cmocka_unit_test_prestate(components_draw_the_same, &march_cpu),
+    cmocka_unit_test_prestate(labels_draw_the_same, &march_cpu),
     cmocka_unit_test_prestate(components_draw_the_same, &march_gpu),
+    cmocka_unit_test_prestate(labels_draw_the_same, &march_gpu),
     cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_cpu),
     cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_gpu),
     cmocka_unit_test_prestate(auto_goes_by_the_costs_of_the_host, &march_cpu),
@@ -375,6 +418,7 @@ int test_tetra_device(void)
   const struct CMUnitTest small[] = {
     EACH(device_and_host_draw_the_same),
     cmocka_unit_test_prestate(components_draw_the_same, &march_gpu),
+    cmocka_unit_test_prestate(labels_draw_the_same, &march_gpu),
     cmocka_unit_test_prestate(overlaps_are_drawn_again, &project_cpu),
     cmocka_unit_test_prestate(auto_goes_by_the_costs_of_the_host, &march_cpu),
     TWO(a_caster_that_drew_before),

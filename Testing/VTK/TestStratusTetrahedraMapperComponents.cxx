@@ -88,13 +88,18 @@ void LikeTheImage(bool independent, int components, bool bytes, int mixing, bool
     scene.Tetrahedra->GetMethodReason());
 }
 
-// Each component is drawn by itself, and the pictures are added, as the image mapper does.
+// Each component is drawn by itself, and the pictures are added, or their lit surfaces are drawn by depth, as the image mapper does.
 void ModesLikeTheImage(int mode, int components, bool bytes)
 {
   GridScene scene;
   SetFields(scene, components, bytes);
   SetFunctions(scene.Volume->GetProperty(), bytes ? 240.0 : 1.0);
   scene.Volume->GetProperty()->SetScalarOpacityUnitDistance(0, 9.0);
+  if (mode == vtkStratusTetrahedraMapper::ISOSURFACE_BLEND) {
+    SetLight(scene.Volume->GetProperty(), components, bytes ? 240.0 : 1.0);
+    scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, bytes ? 100.5 : 0.4);
+    scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(1, bytes ? 150.5 : 0.6);
+  }
   scene.Tetrahedra->SetBlendMode(mode);
   scene.Mapper->SetBlendMode(mode);
   for (int view = 0; view < 3; ++view) {
@@ -174,9 +179,6 @@ void WhatIsRefused()
     CHECK(scene.GridPicture().empty() && scene.GridErrors->Count == before + 1 && scene.GridErrors->Has(word), "not \"%s\": %s", word,
       scene.GridErrors->Text.c_str());
   };
-  scene.Tetrahedra->SetBlendModeToIsoSurface();
-  scene.Volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, 0.5);
-  refuses("mode isosurface of 3 independent components");
   scene.Tetrahedra->SetBlendModeToAverageIntensity();
   scene.Volume->GetProperty()->IndependentComponentsOff();
   refuses("3 dependent components of type");
@@ -210,6 +212,8 @@ int main()
   for (int mode = vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND; mode <= vtkVolumeMapper::ADDITIVE_BLEND; ++mode) {
     ModesLikeTheImage(mode, 1 + mode % 4 + (mode % 4 == 0), mode == vtkVolumeMapper::MINIMUM_INTENSITY_BLEND);
   }
+  ModesLikeTheImage(vtkStratusTetrahedraMapper::ISOSURFACE_BLEND, 3, false);
+  ModesLikeTheImage(vtkStratusTetrahedraMapper::ISOSURFACE_BLEND, 2, true);
   VectorsLikeTheirValues(false, 3);
   VectorsLikeTheirValues(true, 3);
   VectorsLikeTheirValues(false, 6);

@@ -8,9 +8,13 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkMatrix4x4.h"
+#include "vtkPiecewiseFunction.h"
 #include "vtkPlane.h"
 #include "vtkSphere.h"
 #include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace {
 // Sets the same on both mappers.
@@ -120,7 +124,32 @@ void Masks()
   const double before = scene.GridLight();
   mask->Modified();
   CHECK(scene.GridLight() < before, "a changed mask changes nothing");
-  scene.Tetrahedra->SetMaskTypeToLabelMap(); // which other modes have no use for
+  // A label map is as the mask if the label has the opacity, and the property, which all else has, none.
+  const std::vector<float> masked = scene.GridPicture();
+  vtkNew<vtkImageData> map;
+  map->DeepCopy(mask);
+  auto* labels = static_cast<unsigned char*>(map->GetScalarPointer());
+  for (vtkIdType i = 0; i < map->GetNumberOfPoints(); ++i) {
+    labels[i] = bytes[i] == 0 ? 0 : 2;
+  }
+  vtkNew<vtkPiecewiseFunction> clear, dense;
+  clear->AddPoint(0, 0);
+  dense->AddPoint(0, 0.9);
+  vtkVolumeProperty* look = scene.Volume->GetProperty();
+  look->SetLabelScalarOpacity(2, scene.Opacity);
+  look->SetScalarOpacity(clear);
+  scene.Tetrahedra->SetMaskInput(map);
+  scene.Tetrahedra->SetMaskTypeToLabelMap();
+  const std::vector<float> shown = scene.GridPicture();
+  double most = 0.0;
+  for (size_t i = 0; i < std::min(masked.size(), shown.size()); ++i) {
+    most = std::max(most, std::fabs(static_cast<double>(masked[i] - shown[i])));
+  }
+  CHECK(shown.size() == masked.size() && most < 1e-3, "a label map is not as the mask: %g", most); // the tolerance
+  look->SetLabelScalarOpacity(2, dense);
+  CHECK(scene.GridLight() > before, "a label's opacity changes nothing");
+  look->SetScalarOpacity(scene.Opacity);
+  scene.Tetrahedra->SetMaskInput(mask); // other modes have no use for labels
   scene.Tetrahedra->SetBlendModeToMaximumIntensity();
   const std::vector<float> labelled = scene.GridPicture();
   scene.Tetrahedra->SetMaskInput(nullptr);
@@ -205,11 +234,7 @@ void WhatIsRefused()
   mask->AllocateScalars(VTK_FLOAT, 1);
   scene.Tetrahedra->SetMaskInput(mask);
   refuses("no point scalars of one unsigned char");
-  scene.Tetrahedra->SetMaskTypeToLabelMap();
-  scene.Tetrahedra->SetBlendModeToComposite();
-  refuses("label map is not supported in composite");
   scene.Tetrahedra->SetMaskInput(nullptr);
-  scene.Tetrahedra->SetBlendModeToIsoSurface();
   scene.Tetrahedra->SetRenderModeToFirstHit();
   refuses("blend mode 5 is not supported in first hits");
   scene.Tetrahedra->SetRenderModeToComposite();

@@ -66,6 +66,10 @@ class Lattice:
             self.slopes = numpy.stack([numpy.stack(numpy.gradient(self.values[..., c], *axes)[::-1], -1) for c in range(self.values.shape[-1])], -1)
         return self.mix(self.slopes[..., component], points)
 
+    def label(self, points, mask):
+        """That of the nearest value."""
+        return mask[self.nearest(points)]
+
     def nearest(self, points):
         """The numbers of the nearest value along z, y, x."""
         return tuple(numpy.clip(numpy.searchsorted((axis[1:] + axis[:-1]) / 2, x, "right"), 0, len(axis) - 1) for axis, x in zip(self.axes, points.T))[::-1]
@@ -74,16 +78,16 @@ class Lattice:
 class Mesh:
     """Tetrahedra within cubes of side 1, linear in each; a point's gradient is the mean of its cells, by volume."""
 
-    def __init__(self, data, values, mask):
+    def __init__(self, data, values, mask, labels=False):
         points = vtk_to_numpy(data.GetPoints().GetData()).astype(float)
         cells = vtk_to_numpy(data.GetCells().GetConnectivityArray()).reshape(-1, 4)
         self.low, self.high = points.min(0), points.max(0)
         self.values, self.cells = values.astype(float), cells
         p = points[cells]
-        # A cell has the byte of the mask's point nearest to its middle. It is hidden where that is 0.
+        # A cell has the byte of the mask's point nearest to its middle. It is hidden where that is 0, unless bytes are labels.
         at = numpy.floor(p.mean(1) + 0.5).astype(int)
         self.bytes = numpy.ones(len(cells), int) if mask is None else mask[at[:, 2], at[:, 1], at[:, 0]]
-        self.shown = self.bytes > 0
+        self.shown = (self.bytes > 0) | labels
         used = self.values[cells[self.shown]]
         self.range = used.min((0, 1)), used.max((0, 1))
         edges = p[:, 1:] - p[:, :1]
@@ -129,6 +133,9 @@ class Mesh:
 
     holds = Lattice.holds
 
+    def label(self, points, mask):
+        return self.bytes[self.find(points)[0]]
+
     def at(self, points):
         cell, weights = self.find(points)
         there = self.holds(points) & self.shown[cell]
@@ -155,7 +162,8 @@ def field_of(grid, features):
     if grid == "tetrahedra":
         data = scenes.mesh(features)
         values = vtk_to_numpy(data.GetPointData().GetScalars())
-        return Mesh(data, values.reshape(len(values), -1), scenes.mask_values(features, grid) if "mask" in features else None)
+        mask = scenes.mask_values(features, grid) if {"mask", "labels"} & set(features) else None
+        return Mesh(data, values.reshape(len(values), -1), mask, "labels" in features)
     fields = scenes.levels(features)
     values = numpy.stack([f.field() for f in fields], -1).transpose(2, 1, 0, 3)
     half = fields[0].spacing / fields[0].scales[-1] / 2
@@ -265,7 +273,7 @@ class Layer:
         for m in self.media():
             rgb, opacity = self.look(value, m)
             if "labels" in self.features:
-                label = self.mask[self.mask_field.nearest(points)] > 0
+                label = self.field.label(points, self.mask) > 0
                 rgb = numpy.where(label[:, None], between(scenes.LABEL_COLOR, value[:, m]), rgb)
                 opacity = numpy.where(label, between(scenes.LABEL_OPACITY, value[:, m])[:, 0], opacity)
             gradient = None

@@ -31,6 +31,7 @@ typedef struct tetra_case {
   float* values;
   uint8_t* hidden;
   stratus_transfer transfer;
+  const stratus_transfer* transfers; /* of labels; NULL: there is only `transfer` */
   stratus_camera camera;
   stratus_tetra_options options;
   const float* opaque_depth;
@@ -184,7 +185,8 @@ static inline void tetra_draw(stratus_context* context, const tetra_case* c, tet
     .samples = p->samples,
     .opaque_depth = c->opaque_depth };
   assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
-  const stratus_status status = stratus_tetra_caster_render(caster, &c->mesh, &c->transfer, &c->camera, &c->options, &image, &p->report);
+  const stratus_transfer* transfer = c->transfers ? c->transfers : &c->transfer;
+  const stratus_status status = stratus_tetra_caster_render(caster, &c->mesh, transfer, &c->camera, &c->options, &image, &p->report);
   if (status != STRATUS_OK) {
     print_error("%s\n", stratus_context_message(context));
   }

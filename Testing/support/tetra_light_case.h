@@ -261,6 +261,21 @@ static inline int tetra_lit_nearer(const void* a, const void* b)
   return tetra_nearer(&((const tetra_lit_stretch*)a)->stretch, &((const tetra_lit_stretch*)b)->stretch);
 }
 
+/* The case with the functions of a cell's label. */
+static inline tetra_case tetra_of_label(const tetra_case* c, int64_t cell)
+{
+  tetra_case own = *c;
+  if (c->transfers) {
+    const int label = c->mesh.labels[cell];
+    own.transfer = c->transfers[label <= c->options.label_count ? label : 0];
+    if (own.transfer.gradient_count == 0) {
+      own.transfer.gradient = c->transfers[0].gradient;
+      own.transfer.gradient_count = c->transfers[0].gradient_count;
+    }
+  }
+  return own;
+}
+
 /* Draws the reference, 4*TETRA_PIXELS. Light may be above 1. */
 static inline void tetra_reference_lit(const tetra_case* c, double* rgba)
 {
@@ -285,7 +300,13 @@ static inline void tetra_reference_lit(const tetra_case* c, double* rgba)
     qsort(met, count, sizeof *met, tetra_lit_nearer);
     memset(out, 0, 4 * sizeof *out);
     for (size_t i = 0; i < count; ++i) {
-      tetra_integrate_lit(c, &world, &local, met + i, origin, along, out);
+      const tetra_case own = tetra_of_label(c, met[i].cell);
+      if (own.options.mode == STRATUS_TETRA_COMPOSITE && !own.options.shade && own.transfer.gradient_count == 0) {
+        double first = INFINITY; /* by finer quadrature, as functions may be narrow or opaque */
+        tetra_integrate(&own, &met[i].stretch, sqrt(tetra_dot(along, along)), out, &first);
+      } else {
+        tetra_integrate_lit(&own, &world, &local, met + i, origin, along, out);
+      }
     }
   }
   tetra_space_destroy(&world);

@@ -36,6 +36,9 @@
 #define TETRA_QUANTITIES 6 /* the field's integral, length, largest value and number of cells */
 /* Added to the numbers that a hit stores, so that they are the bits of floats between 0 and 1. */
 #define TETRA_HIT_NAME 0x10000000
+/* Ints of a label's record, which are before the labels' sums: where its sums begin, laid out as stratus_tetra_sums(); the bits of the
+ * floats tau_scale and factor_scale; which set of gradient opacities it has. */
+#define TETRA_LABEL 4
 #define TETRA_PLANES 12 /* of clip planes and the sides of a box */
 #define TETRA_CONTOURS 16
 
@@ -50,7 +53,8 @@
 
 /* Values of several components: each has a table of its own, of which points know the places. */
 typedef struct stratus_tetra_media_arguments {
-  int components;                /* 0: one, and the rest means nothing */
+  int components;                /* 0: one, and the rest means nothing, except `labels` */
+  int labels;                    /* 1: a cell's label chooses its function, of tables as the frame's */
   int dependent;                 /* 1: the last has the opacity, and the others the colour: a value of a table, or red, green and blue */
   int mean;                      /* 1: independent components count by their share of the optical depth */
   int sums_at[4];                /* where a component's sums begin, laid out as stratus_tetra_sums() */
@@ -86,9 +90,9 @@ typedef struct stratus_tetra_arguments {
   /* > 0: marched extremes and sums store what a ray has kept in place of its colour, as kernels/ray_cast/ray_modes.h says, but no blue; a
    * factor of sums. Isosurfaces and slices store only this one of a ray's surfaces, the nearest is 1. */
   float kept;
-  int contour_count;
-  float contour[TETRA_CONTOURS][5]; /* sorted by value: value, colour times opacity, opacity */
-  stratus_slice_arguments slice;    /* in (a, b, z) */
+  int contour_count[4];
+  float contour[4][TETRA_CONTOURS][5]; /* of each independent component, sorted by value: value, colour times opacity, opacity */
+  stratus_slice_arguments slice;       /* in (a, b, z) */
   int plane_count;
   float plane[TETRA_PLANES][6];        /* a ray is seen where [0] + u [1] + v [2] + ([3] + u [4] + v [5]) z >= 0 */
   int regions;                         /* not 0: which crop regions show, of those between these planes */

@@ -34,6 +34,17 @@ typedef struct stratus_tetra_medium {
 
 INLINE int component_has_gradient(CONSTANT stratus_tetra_arguments* a, int c) { return (a->light.on | a->thins) >> c & 1; }
 
+/* Lanes whose path from one entry of a component to another meets an entry of its rows behind the sums; *first is the first such entry of
+ * each, as of opaque_on_the_way(). */
+INLINE vmask component_meets(
+  CONSTANT stratus_tetra_arguments* a, GLOBAL const int* all, int c, vint low, vint high, vmask mask, vint* first)
+{
+  const int entries = (int)a->media.last[c] + 1;
+  const vmask rises = vi_ge(high, low);
+  *first = v_gather_ints(all + a->media.sums_at[c] + 8 * entries, low + vi_select(rises, vi_set(0), vi_set(entries)), mask);
+  return mask & ((rises & vi_ge(high, *first)) | m_andnot(vi_ge(*first, high), rises));
+}
+
 /* Compute component c's contribution on a path of `length` between two places of its table, without its gradient. */
 INLINE void component_mean(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* all, int c, vfloat from, vfloat to, vfloat length,
   vmask mask, stratus_tetra_medium* medium)
@@ -64,10 +75,8 @@ INLINE void component_mean(CONSTANT stratus_tetra_arguments* a, GLOBAL const int
   medium->opaque = m_none();
   medium->depth = v_min(mean[3] * v_set(a->media.depth_scale[c]) * length, v_set(1e18f));
   if (a->media.has_opaque[c]) {
-    GLOBAL const int* rows = sums + 8 * entries;
-    const vmask rises = vi_ge(high, low);
-    const vint first = v_gather_ints(rows, low + vi_select(rises, vi_set(0), vi_set(entries)), mask);
-    const vmask met = mask & ((rises & vi_ge(high, first)) | m_andnot(vi_ge(first, high), rises));
+    vint first;
+    const vmask met = component_meets(a, all, c, low, high, mask, &first);
     if (m_any(met)) {
       gather_four_ints(sums, vi_select(met, first, high) + vi_set(entries), met, up_to);
       for (int i = 0; i < 4; ++i) {

@@ -21,6 +21,8 @@ typedef struct stratus_tetra_stretch {
   vfloat begin, rise;          /* z at its start, and from there to its end */
   vfloat gradient[3], turn[3]; /* at its start, and from there to its end */
   vfloat length;               /* in the world */
+  vfloat tau_scale;            /* the optical depth of a unit of the sums over a unit of length */
+  vfloat factor_scale;         /* from gradients to steps of the gradient opacity */
 } stratus_tetra_stretch;
 
 INLINE void stretch_gradient(const stratus_tetra_stretch* s, vfloat part, vfloat g[3])
@@ -30,11 +32,12 @@ INLINE void stretch_gradient(const stratus_tetra_stretch* s, vfloat part, vfloat
   }
 }
 
-/* Component c's gradient opacity of a gradient. */
-INLINE vfloat tetra_factor(CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, int c, const vfloat g[3], vmask mask)
+/* Component c's gradient opacity of a gradient. scale: the stretch's factor_scale. */
+INLINE vfloat tetra_factor(
+  CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, int c, vfloat scale, const vfloat g[3], vmask mask)
 {
   const vint first = vi_set(c * ((int)a->factor_last + 2));
-  return factor_of_gradient((GLOBAL const int*)factors, first, v_set(a->factor_scale[c]), a->factor_last, g, mask);
+  return factor_of_gradient((GLOBAL const int*)factors, first, scale, a->factor_last, g, mask);
 }
 
 /* Component c's light and gradient opacity at a part of the stretch. way: the optical depth over factor_way there, read only where that is
@@ -52,7 +55,7 @@ INLINE void tetra_light_at(CONSTANT stratus_tetra_arguments* a, GLOBAL const flo
     lit->specular[i] = v_set(0.0f);
   }
   if (a->thins >> c & 1) {
-    lit->factor = tetra_factor(a, factors, c, g, mask);
+    lit->factor = tetra_factor(a, factors, c, s->factor_scale, g, mask);
     if (a->factor_way > 0.0f) {
       lit->factor = factor_of_way(lit->factor, way);
     }
@@ -88,7 +91,7 @@ INLINE vfloat tetra_light_pieces(
   if (a->thins >> c & 1) {
     vfloat f[3];
     for (int i = 0; i < 3; ++i) {
-      f[i] = tetra_factor(a, factors, c, g[i], mask);
+      f[i] = tetra_factor(a, factors, c, s->factor_scale, g[i], mask);
     }
     const vfloat bend = v_abs(v_fma(v_set(-0.5f), f[0] + f[2], f[1]));
     q = q + v_fma(depth, v_abs(f[2] - f[0]), v_set(8.0f) * most * bend);
@@ -163,7 +166,7 @@ INLINE void tetra_light_piece(CONSTANT stratus_tetra_arguments* a, GLOBAL const 
     }
   }
   if (m_any(mask)) {
-    const vfloat weight = v_min(part * s->length * v_set(a->table.tau_scale), v_set(OPAQUE_WEIGHT));
+    const vfloat weight = v_min(part * s->length * s->tau_scale, v_set(OPAQUE_WEIGHT));
     const vfloat tau = v_from_int(end.sum[3] - p->from.sum[3]);
     const vfloat middle = tetra_middle_of(sums, (int)a->table.last + 1, p->from.entry, end.entry, tau, mask);
     const vfloat at = v_fma(middle, part, p->at);
@@ -178,7 +181,7 @@ INLINE void tetra_light_piece(CONSTANT stratus_tetra_arguments* a, GLOBAL const 
         gather_four_ints(sums, end.entry + vi_set((int)a->table.last + 1), level, own);
         mean = v_select(level, v_from_int(own[3]), mean);
       }
-      way = v_min(mean * v_set(a->table.tau_scale) * v_set(a->factor_way), v_set(1e20f));
+      way = v_min(mean * s->tau_scale * v_set(a->factor_way), v_set(1e20f));
     }
     tetra_light_at(a, factors, 0, s, at, way, mask, &lit);
     tetra_composite(a, sums, light, mask, &p->from, &end, weight, near, &lit);
@@ -193,7 +196,7 @@ INLINE void tetra_light_stretch(CONSTANT stratus_tetra_arguments* a, GLOBAL cons
   const stratus_tetra_stretch* s, stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, const stratus_tetra_place* from,
   const stratus_tetra_place* to, vfloat near)
 {
-  const vfloat one = v_set(1.0f), weight = v_min(s->length * v_set(a->table.tau_scale), v_set(OPAQUE_WEIGHT));
+  const vfloat one = v_set(1.0f), weight = v_min(s->length * s->tau_scale, v_set(OPAQUE_WEIGHT));
   const vfloat entries = v_abs(v_from_int(to->entry - from->entry));
   const vfloat sum = v_abs(v_from_int(to->sum[3] - from->sum[3])) * weight;
   vfloat depth = sum * v_reciprocal(v_max(entries, one));

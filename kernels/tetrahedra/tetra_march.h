@@ -23,8 +23,8 @@ typedef struct stratus_tetra_scene {
     /* of points, four floats each, a set for each component; this and the next are read only by the variant TETRA_LIT */
     gradients;
   GLOBAL const float* factors;    /* the gradient opacities of components */
-  GLOBAL const float* components; /* of points or cells, four floats each: places in the components' tables */
-  GLOBAL const int* media;        /* their sums */
+  GLOBAL const float* components; /* of points or cells, four floats each: places in the components' tables; or of cells their labels */
+  GLOBAL const int* media;        /* sums of the components, or of labels behind their records */
   GLOBAL const float* colors;     /* extremes and slices: colours of the table's entries */
 } stratus_tetra_scene;
 
@@ -243,10 +243,11 @@ INLINE void tetra_face_floats(GLOBAL const float* floats, int count, const vint 
   }
 }
 
-/* The part begin..end, in z, of a cell that was passed. */
-INLINE stratus_tetra_stretch tetra_stretch(
-  GLOBAL const float* gradients, const stratus_tetra_ray* r, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask)
+/* The part begin..end, in z, of a cell that was passed, with component c's gradients. */
+INLINE stratus_tetra_stretch tetra_stretch(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, int c,
+  const stratus_tetra_ray* r, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask)
 {
+  GLOBAL const float* gradients = scene->gradients + 4 * ((size_t)a->media.gradients_at[c] * (size_t)a->media.points);
   const vfloat per_z = v_reciprocal(v_max(passage->to - passage->from, v_set(1e-30f)));
   const vfloat from = v_clamp((begin - passage->from) * per_z, 0.0f, 1.0f), to = v_clamp((end - passage->from) * per_z, 0.0f, 1.0f);
   stratus_tetra_stretch s;
@@ -264,6 +265,8 @@ INLINE stratus_tetra_stretch tetra_stretch(
   s.begin = begin;
   s.rise = end - begin;
   s.length = (end - begin) * r->length;
+  s.tau_scale = v_set(a->table.tau_scale);
+  s.factor_scale = v_set(a->factor_scale[c]);
   return s;
 }
 
@@ -285,6 +288,9 @@ INLINE void tetra_values_of(CONSTANT stratus_tetra_arguments* a, const stratus_t
     for (int c = 0; c < TETRA_COMPONENTS; ++c) {
       values->from[c] = v_fma(last[c] - first[c], from, first[c]);
       values->to[c] = v_fma(last[c] - first[c], to, first[c]);
+      if (a->mode == TETRA_SURFACES) { /* the same as of the next cell, so that no surface on their face is lost or counts twice */
+        values->to[c] = v_select(v_le(passage->to, end), last[c], values->to[c]);
+      }
     }
   }
 }
@@ -352,12 +358,40 @@ INLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const st
   stratus_tetra_stretch stretches[TETRA_COMPONENTS];
   for (int c = 0; c < a->media.components; ++c) {
     if (component_has_gradient(a, c)) {
-      const size_t set = (size_t)a->media.gradients_at[c] * (size_t)a->media.points;
-      stretches[c] = tetra_stretch(scene->gradients + 4 * set, r, passage, begin, end, mask);
+      stretches[c] = tetra_stretch(a, scene, c, r, passage, begin, end, mask);
     }
   }
   const stratus_tetra_mixture mixture = { &values, stretches, scene->media, scene->factors, (end - begin) * r->length };
   tetra_media(a, &mixture, light, mask, near);
+}
+
+/* Adds the light of the part begin..end of cells, from value `first` to `last`, by the function of each cell's label. Labels take turns. */
+INLINE void tetra_shade_labels(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vfloat first, vfloat last, vmask mask,
+  vfloat near)
+{
+  const vint label = v_to_int(gather_float(scene->components, passage->cell >> vi_set(3), mask)), none = vi_set(-1);
+  while (m_any(mask)) {
+    int of[STRATUS_WIDTH], turn = -1;
+    vi_store(of, vi_select(mask, label, none));
+    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+      turn = of[lane] > turn ? of[lane] : turn;
+    }
+    const vmask mine = mask & vi_zero(label - vi_set(turn));
+    GLOBAL const int *record = scene->media + TETRA_LABEL * turn, *sums = scene->media + record[0];
+    const stratus_tetra_place from = tetra_place(a, sums, first, mine), to = tetra_place(a, sums, last, mine);
+    const vfloat tau_scale = v_from_bits(vi_set(record[1]));
+    if (a->light.on | a->thins) {
+      stratus_tetra_stretch stretch = tetra_stretch(a, scene, 0, r, passage, begin, end, mine);
+      stretch.tau_scale = tau_scale;
+      stretch.factor_scale = stretch.factor_scale * v_from_bits(vi_set(record[2]));
+      GLOBAL const float* factors = scene->factors + (size_t)record[3] * ((size_t)a->factor_last + 2);
+      tetra_light_stretch(a, sums, factors, &stretch, light, mine, first, last, &from, &to, near);
+    } else { /* the frame's own tau_scale is 1 */
+      tetra_integrate(a, sums, light, mine, first, last, &from, &to, (end - begin) * r->length * tau_scale, near);
+    }
+    mask = m_andnot(mask, mine);
+  }
 }
 
 /* Returns the lanes whose stretch may show: its sums differ, or it is within one entry. */
@@ -389,55 +423,93 @@ INLINE void tetra_measure(stratus_tetra_light* light, vmask mask, vfloat first, 
   light->blue = light->blue + v_select(mask, v_set(1.0f), zero);
 }
 
-/* Composite the surfaces that the part begin..end of a cell passes, from value `first` to `last`, in their order along it. A surface is
- * where the field passes its value upwards or downwards, so that one on the border of two cells counts once. Dependent components have
- * their own colour. */
+#if TETRA_LIT
+/* Composites a surface of component c at a part of begin..end of a cell, in its light. Dependent components have their own colour. */
+INLINE void tetra_lit_surface(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  stratus_tetra_light* light, const stratus_tetra_passage* passage, int c, vfloat begin, vfloat end, vfloat part, vmask mask,
+  vfloat color[4], vfloat distance)
+{
+  stratus_tetra_lit lit;
+  if (a->media.dependent) {
+    tetra_color_at(a, scene, r, passage, v_fma(part, end - begin, begin), mask, color);
+    for (int i = 0; i < 3; ++i) {
+      color[i] = color[i] * color[3];
+    }
+  }
+  if (a->light.on >> c & 1) {
+    const stratus_tetra_stretch stretch = tetra_stretch(a, scene, c, r, passage, begin, end, mask);
+    tetra_light_at(a, 0, c, &stretch, part, v_set(0.0f), mask, &lit);
+  }
+  tetra_surface(a, light, a->light.on >> c & 1 ? &lit : 0, mask, color, distance);
+}
+#endif
+
+/* Composite the surfaces that the part begin..end of a cell passes, from value `first` to `last`, in their order along it. Surfaces of
+ * several independent components at one place are in the components' order. A surface is where the field passes its value upwards or
+ * downwards, so that one on the border of two cells counts once. */
 INLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vfloat first, vfloat last, vmask mask)
 {
-  const vmask rises = v_lt(first, last);
+  const vfloat one = v_set(1.0f), none = v_set(2.0f), zero = v_set(0.0f);
+  vfloat at = v_set(-1.0f); /* the last surface so far: its part of the stretch, and its number */
+  vint number = vi_set(0);
 #if TETRA_LIT
-  const int of = a->media.components ? a->media.components - 1 : 0;
-  stratus_tetra_stretch stretch;
-  mask = mask & m_andnot(v_le(first, first), v_le(first, last) & v_le(last, first));
-  if (!m_any(mask)) {
-    return;
-  }
-  if (a->light.on) {
-    const size_t set = (size_t)a->media.gradients_at[of] * (size_t)a->media.points;
-    stretch = tetra_stretch(scene->gradients + 4 * set, r, passage, begin, end, mask);
+  const int several = a->media.components && !a->media.dependent, count = several ? a->media.components : 1;
+  stratus_tetra_values values;
+  values.from[0] = first;
+  values.to[0] = last;
+  if (several) {
+    tetra_values_of(a, scene, r, passage, begin, end, mask, &values);
   }
 #else
+  const int count = 1;
   (void)scene;
   (void)passage;
 #endif
-  for (int n = 0; n < a->contour_count; ++n) {
-    CONSTANT float *up = a->contour[n], *down = a->contour[a->contour_count - 1 - n];
-    const vfloat value = v_select(rises, v_set(up[0]), v_set(down[0]));
-    const vmask below = v_lt(first, value), ends_below = v_lt(last, value);
-    const vmask met = mask & (m_andnot(below, ends_below) | m_andnot(ends_below, below));
-    if (!m_any(met)) {
-      continue;
-    }
-    const vfloat part = (value - first) * v_reciprocal(v_select(met, last - first, v_set(1.0f)));
-    const vfloat distance = v_fma(part, (end - begin) * r->length, v_fma(begin, r->length, r->offset));
-    vfloat color[4] = { v_select(rises, v_set(up[1]), v_set(down[1])), v_select(rises, v_set(up[2]), v_set(down[2])),
-      v_select(rises, v_set(up[3]), v_set(down[3])), v_select(rises, v_set(up[4]), v_set(down[4])) };
+  for (;;) {
+    vfloat next = none, color[4] = { zero, zero, zero, zero };
+    vint found = vi_set(0);
+    for (int c = 0; c < count; ++c) {
 #if TETRA_LIT
-    if (a->media.components) {
-      tetra_color_at(a, scene, r, passage, v_fma(part, end - begin, begin), met, color);
-      for (int i = 0; i < 3; ++i) {
-        color[i] = color[i] * color[3];
+      first = values.from[c];
+      last = values.to[c];
+#endif
+      for (int n = 0; n < a->contour_count[c]; ++n) {
+        CONSTANT float* surface = a->contour[c][n];
+        const vfloat value = v_set(surface[0]);
+        const vmask below = v_lt(first, value), ends_below = v_lt(last, value);
+        vmask met = mask & (m_andnot(below, ends_below) | m_andnot(ends_below, below));
+        if (!m_any(met)) {
+          continue;
+        }
+        const vfloat part = (value - first) * v_reciprocal(v_select(met, last - first, one));
+        const vint of = vi_set(TETRA_CONTOURS * c + n);
+        met = met & v_lt(part, next) & (v_lt(at, part) | (v_le(at, part) & vi_lt(number, of)));
+        next = v_select(met, part, next);
+        found = vi_select(met, of, found);
+        for (int i = 0; i < 4; ++i) {
+          color[i] = v_select(met, v_set(surface[1 + i]), color[i]);
+        }
       }
     }
-    if (a->light.on) {
-      stratus_tetra_lit lit;
-      tetra_light_at(a, 0, of, &stretch, part, v_set(0.0f), met, &lit);
-      tetra_surface(a, light, &lit, met, color, distance);
-      continue;
+    mask = mask & v_lt(next, none);
+    if (!m_any(mask)) {
+      return;
     }
+    const vfloat distance = v_fma(next, (end - begin) * r->length, v_fma(begin, r->length, r->offset));
+#if TETRA_LIT
+    for (int c = 0; c < count; ++c) {
+      const vmask mine = mask & vi_ge(found, vi_set(TETRA_CONTOURS * c)) & vi_lt(found, vi_set(TETRA_CONTOURS * (c + 1)));
+      if (m_any(mine)) {
+        tetra_lit_surface(
+          a, scene, r, light, passage, a->media.dependent ? a->media.components - 1 : c, begin, end, next, mine, color, distance);
+      }
+    }
+#else
+    tetra_surface(a, light, 0, mask, color, distance);
 #endif
-    tetra_surface(a, light, 0, met, color, distance);
+    at = next;
+    number = found;
   }
 }
 
@@ -468,14 +540,33 @@ INLINE void tetra_slice(CONSTANT stratus_tetra_arguments* a, const stratus_tetra
   }
 }
 
-/* Ends rays at a cell that shows between the values `first` and `last`. Keeps the numbers of the cell's points, of which the first three
- * are the face by which the ray entered. Of values of cells the fourth number is the cell's. */
-INLINE void tetra_hit(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, stratus_tetra_light* light,
-  const stratus_tetra_passage* passage, vfloat first, vfloat last, vmask mask)
+/* Ends rays at a cell whose part begin..end shows, between the values `first` and `last` or of any independent component. Keeps the numbers
+ * of the cell's points, of which the first three are the face by which the ray entered. Of values of cells the fourth number is the
+ * cell's. */
+INLINE void tetra_hit(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vfloat first, vfloat last, vmask mask)
 {
   vint entry;
+#if TETRA_LIT
+  stratus_tetra_values values;
+  vmask met = m_none();
+  (void)first;
+  (void)last;
+  tetra_values_of(a, scene, r, passage, begin, end, mask, &values);
+  for (int c = 0; c < a->media.components; ++c) {
+    const vint from = v_to_int(v_clamp(values.from[c], 0.0f, a->media.last[c])),
+               to = v_to_int(v_clamp(values.to[c], 0.0f, a->media.last[c]));
+    if (a->media.weight[c] > 0.0f) {
+      met = met | component_meets(a, scene->media, c, from, to, mask, &entry);
+    }
+  }
+#else
   const vint from = table_entry(&a->table, scene->colors, first), to = table_entry(&a->table, scene->colors, last);
   const vmask met = opaque_on_the_way(&a->table, scene->sums + 8 * a->table.entries, from, to, mask, &entry);
+  (void)r;
+  (void)begin;
+  (void)end;
+#endif
   const vint plus = vi_set(TETRA_HIT_NAME);
   light->red = v_select(met, v_from_bits(passage->name[0] + plus), light->red);
   light->green = v_select(met, v_from_bits(passage->name[1] + plus), light->green);
@@ -519,10 +610,12 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
   } else if (a->mode == TETRA_SLICE) {
     tetra_slice(a, scene, r, light, passage, begin, end, mask);
   } else if (a->mode == TETRA_HITS) {
-    tetra_hit(a, scene, light, passage, first, last, mask);
+    tetra_hit(a, scene, r, light, passage, begin, end, first, last, mask);
 #if TETRA_LIT
   } else if (a->mode == TETRA_ADD && a->media.components) {
     tetra_add_product(a, scene, r, light, passage, begin, end, first, last, mask);
+  } else if (a->media.labels) {
+    tetra_shade_labels(a, scene, r, light, passage, begin, end, first, last, mask, near);
 #endif
   } else {
     stratus_tetra_place from = r->place, to;
@@ -543,7 +636,7 @@ INLINE vmask tetra_shade(CONSTANT stratus_tetra_arguments* a, const stratus_tetr
       if (m_any(some) && a->media.components) {
         tetra_shade_components(a, scene, r, light, passage, begin, end, some, near);
       } else if (m_any(some)) {
-        const stratus_tetra_stretch stretch = tetra_stretch(scene->gradients, r, passage, begin, end, some);
+        const stratus_tetra_stretch stretch = tetra_stretch(a, scene, 0, r, passage, begin, end, some);
         tetra_light_stretch(a, scene->sums, scene->factors, &stretch, light, some, first, last, &from, &to, near);
       }
 #else
@@ -569,7 +662,11 @@ INLINE void tetra_enter(CONSTANT stratus_tetra_arguments* a, const stratus_tetra
   tetra_cross(r->edge, r->z, r->s, &at, &value);
   r->at = v_select(mask, at, r->at);
   r->value = v_select(mask, value, r->value);
-  if (a->mode == TETRA_LIGHT || a->mode == TETRA_ADD) {
+  int places = a->mode == TETRA_LIGHT || a->mode == TETRA_ADD;
+#if TETRA_LIT
+  places = places && !a->media.labels; /* which have sums of their own */
+#endif
+  if (places) {
     const stratus_tetra_place place = tetra_place(a, scene->sums, value, mask);
     r->place = tetra_place_select(mask, &place, &r->place);
   }

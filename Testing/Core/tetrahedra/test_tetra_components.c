@@ -188,7 +188,7 @@ static void add_all(const several* s, const met_cell* met, size_t count, const d
   }
 }
 
-static void draw_reference(several* s)
+static void draw_reference(several* s, add_ray* add)
 {
   for (int c = 0; c < s->count; ++c) {
     const stratus_material* m = s->whole.options.dependent ? NULL : s->whole.options.materials;
@@ -205,7 +205,7 @@ static void draw_reference(several* s)
     spaces_now.world[c] = tetra_space_create(s->part + c, 1);
     spaces_now.local[c] = tetra_space_create(s->part + c, 0);
   }
-  draw_by(s, add_all);
+  draw_by(s, add);
   for (int c = 0; c < s->count; ++c) {
     tetra_space_destroy(spaces_now.world + c);
     tetra_space_destroy(spaces_now.local + c);
@@ -263,7 +263,7 @@ static void compare_with_reference(stratus_context* context, several* s, uint32_
     s->part[c].mesh.cell_values = s->whole.mesh.cell_values;
   }
   tetra_camera(context, &s->whole, 3, (int)(seed % 8), seed & 1);
-  draw_reference(s);
+  draw_reference(s, add_all);
   draw(context, s, &picture);
   const double error = tetra_error(picture.rgba, reference, &largest);
   if (!(error < 0.255)) {
@@ -531,11 +531,183 @@ static void dependent_components_in_all_modes(void** state)
   }
 }
 
+static double opacity_of(const several* s, int c, double value)
+{
+  return s->transfers[c].weight * linear_between(s->transfers[c].opacity, s->transfers[c].opacity_count, 2, 1, value);
+}
+
+/* Adds the surfaces of all components in their order along the cells that a ray meets, each in its component's colour and light. */
+static void add_surfaces(const several* s, const met_cell* met, size_t count, const double origin[3], const double along[3], double out[4])
+{
+  const stratus_tetra_options* o = &s->whole.options;
+  for (size_t i = 0; i < count; ++i) {
+    double done = -1.0;
+    for (;;) { /* the next along the cell */
+      double next = 2.0, value = 0.0, rgb[3], place[3], g[3];
+      int of = 0;
+      for (int c = 0; c < s->count; ++c) {
+        const tetra_stretch* cut = met[i].of + c;
+        for (int n = 0; n < o->contour_count; ++n) {
+          const double contour = o->contours[n], t = (contour - cut->first) / (cut->last - cut->first);
+          if ((cut->first < contour) != (cut->last < contour) && t > done && t < next) {
+            next = t;
+            value = contour;
+            of = c;
+          }
+        }
+      }
+      if (next > 1.0) {
+        break;
+      }
+      color_of(s->transfers + of, value, rgb);
+      for (int a = 0; a < 3; ++a) {
+        place[a] = origin[a] + (met[i].of[0].from + next * (met[i].of[0].to - met[i].of[0].from)) * along[a];
+      }
+      if (o->materials ? o->materials[of].shade : o->shade) {
+        tetra_gradient_at(s->part + of, spaces_now.world + of, spaces_now.world + of, met[i].cell, place, g);
+        tetra_illuminate(s->part + of, place, along, g, rgb);
+      }
+      const double alpha = opacity_of(s, of, value);
+      for (int k = 0; k < 3; ++k) {
+        out[k] += (1.0 - out[3]) * alpha * rgb[k];
+      }
+      out[3] += (1.0 - out[3]) * alpha;
+      done = next;
+    }
+  }
+}
+
+/* Adds the first place at which any component of a weight shows, in steps. */
+static void add_hit(const several* s, const met_cell* met, size_t count, const double origin[3], const double along[3], double out[4])
+{
+  (void)origin;
+  (void)along;
+  for (size_t i = 0; i < count; ++i) {
+    for (int step = 0; step <= 10 * STEPS; ++step) {
+      for (int c = 0; c < s->count; ++c) {
+        const tetra_stretch* cut = met[i].of + c;
+        const double value = cut->first + step * (cut->last - cut->first) / (10 * STEPS);
+        if (opacity_of(s, c, value) > 0.0) {
+          color_of(s->transfers + c, value, out);
+          out[3] = 1.0;
+          return;
+        }
+      }
+    }
+  }
+}
+
+/* Surfaces are exact. A ray that grazes the border of the values that show may hit another cell, as in test_tetra_first_hit. */
+static void surfaces_of_components_are_right(void** state)
+{
+  for (uint32_t seed = 0; seed < 16; seed += few_run() ? 5 : 1) {
+    several s;
+    double largest;
+    stratus_tetra_options* o = &s.whole.options;
+    const bool hits = seed % 2 == 1, bytes = seed % 5 == 2;
+    create(&s, 3, 2 + (int)(seed / 2) % 3, bytes, seed);
+    o->mode = hits ? STRATUS_TETRA_FIRST_HIT : STRATUS_TETRA_ISOSURFACE;
+    o->contour_count = 3;
+    memcpy(o->contours, (const double[3]){ 0.7, 0.35, 0.55 }, 3 * sizeof(double));
+    for (int n = 0; n < 3 && bytes; ++n) {
+      o->contours[n] *= 255.0;
+    }
+    s.transfers[1].weight = seed % 3 == 0 ? 0.0 : 0.6;
+    s.whole.mesh.cell_values = hits && seed % 3 == 1;
+    for (int c = 0; c < s.count; ++c) {
+      s.part[c].mesh.cell_values = s.whole.mesh.cell_values;
+    }
+    if (!hits && seed % 8 > 3) {
+      set_light(&s, seed % 8 > 5);
+    }
+    tetra_camera(*state, &s.whole, 3, (int)(seed % 8), seed & 1);
+    draw_reference(&s, hits ? add_hit : add_surfaces);
+    draw(*state, &s, &picture);
+    if (hits) {
+      int others = 0;
+      for (int i = 0; i < TETRA_PIXELS; ++i) {
+        double most = 0.0;
+        for (int k = 0; k < 4; ++k) {
+          most = fmax(most, fabs((double)picture.rgba[4 * i + k] - reference[4 * i + k]));
+        }
+        others += most > 0.01;
+        for (int k = 0; k < 4 && most > 0.01; ++k) {
+          picture.rgba[4 * i + k] = (float)reference[4 * i + k];
+        }
+      }
+      assert_true(others < TETRA_PIXELS / 100);
+    }
+    const double error = tetra_error(picture.rgba, reference, &largest);
+    if (!(error < 0.3)) {
+      print_error(
+        "seed %u, %d components, mode %s: %.3f of 255, at most %.2f\n", seed, s.count, stratus_tetra_mode_name(o->mode), error, largest);
+    }
+    assert_true(error < 0.3);
+    destroy(&s);
+  }
+}
+
+/* Beside components that show nothing, each is as a mesh of its own: its hits have its material and its gradients, and its surfaces, too.
+ */
+static void lone_components_are_as_meshes(void** state)
+{
+  static const double clear[2] = { 0.0, 0.0 };
+  for (int turn = 0; turn < 24; ++turn) {
+    several s;
+    double most = 0.0;
+    const int shown = turn % 3;
+    create(&s, 4, 3, false, 4);
+    set_light(&s, 1);
+    s.materials[2] = (stratus_material){ 1, 0.3, 0.6, 0.2, 8.0 };
+    stratus_tetra_options* o = &s.whole.options;
+    o->mode = turn % 6 < 3 ? STRATUS_TETRA_FIRST_HIT : STRATUS_TETRA_ISOSURFACE;
+    o->normals = turn < 12 ? STRATUS_NORMALS_GRADIENT : STRATUS_NORMALS_FACES;
+    o->contour_count = 1;
+    o->contours[0] = 0.6;
+    s.transfers[shown].weight = 1.0;
+    tetra_camera(*state, &s.whole, 4, turn % 8, turn & 1);
+    tetra_case one = s.part[shown];
+    one.camera = s.whole.camera;
+    one.options = *o;
+    one.options.materials = NULL;
+    one.options.shade = 1;
+    one.options.shading.ambient = s.materials[shown].ambient;
+    one.options.shading.diffuse = s.materials[shown].diffuse;
+    one.options.shading.specular = s.materials[shown].specular;
+    one.options.shading.specular_power = s.materials[shown].specular_power;
+    one.mesh.values = one.values;
+    one.mesh.type = STRATUS_FLOAT32;
+    one.mesh.components = 1;
+    one.mesh.value_stride = 1;
+    one.transfer = s.transfers[shown];
+    for (int c = 0; c < 3; ++c) {
+      s.transfers[c].opacity = c == shown ? s.transfers[c].opacity : clear;
+      s.transfers[c].opacity_count = c == shown ? s.transfers[c].opacity_count : 1;
+    }
+    draw(*state, &s, &picture);
+    tetra_draw(*state, &one, &other);
+    int others = 0, lit = 0;
+    for (int i = 0; i < TETRA_PIXELS; ++i) {
+      most = 0.0;
+      for (int k = 0; k < 4; ++k) {
+        most = fmax(most, fabs((double)picture.rgba[4 * i + k] - (double)other.rgba[4 * i + k]));
+      }
+      others += most > 2e-3; /* tables that span other values round to other entries */
+      lit += other.rgba[4 * i + 3] > 0.0f;
+    }
+    if (others > lit / 100) {
+      print_error("turn %d: %d of %d pixels differ\n", turn, others, lit);
+    }
+    assert_true(lit > 100 && others <= lit / 100);
+    destroy(&s);
+  }
+}
+
 /* One caster draws one mode after the other, with other functions and values: nothing of an earlier picture stays. */
 static void modes_follow_one_another(void** state)
 {
-  static const stratus_tetra_mode modes[6] = { STRATUS_TETRA_MAXIMUM, STRATUS_TETRA_COMPOSITE, STRATUS_TETRA_MAXIMUM,
-    STRATUS_TETRA_ADDITIVE, STRATUS_TETRA_COMPOSITE, STRATUS_TETRA_AVERAGE };
+  static const stratus_tetra_mode modes[8] = { STRATUS_TETRA_MAXIMUM, STRATUS_TETRA_COMPOSITE, STRATUS_TETRA_FIRST_HIT,
+    STRATUS_TETRA_ADDITIVE, STRATUS_TETRA_ISOSURFACE, STRATUS_TETRA_COMPOSITE, STRATUS_TETRA_MAXIMUM, STRATUS_TETRA_AVERAGE };
   stratus_tetra_caster* caster = NULL;
   several s;
   create(&s, 3, 3, false, 5);
@@ -545,7 +717,9 @@ static void modes_follow_one_another(void** state)
   };
   assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
   for (int step = 0; step < 12; ++step) {
-    s.whole.options.mode = modes[step % 6];
+    s.whole.options.mode = modes[step % 8];
+    s.whole.options.contour_count = 1;
+    s.whole.options.contours[0] = 0.5;
     s.opacity[2][1] = 0.01 * step;
     if (step == 7) {
       ((float*)s.all)[3 * 20 + 2] = 0.05f;
@@ -607,35 +781,32 @@ static void lattices_threads_and_sets_agree(void** state)
 
 static void wrong_components_are_refused(void** state)
 {
-  static const char* const words[] = { "components 5 outside 1..4", "must be at least its 3 components",
-    "mode isosurface of 2 independent components", "cannot be projected", "dependent components", "material of component 1 has (0.4, nan",
-    "ambient is nan", "mode first-hit of 2 independent components" };
+  static const char* const words[] = { "components 5 outside 1..4", "must be at least its 3 components", "cannot be projected",
+    "dependent components", "material of component 1 has (0.4, nan", "ambient is nan" };
   stratus_tetra_caster* caster = NULL;
   several s;
   create(&s, 2, 2, false, 1);
   tetra_camera(*state, &s.whole, 2, 1, 0);
   const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = picture.rgba };
   assert_int_equal(stratus_tetra_caster_create(*state, &caster), STRATUS_OK);
-  for (int wrong = 0; wrong < 8; ++wrong) {
+  for (int wrong = 0; wrong < 6; ++wrong) {
     stratus_mesh mesh = s.whole.mesh;
     stratus_tetra_options o = s.whole.options;
     stratus_transfer transfers[2] = { s.transfers[0], s.transfers[1] };
-    o.method = wrong == 3 ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_AUTO;
-    o.mode = wrong == 2 ? STRATUS_TETRA_ISOSURFACE : wrong == 7 ? STRATUS_TETRA_FIRST_HIT : STRATUS_TETRA_COMPOSITE;
-    mesh.components = wrong == 0 ? 5 : wrong == 1 || wrong == 4 ? 3 : 2;
-    mesh.value_stride = wrong == 4 ? 3 : 2;
-    mesh.point_count = wrong == 4 ? 0 : mesh.point_count;
-    mesh.cell_count = wrong == 4 ? 0 : mesh.cell_count;
-    o.dependent = wrong == 4;
-    o.contour_count = 1;
-    if (wrong == 5 || wrong == 6) {
-      set_light(&s, wrong == 5);
+    o.method = wrong == 2 ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_AUTO;
+    mesh.components = wrong == 0 ? 5 : wrong == 1 || wrong == 3 ? 3 : 2;
+    mesh.value_stride = wrong == 3 ? 3 : 2;
+    mesh.point_count = wrong == 3 ? 0 : mesh.point_count;
+    mesh.cell_count = wrong == 3 ? 0 : mesh.cell_count;
+    o.dependent = wrong == 3;
+    if (wrong == 4 || wrong == 5) {
+      set_light(&s, wrong == 4);
       o = s.whole.options;
       s.materials[1].diffuse = NAN;
-      o.shading.ambient = wrong == 6 ? (double)NAN : 0.1;
+      o.shading.ambient = wrong == 5 ? (double)NAN : 0.1;
     }
     assert_int_equal(stratus_tetra_caster_render(caster, &mesh, transfers, &s.whole.camera, &o, &image, NULL),
-      wrong < 2 || wrong == 5 || wrong == 6 ? STRATUS_INVALID_ARGUMENT : STRATUS_UNSUPPORTED);
+      wrong < 2 || wrong > 3 ? STRATUS_INVALID_ARGUMENT : STRATUS_UNSUPPORTED);
     if (!strstr(stratus_context_message(*state), words[wrong])) {
       print_error("%s\n", stratus_context_message(*state));
     }
@@ -651,6 +822,8 @@ int test_tetra_components(void)
     cmocka_unit_test_setup_teardown(components_are_right, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(lit_components_are_right, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(modes_of_components_are_right, tetra_start, tetra_stop),
+    cmocka_unit_test_setup_teardown(surfaces_of_components_are_right, tetra_start, tetra_stop),
+    cmocka_unit_test_setup_teardown(lone_components_are_as_meshes, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(dependent_components_in_all_modes, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(modes_follow_one_another, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(halves_are_a_whole, tetra_start, tetra_stop),
