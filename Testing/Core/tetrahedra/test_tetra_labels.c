@@ -4,6 +4,7 @@
  * that change; and refused inputs. */
 #include "tetra_light_case.h"
 
+#include "faulty_allocator.h"
 #include "tetra_caster.h"
 #include "testing.h"
 
@@ -138,6 +139,42 @@ static void labels_change(void** state)
   tetra_destroy(&l.c);
 }
 
+/* Labels after a picture without them, so that only their own memory is new. A failure leaves the caster ready, and no memory behind. */
+static void allocations_may_fail(void** state)
+{
+  faulty_allocator allocator = { 0 };
+  const stratus_context_options options = faulty_options(&allocator, "host");
+  stratus_context* context = NULL;
+  stratus_tetra_caster* caster = NULL;
+  int refused = 0;
+  labelled l;
+  create(*state, &l, 0.0, 2);
+  l.transfers[2].gradient = l.opacity[0];
+  l.transfers[2].gradient_count = 3;
+  tetra_draw(*state, &l.c, &picture);
+  const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = other.rgba };
+  assert_int_equal(stratus_context_create(&options, &context, NULL, 0), STRATUS_OK);
+  for (bool reached = true; reached;) {
+    stratus_tetra_options plain = l.c.options;
+    plain.label_count = 0;
+    assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
+    assert_int_equal(stratus_tetra_caster_render(caster, &l.c.mesh, l.transfers, &l.c.camera, &plain, &image, NULL), STRATUS_OK);
+    allocator.fail_at = allocator.calls + refused + 1;
+    const stratus_status status = stratus_tetra_caster_render(caster, &l.c.mesh, l.transfers, &l.c.camera, &l.c.options, &image, NULL);
+    reached = allocator.calls >= allocator.fail_at;
+    allocator.fail_at = 0;
+    assert_int_equal(status, reached ? STRATUS_OUT_OF_MEMORY : STRATUS_OK);
+    refused += reached;
+    assert_int_equal(stratus_tetra_caster_render(caster, &l.c.mesh, l.transfers, &l.c.camera, &l.c.options, &image, NULL), STRATUS_OK);
+    assert_memory_equal(picture.rgba, other.rgba, sizeof picture.rgba);
+    stratus_tetra_caster_destroy(caster);
+  }
+  assert_true(refused > FUNCTIONS);
+  stratus_context_destroy(context);
+  assert_int_equal(allocator.live, 0);
+  tetra_destroy(&l.c);
+}
+
 static void wrong_labels_are_refused(void** state)
 {
   static const char* const words[] = { "label_count 256 of a mesh with labels, must be 0..255", "label_count 3 of a mesh without labels",
@@ -180,6 +217,7 @@ int test_tetra_labels(void)
     cmocka_unit_test_setup_teardown(labels_are_right, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(lattices_are_as_their_lists, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(labels_change, tetra_start, tetra_stop),
+    cmocka_unit_test_setup_teardown(allocations_may_fail, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(wrong_labels_are_refused, tetra_start, tetra_stop),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
