@@ -123,9 +123,8 @@ void several_drawing::take_member(const cli::options& o, const cli::routed& data
 void several_drawing::set_mesh(member& one, const cli::routed& data)
 {
   const cli::options& o = this->Options;
-  if (o.shade || (!o.mask.empty() && this->Members.size() == 1)) {
-    throw cli::usage("'" + one.o.source + "' is a grid of cells, which " +
-      (o.shade ? "is not lit among several INPUTs: leave out --shade" : "takes no mask: name the volume that it masks first"));
+  if (!o.mask.empty() && this->Members.size() == 1) {
+    throw cli::usage("'" + one.o.source + "' is a grid of cells, which takes no mask: name the volume that it masks first");
   }
   one.o.up = std::string(1, static_cast<char>('x' + this->Up));
   one.mesh = std::make_unique<cli::mesh>();
@@ -185,6 +184,7 @@ std::vector<stratus_ray_cast_input> several_drawing::inputs()
     if (one.mesh) {
       one.tetra_options = stratus_tetra_options_default();
       one.tetra_options.tolerance = this->Options.tolerance;
+      one.tetra_options.shade = this->Options.shade;
       one.tetra_options.crop = n == 0 && !this->Options.crop.empty();
       std::copy(this->Options.crop.begin(), this->Options.crop.end(), one.tetra_options.crop_bounds);
       one.tetra_options.crop_regions = static_cast<uint32_t>(this->Options.crop_regions);

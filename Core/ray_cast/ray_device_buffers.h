@@ -22,7 +22,8 @@ typedef enum buffer_name {
   TABLE,
   LAYERS, /* of several volumes: stratus_ray_caster.layers */
   ARGUMENTS,
-  PARTS, /* of several volumes: stratus_several_arguments */
+  PARTS,  /* of several volumes: stratus_several_arguments */
+  MESHES, /* of several volumes: stratus_tetra_arguments */
   OPAQUE,
   RGBA,
   RGBA8,

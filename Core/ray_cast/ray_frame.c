@@ -65,16 +65,25 @@ static void set_camera(const stratus_camera* camera, const double world_to_index
       targets[v][axis] = stratus_pair_of(vector[axis]);
     }
   }
+  a->camera.near_k = stratus_pair_of(camera->near_k);
+  a->camera.has_far = isfinite(camera->far_k);
+  a->camera.far_k = stratus_pair_of(a->camera.has_far ? camera->far_k : 0.0);
+}
+
+void stratus_ray_frame_lattice(
+  const stratus_camera* camera, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* a)
+{
   a->camera.metric[0] = stratus_pair_of(stratus_vector_dot(camera->forward, camera->forward));
   a->camera.metric[1] = stratus_pair_of(2.0 * stratus_vector_dot(camera->forward, camera->right));
   a->camera.metric[2] = stratus_pair_of(2.0 * stratus_vector_dot(camera->forward, camera->up));
   a->camera.metric[3] = stratus_pair_of(stratus_vector_dot(camera->right, camera->right));
   a->camera.metric[4] = stratus_pair_of(2.0 * stratus_vector_dot(camera->right, camera->up));
   a->camera.metric[5] = stratus_pair_of(stratus_vector_dot(camera->up, camera->up));
-  a->camera.near_k = stratus_pair_of(camera->near_k);
-  a->camera.has_far = isfinite(camera->far_k);
-  a->camera.far_k = stratus_pair_of(a->camera.has_far ? camera->far_k : 0.0);
   a->camera.parallel = camera->parallel != 0;
+  a->camera.pixel[0] = stratus_pair_of(1.0 / image->width);
+  a->camera.pixel[1] = stratus_pair_of(1.0 / image->height);
+  a->lattice.per_step = stratus_pair_of(1.0 / sample_distance);
+  a->lattice.step = (float)sample_distance;
 }
 
 /* Returns the length of a sample in voxels, along the axis where it is longest. */
@@ -303,16 +312,13 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
   }
   TRY(check_samples(context, index_to_world, world_to_index, volume, sample_distance, follows));
   set_camera(camera, world_to_index, a);
-  a->lattice.per_step = stratus_pair_of(1.0 / sample_distance);
+  stratus_ray_frame_lattice(camera, image, sample_distance, a);
   a->lattice.reach = stratus_pair_of(farthest_point(volume, camera, index_to_world) / sample_distance + 2.0);
-  a->lattice.step = (float)sample_distance;
   a->lattice.follows = follows;
   stratus_ray_samples_a_voxel(volume, sample_distance, per_voxel);
   for (int axis = 0; axis < 3; ++axis) {
     a->lattice.per_voxel[axis] = stratus_pair_of(per_voxel[axis]);
   }
-  a->camera.pixel[0] = stratus_pair_of(1.0 / image->width);
-  a->camera.pixel[1] = stratus_pair_of(1.0 / image->height);
   a->picture.width = image->width;
   a->picture.height = image->height;
   a->camera.has_opaque_depth = image->opaque_depth != NULL;

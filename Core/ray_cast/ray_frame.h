@@ -11,6 +11,9 @@
 /* Returns the length of a sample in voxels, along the axis where it is longest. */
 double stratus_ray_voxels_a_sample(const stratus_ray_caster* caster);
 
+/* Sets the arguments by which pixels, the camera's vectors in the world and the sample distance make the lattice. */
+void stratus_ray_frame_lattice(
+  const stratus_camera* camera, const stratus_image* image, double sample_distance, stratus_ray_cast_arguments* arguments);
 /* Set all arguments of the caster's volume except table and map. sample_distance, follows: as in stratus_ray_choice. *empty: no ray can
  * meet the volume. */
 stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, const stratus_camera* camera,

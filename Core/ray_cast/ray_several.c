@@ -41,13 +41,20 @@ static stratus_status draw_on_host(stratus_context* context, const stratus_sever
   const int columns = (width + STRATUS_RAY_TILE - 1) / STRATUS_RAY_TILE, rows = (height + STRATUS_RAY_TILE - 1) / STRATUS_RAY_TILE;
   const several_job job = { frame, tiles[stratus_isa_at_most(context->isa)], columns };
   uint64_t sums[STRATUS_TILE_COUNTS];
+  for (int n = 0; n < frame->count; ++n) {
+    const stratus_several_part* part = &frame->volumes[n];
+    stratus_tetra_counts found;
+    if (part->mesh && !part->mesh->entries) {
+      TRY(stratus_tetra_count_entries(context, part->mesh, &part->tetra->buffers, &found));
+    }
+  }
   TRY(stratus_each_tile(context, "ray cast", columns * rows, draw_tile, &job, sums));
   *counts = (stratus_ray_counts){ .rays = sums[0], .samples = sums[1], .skipped = sums[2], .lookups = sums[3] };
   return STRATUS_OK;
 }
 
-/* *drawn stays false if the device cannot draw one of the volumes. */
-static stratus_status draw_on_device(stratus_several* s, const stratus_several_frame* frame, stratus_ray_counts* counts, bool* drawn)
+/* Draws on the device, which may have borrowed memory of meshes afterwards. *drawn stays false if it cannot draw one of the volumes. */
+static stratus_status send_and_draw(stratus_several* s, const stratus_several_frame* frame, stratus_ray_counts* counts, bool* drawn)
 {
   const char* why_not = NULL;
   for (int n = 0; n < s->count; ++n) {
@@ -56,10 +63,10 @@ static stratus_status draw_on_device(stratus_several* s, const stratus_several_f
       const stratus_several_part* part = &frame->volumes[in->part];
       const double start = stratus_now_ms();
       if (part->mesh) {
-        snprintf(s->where, sizeof s->where, "drawn on the host: volume %d is a mesh, and the device draws none among several", n);
-        return STRATUS_OK;
+        TRY(stratus_tetra_caster_enter(part->tetra, part->mesh, &why_not));
+      } else {
+        TRY(stratus_ray_device_send(part->caster, &part->frame, part->layers, &why_not));
       }
-      TRY(stratus_ray_device_send(part->caster, &part->frame, part->layers, &why_not));
       in->report.upload_ms += stratus_now_ms() - start;
     }
     if (why_not) {
@@ -70,6 +77,17 @@ static stratus_status draw_on_device(stratus_several* s, const stratus_several_f
   }
   *drawn = true;
   return stratus_several_device(s->context, frame, counts);
+}
+
+static stratus_status draw_on_device(stratus_several* s, const stratus_several_frame* frame, stratus_ray_counts* counts, bool* drawn)
+{
+  const stratus_status status = send_and_draw(s, frame, counts, drawn);
+  for (int n = 0; n < frame->count; ++n) {
+    if (frame->volumes[n].mesh) {
+      stratus_tetra_device_return(s->context, frame->volumes[n].tetra->device);
+    }
+  }
+  return status;
 }
 
 static stratus_status draw(stratus_several* s, const stratus_several_frame* frame, stratus_ray_counts* counts)
@@ -166,7 +184,6 @@ static stratus_status render(stratus_several* s, stratus_ray_cast_arguments* arg
     TRY(stratus_several_update(s, &s->inputs[n]));
   }
   TRY(stratus_several_choose_step(s));
-  frame.step = s->step;
   const double start = stratus_now_ms();
   for (int n = 0; n < s->count; ++n) {
     stratus_ray_cast_arguments* a = &arguments[frame.count];

@@ -66,9 +66,6 @@ stratus_status stratus_several_check_mesh(stratus_context* context, int n, const
   const stratus_mesh* mesh = in->of->mesh;
   const stratus_transfer* transfer = in->of->transfer;
   const stratus_tetra_options* options = &in->tetra_options;
-  if (mesh && mesh->components > 1) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has %d components, must have 1", n, mesh->components);
-  }
   if (options->mode != STRATUS_TETRA_COMPOSITE) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has mode %s, which does not mix with composite", n,
       stratus_tetra_mode_name(options->mode));
@@ -81,9 +78,12 @@ stratus_status stratus_several_check_mesh(stratus_context* context, int n, const
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "mesh %d of several is to be projected, which draws whole pictures: its rays can only be marched", n);
   }
-  if (options->label_count > 0 || (transfer && stratus_tetra_light_wanted(transfer, options))) {
-    return stratus_fail(
-      context, STRATUS_UNSUPPORTED, "mesh %d of several has light, gradient opacity or labels, which only volumes have in one march", n);
+  if (options->label_count > 0) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has labels, which only volumes have in one march", n);
+  }
+  if (mesh && mesh->components < 2 && transfer && transfer->gradient_count > 0 && options->gradient_distance != 0.0) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "mesh %d of several has a gradient opacity over a length of %g, must be of optical depths, 0", n, options->gradient_distance);
   }
   return STRATUS_OK;
 }

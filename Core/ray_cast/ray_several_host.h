@@ -11,32 +11,27 @@
 
 /* A volume as the rays read it. */
 typedef struct stratus_several_part {
-  stratus_ray_caster* caster;      /* NULL: a mesh */
-  const stratus_tetra_frame* mesh; /* NULL: a volume */
-  int jitter, seed;                /* of a mesh's rays */
-  stratus_ray_cast_frame frame;    /* its output is not used */
+  stratus_ray_caster* caster;   /* NULL: a mesh */
+  stratus_tetra_caster* tetra;  /* NULL: a volume */
+  stratus_tetra_frame* mesh;    /* the tetra's */
+  stratus_ray_cast_frame frame; /* its output is not used */
   /* midpoint: colour times optical depth, and optical depth, of each entry over a segment; otherwise NULL */
   const float* layers;
-  int type;          /* of its fetch, as of stratus_ray_fetch_type() */
-  int stride;        /* segments of the lattice to one of its samples */
-  int lit;           /* 1: it has light or gradient opacity */
-  int media;         /* as in stratus_several_arguments */
-  float segment;     /* media: a segment's length in samples */
-  int cells;         /* as in stratus_several_arguments */
-  int preintegrated; /* 0: the midpoint rule */
+  int type; /* of a volume's fetch, as of stratus_ray_fetch_type() */
+  stratus_several_arguments arguments;
 } stratus_several_part;
 
 typedef struct stratus_several_frame {
   stratus_ray_cast_frame picture; /* output of the rays; the arguments are the first volume's */
   int count;
-  double step; /* of the lattice */
   stratus_several_part volumes[STRATUS_SEVERAL_MAX];
 } stratus_several_frame;
 
 /* One definition for each instruction set: a stratus_ray_cast_tile that takes the picture of a stratus_several_frame. */
 stratus_ray_cast_tile stratus_several_tile_isa0, stratus_several_tile_isa1, stratus_several_tile_isa2;
 
-/* ray_several_device.c: draws on the context's device, which has what stratus_ray_device_send() gave it of every volume. */
+/* ray_several_device.c: draws on the context's device, which has what stratus_ray_device_send() gave it of every volume, and
+ * stratus_tetra_caster_enter() of every mesh. */
 stratus_status stratus_several_device(stratus_context* context, const stratus_several_frame* frame, stratus_ray_counts* counts);
 
 #endif

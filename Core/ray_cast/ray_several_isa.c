@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Composite rays through several volumes, compiled for one instruction set, STRATUS_ISA. */
+#define TETRA_LIT 1
 #include "ray_cast_packets.h"
 #include "ray_reading.h"
 #include "ray_several_host.h"
@@ -17,35 +18,26 @@
 _Static_assert(SEVERAL_MOST == STRATUS_SEVERAL_MAX, "as many as the API takes");
 
 /* Set the mesh arrays that several_mesh.h reads, in the host's layout. */
-static void set_mesh(const stratus_several_part* part, double step, several_mesh* m)
+static void set_mesh(const stratus_several_part* part, several_mesh* m)
 {
   const stratus_tetra_frame* frame = part->mesh;
-  *m = (several_mesh){
-    .view = { .scene = { .cells = frame->cells, .points = frame->places, .sums = frame->march_sums, .cell_values = frame->cell_values },
-      .lines = frame->us,
-      .ends = frame->ends,
-      .faces = (const int32_t*)frame->faces,
-      .bin_begin = frame->bin_begin,
-      .bins = frame->bins,
-      .first = frame->first,
-      .entries = frame->entries },
+  *m = (several_mesh){ .view = { .scene = { .cells = frame->cells,
+                                   .points = frame->places,
+                                   .sums = frame->march_sums,
+                                   .cell_values = frame->cell_values,
+                                   .gradients = frame->gradients,
+                                   .factors = frame->factors,
+                                   .components = frame->components,
+                                   .media = frame->media },
+                         .lines = frame->us,
+                         .ends = frame->ends,
+                         .faces = (const int32_t*)frame->faces,
+                         .bin_begin = frame->bin_begin,
+                         .bins = frame->bins,
+                         .first = frame->first,
+                         .entries = frame->entries },
     .a = &frame->arguments,
-    .middle = frame->middle,
-    .per_z = frame->per_z,
-    .per_step = 1.0 / step,
-    .width = frame->image.width,
-    .height = frame->image.height,
-    .parallel = frame->camera.parallel,
-    .jitter = part->jitter,
-    .seed = part->seed
-  };
-  for (int axis = 0; axis < 3; ++axis) {
-    m->forward[axis] = frame->camera.forward[axis];
-    m->right[axis] = frame->camera.right[axis];
-    m->up[axis] = frame->camera.up[axis];
-  }
-  m->lean[0] = frame->lean[0];
-  m->lean[1] = frame->lean[1];
+    .places = &part->arguments.places };
 }
 
 /* Finds where the tile's rays enter a mesh. */
@@ -69,24 +61,25 @@ void STRATUS_ISA_NAME(stratus_several_tile)(
   several_source from[SEVERAL_MOST];
   several_mesh meshes[SEVERAL_MOST];
   for (int n = 0; n < frame->count; ++n) {
-    const stratus_ray_cast_frame* of = &frame->volumes[n].frame;
+    const stratus_several_part* part = &frame->volumes[n];
+    const stratus_ray_cast_frame* of = &part->frame;
     from[n] = (several_source){ .a = of->arguments,
       .values = of->values,
       .hidden = of->hidden,
       .grid = of->grid,
       .map = of->map,
       .rough = of->rough,
-      .table = frame->volumes[n].layers ? (const void*)frame->volumes[n].layers : of->table,
+      .table = part->layers ? (const void*)part->layers : of->table,
       .besides = of->table,
-      .mesh = frame->volumes[n].mesh ? &meshes[n] : NULL,
-      .stride = frame->volumes[n].stride,
-      .lit = frame->volumes[n].lit,
-      .cells = frame->volumes[n].cells,
-      .media = frame->volumes[n].media,
-      .segment = frame->volumes[n].segment,
-      .preintegrated = frame->volumes[n].preintegrated };
-    if (from[n].mesh) {
-      set_mesh(&frame->volumes[n], frame->step, &meshes[n]);
+      .mesh = part->mesh ? &meshes[n] : NULL,
+      .stride = part->arguments.stride,
+      .lit = part->arguments.lit,
+      .cells = part->arguments.cells,
+      .media = part->arguments.media,
+      .segment = part->arguments.segment,
+      .preintegrated = part->arguments.preintegrated };
+    if (part->mesh) {
+      set_mesh(part, &meshes[n]);
       find_mesh(&meshes[n], x0, y0, x1, y1);
     }
   }

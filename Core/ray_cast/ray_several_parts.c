@@ -211,11 +211,12 @@ static void set_mesh(
   memset(a, 0, sizeof *a);
   a->picture = in->frame.arguments.picture;
   a->termination = in->frame.arguments.termination;
-  a->lattice.step = (float)s->step;
   a->camera.window[1] = image->width;
   a->camera.window[3] = image->height;
   a->camera.has_opaque_depth = image->opaque_depth != NULL;
-  const stratus_ray_cast_options* first = &s->inputs[0].options;
+  stratus_ray_frame_lattice(s->camera, image, s->step, a);
+  a->lattice.jitter = s->inputs[0].options.sampling.jitter != 0;
+  a->lattice.seed = (int)s->inputs[0].options.sampling.jitter_seed;
   stratus_ray_frame_table(in->frame.table, in->tetra_options.tolerance, a);
   a->table.tau_scale *= (float)s->step; /* the table is of the world's unit of length */
   *part = (stratus_several_part){ .frame = { .arguments = a,
@@ -225,11 +226,14 @@ static void set_mesh(
                                     .depth = image->depth,
                                     .samples = image->samples,
                                     .rgba8 = image->rgba8 },
+    .tetra = in->of->tetra,
     .mesh = &in->frame,
-    .jitter = first->sampling.jitter,
-    .seed = (int)first->sampling.jitter_seed,
-    .stride = 1,
-    .preintegrated = 1 };
+    .arguments = { .stride = 1,
+      .lit = in->frame.lit,
+      .preintegrated = in->frame.components == NULL,
+      .mesh = 1,
+      .places = { stratus_pair_of(in->frame.middle), stratus_pair_of(in->frame.per_z),
+        { stratus_pair_of(in->frame.lean[0]), stratus_pair_of(in->frame.lean[1]) } } } };
 }
 
 /* Returns what samples are more than one value's colour and opacity by. */
@@ -271,14 +275,14 @@ static stratus_status set_volume(
       .frame = stratus_ray_frame_of(caster, a, s->image, with_map),
       .layers = preintegrated || media ? NULL : caster->layers,
       .type = stratus_ray_fetch_type(&caster->traversed),
-      .stride = in->stride,
-      .lit = caster->shades && !media,
-      .media = media,
-      .segment = (float)(s->step / caster->choice.sample_distance),
-      .cells = sampling == STRATUS_SAMPLING_CELLS ? SEVERAL_BY_CELLS
-        : sampling == STRATUS_SAMPLING_LOCAL      ? SEVERAL_LOCAL
-                                                  : SEVERAL_BY_SAMPLES,
-      .preintegrated = preintegrated };
+      .arguments = { .stride = in->stride,
+        .lit = caster->shades && !media,
+        .media = media,
+        .segment = (float)(s->step / caster->choice.sample_distance),
+        .cells = sampling == STRATUS_SAMPLING_CELLS ? SEVERAL_BY_CELLS
+          : sampling == STRATUS_SAMPLING_LOCAL      ? SEVERAL_LOCAL
+                                                    : SEVERAL_BY_SAMPLES,
+        .preintegrated = preintegrated } };
   }
   return STRATUS_OK;
 }

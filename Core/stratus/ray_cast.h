@@ -367,12 +367,12 @@ typedef struct stratus_ray_cast_input {
  * whole segments as fit in its own step. Where a volume is sampled cell by cell, in all of it or in its rough blocks, light is composited
  * from one end of its cells' pieces to the next. A piece whose colour changes much is cut further, as with one volume.
  *
- * Meshes (of one component, mode composite, method auto or march, without light, gradient opacity or labels) are drawn cell by cell: within
- * a segment of the lattice, light is composited from one face to the next. Their clip planes and crop boxes are their own. Where a mesh's
- * cells overlap, one counts behind the other. The host draws meshes.
+ * Meshes (mode composite, method auto or march, without labels; of one component, no gradient_distance with a gradient opacity) are drawn
+ * cell by cell: within a segment of the lattice, light is composited from one face to the next. Components, light, gradient opacity, clip
+ * planes and crop boxes are each mesh's own. Where a mesh's cells overlap, one counts behind the other.
  *
  * reports: NULL, or one for each input. Structures, choices and the expected error in a report concern its own volume. Rays, samples,
- * skipped segments, look-ups, differing pixels, window and cast_ms concern the whole image. The context's device draws; if a volume exceeds
+ * skipped segments, look-ups, differing pixels, window and cast_ms concern the whole image. The context's device draws; if an input exceeds
  * the device's largest allocation, the host draws, and the reports say why. Each caster borrows and keeps its inputs as in
  * stratus_ray_caster_render(). A failed call leaves the image undefined. */
 STRATUS_API stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,

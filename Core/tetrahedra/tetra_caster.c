@@ -428,19 +428,27 @@ stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const 
   const stratus_image* image, stratus_tetra_frame* frame, bool* shows, stratus_tetra_report* report)
 {
   const stratus_mesh* drawn = NULL;
-  stratus_tetra_counts counts = { 0 };
   TRY(take(caster, of, camera, image, &drawn, report));
-  *shows = caster->look.table->shown > 0 && caster->mesh->face_count > 0;
+  *shows =
+    (stratus_tetra_mixes(drawn, of->options) ? caster->components.shown : caster->look.table->shown > 0) && caster->mesh->face_count > 0;
   if (*shows) {
     TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, drawn, camera, image, true, &caster->buffers, frame));
     frame->table = caster->look.table;
     frame->march_sums = caster->look.sums;
     stratus_tetra_frame_shade(frame, caster, of->options);
     stratus_tetra_frame_clip(frame, drawn, of->options);
-    TRY(stratus_tetra_count_entries(caster->context, frame, &caster->buffers, &counts));
+    stratus_tetra_frame_light(frame, caster, drawn, of->transfer, of->options);
+    stratus_tetra_frame_components(frame, caster, drawn, of->options);
+    frame->arguments.mode = TETRA_STRETCHES;
   }
   fill_report(caster, report);
   return STRATUS_OK;
+}
+
+stratus_status stratus_tetra_caster_enter(stratus_tetra_caster* caster, stratus_tetra_frame* frame, const char** why_not)
+{
+  const stratus_tetra_device_source source = device_source(caster);
+  return stratus_tetra_device_enter(caster->context, &caster->device, &source, frame, &caster->buffers, why_not);
 }
 
 stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,

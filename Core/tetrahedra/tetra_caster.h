@@ -139,10 +139,12 @@ typedef struct stratus_tetra_subject {
 stratus_status stratus_tetra_caster_render_kept(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   int component, int keeps, const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, double* bias,
   stratus_tetra_report* report);
-/* tetra_caster.c: makes a frame of mode composite whose rays another room marches: its entries are counted, and to be found by tile. *shows
- * false: nothing of the mesh shows, and there is no frame. */
+/* tetra_caster.c: makes a frame of mode composite whose rays another room marches: its entries are still to be counted, and to be found by
+ * tile. *shows false: nothing of the mesh shows, and there is no frame. */
 stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera,
   const stratus_image* image, stratus_tetra_frame* frame, bool* shows, stratus_tetra_report* report);
+/* tetra_caster.c: stratus_tetra_device_enter() for such a frame. */
+stratus_status stratus_tetra_caster_enter(stratus_tetra_caster* caster, stratus_tetra_frame* frame, const char** why_not);
 
 /* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. The hash covers the data from which neighbours, planes and orders
  * follow. */
@@ -214,8 +216,6 @@ void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* me
 /* tetra_light.c: light and gradient opacity. */
 stratus_status stratus_tetra_light_check(
   stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
-/* Whether the gradient decides how cells of one component look. */
-bool stratus_tetra_light_wanted(const stratus_transfer* transfer, const stratus_tetra_options* options);
 /* The material of component c. */
 stratus_material stratus_tetra_material(const stratus_mesh* mesh, const stratus_tetra_options* options, int c);
 /* Bit c where component c's gradient decides how cells look. */

@@ -16,7 +16,8 @@ void stratus_tetra_device_drop_table(stratus_tetra_device* device)
     stratus_slot_drop(&device->slots[TETRA_SUMS]);
     stratus_slot_drop(&device->slots[TETRA_COLORS]);
     stratus_slot_drop(&device->slots[TETRA_FACTORS]);
-    device->table = 0;
+    stratus_slot_drop(&device->slots[TETRA_RUNNING_SUMS]);
+    device->table = device->running = 0;
   }
 }
 
@@ -74,13 +75,19 @@ bool stratus_tetra_device_packets(const stratus_context* context)
   return stratus_device_is_cpu(context->device) && stratus_device_has_double(context->device);
 }
 
-stratus_status stratus_tetra_device_begin(
-  stratus_context* context, stratus_tetra_device** device, const stratus_tetra_device_source* source, size_t cell_bytes, bool* can)
+void stratus_tetra_device_return(const stratus_context* context, stratus_tetra_device* device)
 {
-  const char* why_not = obstacle(context, source, cell_bytes);
-  *can = !why_not;
-  if (why_not) {
-    stratus_log(context, STRATUS_LOG_WARNING, "drawing tetrahedra on the host: %s", why_not);
+  if (device) {
+    stratus_slots_return(context, device->slots, TETRA_SLOTS);
+  }
+}
+
+stratus_status stratus_tetra_device_begin(stratus_context* context, stratus_tetra_device** device,
+  const stratus_tetra_device_source* source, size_t cell_bytes, const char** why_not)
+{
+  *why_not = obstacle(context, source, cell_bytes);
+  if (*why_not) {
+    stratus_log(context, STRATUS_LOG_WARNING, "drawing tetrahedra on the host: %s", *why_not);
     return STRATUS_OK;
   }
   if (!*device) {

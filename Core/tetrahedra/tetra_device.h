@@ -20,6 +20,7 @@ typedef enum stratus_tetra_slot {
   TETRA_COLORS,
   TETRA_FACTORS,
   TETRA_COMPONENT_SUMS,
+  TETRA_RUNNING_SUMS, /* among several volumes: the table's own */
   /* of a frame */
   TETRA_ARGUMENTS,
   TETRA_POINTS,
@@ -44,7 +45,8 @@ typedef enum stratus_tetra_slot {
 
 typedef struct stratus_tetra_device {
   stratus_device_slot slots[TETRA_SLOTS];
-  uint64_t march_mesh, march_values, project_mesh, project_values, table, gradients, components; /* build numbers of the slots' contents */
+  uint64_t march_mesh, march_values, project_mesh, project_values, table, running, gradients,
+    components; /* build numbers of the slots' contents */
 } stratus_tetra_device;
 
 /* Identifies the mesh, its values and the table of a frame by build numbers > 0 that rise, so that the device copies them only once. A
@@ -62,6 +64,11 @@ typedef struct stratus_tetra_device_source {
 stratus_status stratus_tetra_march_device(stratus_context* context, stratus_tetra_device** device,
   const stratus_tetra_device_source* source, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers, stratus_tetra_counts* counts,
   double* entries_ms, double* march_ms, bool* drawn);
+/* Gives the device what rays through several volumes read of the mesh, with the faces by which they enter it. The buffers of the frame may
+ * be lent until stratus_tetra_device_return(). *why_not: the reason why the device cannot draw it; NULL where it can. */
+stratus_status stratus_tetra_device_enter(stratus_context* context, stratus_tetra_device** device,
+  const stratus_tetra_device_source* source, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers, const char** why_not);
+void stratus_tetra_device_return(const stratus_context* context, stratus_tetra_device* device); /* takes NULL */
 /* Draws the tiles of a projection whose cells are in their bins. The rest is as in stratus_tetra_march_device(). */
 stratus_status stratus_tetra_project_device(stratus_context* context, stratus_tetra_device** device,
   const stratus_tetra_device_source* source, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts, bool* drawn);
@@ -76,10 +83,10 @@ void stratus_tetra_device_destroy(stratus_context* context, stratus_tetra_device
 /* Whether a work item does a packet of 16 rays; else it does one. */
 bool stratus_tetra_device_packets(const stratus_context* context);
 
-/* Whether the device can draw a mesh; a warning says why not. Makes *device if that is NULL. cell_bytes: of the largest buffer of
- * cells. */
-stratus_status stratus_tetra_device_begin(
-  stratus_context* context, stratus_tetra_device** device, const stratus_tetra_device_source* source, size_t cell_bytes, bool* can);
+/* *why_not: the reason why the device cannot draw a mesh, of which a warning is logged; NULL where it can. Makes *device if that is NULL.
+ * cell_bytes: of the largest buffer of cells. */
+stratus_status stratus_tetra_device_begin(stratus_context* context, stratus_tetra_device** device,
+  const stratus_tetra_device_source* source, size_t cell_bytes, const char** why_not);
 /* Sends the table, where it is another than before, and the frame: arguments, points, lines and ends of rays. points: four floats each. */
 stratus_status stratus_tetra_device_send(stratus_context* context, stratus_tetra_device* device, const stratus_tetra_device_source* source,
   const stratus_tetra_frame* frame, const float* points);

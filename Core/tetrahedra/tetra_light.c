@@ -38,11 +38,6 @@ static bool thins(const stratus_transfer* transfer, const stratus_tetra_options*
   return any;
 }
 
-bool stratus_tetra_light_wanted(const stratus_transfer* transfer, const stratus_tetra_options* options)
-{
-  return (lights(options) && options->shade) || thins(transfer, options);
-}
-
 unsigned stratus_tetra_light_mask(const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options)
 {
   const bool faces = options->mode == STRATUS_TETRA_FIRST_HIT && options->normals != STRATUS_NORMALS_GRADIENT;

@@ -79,6 +79,12 @@ static stratus_status count_entries(device_march* m, stratus_tetra_buffers* buff
   return stratus_slot_send(m->context, m->slots + TETRA_FIRST, CL_MEM_READ_WRITE, m->frame->first, bytes);
 }
 
+static stratus_status reserve_entries(device_march* m, size_t entries)
+{
+  TRY(stratus_slot_reserve(m->context, m->slots + TETRA_ENTRIES, CL_MEM_READ_WRITE, 2 * sizeof(int32_t) * (entries > 0 ? entries : 1)));
+  return stratus_slot_reserve(m->context, m->slots + TETRA_FOUND, CL_MEM_READ_WRITE, m->pixels * sizeof(uint32_t));
+}
+
 /* sums: four zeros per tile, to which the kernel adds. */
 static stratus_status march(device_march* m, size_t entries, uint32_t* sums)
 {
@@ -88,8 +94,7 @@ static stratus_status march(device_march* m, size_t entries, uint32_t* sums)
     TETRA_COMPONENT_SUMS }; /* the last four only of a lit frame */
   const stratus_image* image = &m->frame->image;
   const size_t sums_bytes = m->tiles * 4 * sizeof *sums;
-  TRY(stratus_slot_reserve(m->context, m->slots + TETRA_ENTRIES, CL_MEM_READ_WRITE, 2 * sizeof(int32_t) * (entries > 0 ? entries : 1)));
-  TRY(stratus_slot_reserve(m->context, m->slots + TETRA_FOUND, CL_MEM_READ_WRITE, m->pixels * sizeof(uint32_t)));
+  TRY(reserve_entries(m, entries));
   TRY(stratus_tetra_device_lend_picture(m->context, m->device, image));
   TRY(stratus_slot_send(m->context, m->slots + TETRA_COUNTS, CL_MEM_READ_WRITE, sums, sums_bytes));
   TRY(launch(m, "tetra_march", m->frame->lit, order, COUNT_OF(order) - (m->frame->lit ? 0 : 4)));
@@ -126,21 +131,55 @@ static stratus_status draw(device_march* m, const stratus_tetra_device_source* s
   return status;
 }
 
+/* *why_not: as in stratus_tetra_device_begin(). */
+static stratus_status begin(stratus_context* context, stratus_tetra_device** device, const stratus_tetra_device_source* source,
+  stratus_tetra_frame* frame, device_march* m, const char** why_not)
+{
+  const size_t tiles = (size_t)frame->columns * (size_t)frame->rows;
+  TRY(stratus_tetra_device_begin(context, device, source, source->cell_ints * sizeof(int32_t), why_not));
+  if (!*why_not) {
+    *m = (device_march){ context, *device, (*device)->slots, frame, stratus_tetra_device_packets(context), tiles, tiles * PIXELS };
+  }
+  return STRATUS_OK;
+}
+
 stratus_status stratus_tetra_march_device(stratus_context* context, stratus_tetra_device** device,
   const stratus_tetra_device_source* source, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers, stratus_tetra_counts* counts,
   double* entries_ms, double* march_ms, bool* drawn)
 {
-  bool can;
+  const char* why_not;
+  device_march m;
   *drawn = false;
-  TRY(stratus_tetra_device_begin(context, device, source, source->cell_ints * sizeof(int32_t), &can));
-  if (!can) {
+  TRY(begin(context, device, source, frame, &m, &why_not));
+  if (why_not) {
     return STRATUS_OK;
   }
-  const size_t tiles = (size_t)frame->columns * (size_t)frame->rows;
-  device_march m = { context, *device, (*device)->slots, frame, stratus_tetra_device_packets(context), tiles, tiles * PIXELS };
   const stratus_status status = draw(&m, source, buffers, counts, entries_ms, march_ms);
-  stratus_slots_return(context, m.slots, TETRA_SLOTS);
+  stratus_tetra_device_return(context, *device);
   TRY(status);
   *drawn = true;
   return stratus_progress(context, "march", 1.0);
+}
+
+stratus_status stratus_tetra_device_enter(stratus_context* context, stratus_tetra_device** device,
+  const stratus_tetra_device_source* source, stratus_tetra_frame* frame, stratus_tetra_buffers* buffers, const char** why_not)
+{
+  static const stratus_tetra_slot order[] = { TETRA_ARGUMENTS, TETRA_POINTS, TETRA_LINES, TETRA_FACES, TETRA_BIN_BEGIN, TETRA_BINS,
+    TETRA_FIRST, TETRA_ENTRIES, TETRA_FOUND };
+  size_t entries = 0;
+  device_march m;
+  TRY(begin(context, device, source, frame, &m, why_not));
+  if (*why_not) {
+    return STRATUS_OK;
+  }
+  TRY(send(&m, source));
+  if (m.device->running != source->table) {
+    m.device->running = 0; /* until they are there */
+    const size_t bytes = stratus_table_words(frame->table) * sizeof(int32_t);
+    TRY(stratus_slot_keep(context, m.slots + TETRA_RUNNING_SUMS, frame->table->sums, bytes));
+    m.device->running = source->table;
+  }
+  TRY(count_entries(&m, buffers, &entries));
+  TRY(reserve_entries(&m, entries));
+  return launch(&m, "tetra_find", false, order, COUNT_OF(order));
 }

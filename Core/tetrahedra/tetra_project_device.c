@@ -114,16 +114,16 @@ static stratus_status draw(device_projection* p, const stratus_tetra_device_sour
 stratus_status stratus_tetra_project_device(stratus_context* context, stratus_tetra_device** device,
   const stratus_tetra_device_source* source, const stratus_tetra_projection* projection, stratus_tetra_project_counts* counts, bool* drawn)
 {
-  bool can;
+  const char* why_not;
   *drawn = false;
-  TRY(stratus_tetra_device_begin(context, device, source, (size_t)source->cell_count * 4 * sizeof(int32_t), &can));
-  if (!can) {
+  TRY(stratus_tetra_device_begin(context, device, source, (size_t)source->cell_count * 4 * sizeof(int32_t), &why_not));
+  if (why_not) {
     return STRATUS_OK;
   }
   device_projection p = { context, *device, (*device)->slots, projection, stratus_tetra_device_packets(context),
     (size_t)projection->columns * (size_t)projection->rows };
   const stratus_status status = draw(&p, source, counts);
-  stratus_slots_return(context, p.slots, TETRA_SLOTS);
+  stratus_tetra_device_return(context, *device);
   TRY(status);
   *drawn = true;
   return stratus_progress(context, "project", 1.0);

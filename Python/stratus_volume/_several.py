@@ -47,7 +47,7 @@ def render_several(items, size=(640, 480), camera=None, opaque_depth=None, devic
 
     Where volumes overlap, their optical depths and their light add up, in any order of the items. All items have the same mode. In maximum,
     minimum, average and additive the picture shows the best of the values that show, the mean, or the sum of all items. In isosurface, slice and
-    first-hit the surfaces of all items show by depth. In composite mode, meshes among several have one component and no light, and are marched by the host. An item without a visible value is left out with a warning.
+    first-hit the surfaces of all items show by depth. An item without a visible value is left out with a warning.
     counters are of the whole picture, and counters["items"] has one dict for each item, with its structure and sampling and the reasons.
     """
     size = pixels(size)

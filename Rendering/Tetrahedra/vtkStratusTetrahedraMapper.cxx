@@ -87,9 +87,9 @@ void vtkStratusTetrahedraMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->TimeToDraw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-bool vtkStratusTetrahedraMapper::Describe(vtkVolume* volume, vtkStratusMeshDescription& description)
+bool vtkStratusTetrahedraMapper::Describe(vtkRenderer* renderer, vtkVolume* volume, vtkStratusMeshDescription& description)
 {
-  return this->Internal->Describe(volume, description);
+  return this->Internal->Describe(renderer, volume, description);
 }
 
 void vtkStratusTetrahedraMapper::ReleaseGraphicsResources(vtkWindow* window)

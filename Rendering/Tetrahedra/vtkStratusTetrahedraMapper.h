@@ -378,7 +378,7 @@ public:
   void Render(vtkRenderer* ren, vtkVolume* vol) override;
   void ReleaseGraphicsResources(vtkWindow* window) override;
 #ifndef __VTK_WRAP__
-  bool Describe(vtkVolume* volume, vtkStratusMeshDescription& description);
+  bool Describe(vtkRenderer* renderer, vtkVolume* volume, vtkStratusMeshDescription& description);
 #endif
 
 protected:

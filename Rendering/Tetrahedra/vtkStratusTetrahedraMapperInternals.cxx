@@ -307,18 +307,15 @@ bool vtkStratusTetrahedraMapper::Internals::SetOptions(
   return this->SetMode(property, options, error) && this->SetClipPlanes(options, error);
 }
 
-bool vtkStratusTetrahedraMapper::Internals::Describe(vtkVolume* prop, vtkStratusMeshDescription& description)
+bool vtkStratusTetrahedraMapper::Internals::Describe(vtkRenderer* renderer, vtkVolume* prop, vtkStratusMeshDescription& description)
 {
   bool empty = false;
   description = vtkStratusMeshDescription();
   this->HasPicture = false; // the other module has it
-  if (prop->GetProperty()->GetShade()) {
-    description.Error = "light on a mesh is not supported among several volumes, only ShadeOff";
-    return false;
-  }
   this->NoteLeftOut(prop->GetProperty());
   if (!this->CheckMapper(description.Error) || !this->PrepareInput(prop, empty, description.Error) ||
-    !this->SetOptions(prop->GetProperty(), description.Options, description.Error)) {
+    !this->SetOptions(prop->GetProperty(), description.Options, description.Error) ||
+    !this->SetShading(renderer, prop->GetProperty(), description.Options, description.Error)) {
     return false;
   }
   this->LeftOut.Warn(this->Mapper);

@@ -40,7 +40,7 @@ public:
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   bool PrepareContext(std::string& error);
   // Describes the updated input to another module's picture. On failure the description's error says why.
-  bool Describe(vtkVolume* prop, vtkStratusMeshDescription& description);
+  bool Describe(vtkRenderer* renderer, vtkVolume* prop, vtkStratusMeshDescription& description);
   // Of what a structured grid or the blocks of a composite data set show; nullptr for other input.
   const double* FindBounds();
   vtkImageData* GetLastImage();

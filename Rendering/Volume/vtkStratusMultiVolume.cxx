@@ -42,7 +42,7 @@ private:
   bool OnProgress();
   bool Describe(vtkRenderer* renderer, std::string& error);
   bool DescribeVolume(vtkRenderer* renderer, vtkVolume* volume, vtkStratusVolumeMapper* mapper, std::string& error);
-  bool DescribeMesh(vtkVolume* volume, vtkStratusTetrahedraMapper* mapper, std::string& error);
+  bool DescribeMesh(vtkRenderer* renderer, vtkVolume* volume, vtkStratusTetrahedraMapper* mapper, std::string& error);
   bool PrepareContext(std::string& error);
   bool Cast(const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error);
 
@@ -135,10 +135,11 @@ bool vtkStratusMultiVolume::Internals::DescribeVolume(
 }
 
 // Asks a mapper of tetrahedra.
-bool vtkStratusMultiVolume::Internals::DescribeMesh(vtkVolume* volume, vtkStratusTetrahedraMapper* mapper, std::string& error)
+bool vtkStratusMultiVolume::Internals::DescribeMesh(
+  vtkRenderer* renderer, vtkVolume* volume, vtkStratusTetrahedraMapper* mapper, std::string& error)
 {
   vtkStratusMeshDescription& mesh = this->Meshes[this->Count];
-  if (!mapper->Describe(volume, mesh)) {
+  if (!mapper->Describe(renderer, volume, mesh)) {
     error = mesh.Error;
     return false;
   }
@@ -164,7 +165,7 @@ bool vtkStratusMultiVolume::Internals::Describe(vtkRenderer* renderer, std::stri
     if (auto* images = vtkStratusVolumeMapper::SafeDownCast(mapper)) {
       this->DescribeVolume(renderer, volume, images, error);
     } else if (auto* meshes = vtkStratusTetrahedraMapper::SafeDownCast(mapper)) {
-      if (this->DescribeMesh(volume, meshes, error) && !this->Inputs[this->Count].mesh) {
+      if (this->DescribeMesh(renderer, volume, meshes, error) && !this->Inputs[this->Count].mesh) {
         continue; // it has no cells
       }
     } else {

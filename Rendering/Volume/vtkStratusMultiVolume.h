@@ -13,8 +13,8 @@
  * to the renderer, not those volumes. A volume that is not visible (SetVisibility) is left out.
  *
  * A volume may have a vtkStratusTetrahedraMapper instead: unstructured and structured grids, and blocks of such, mix with the others cell
- * by cell, of blend mode composite without light and gradient opacity, by method auto or march. At least one volume must have a
- * vtkStratusVolumeMapper. Where there is a mesh the host draws.
+ * by cell, of blend mode composite, by method auto or march. Components, light and gradient opacity (of one component with
+ * GradientOpacityDistance 0) are each mesh's own. At least one volume must have a vtkStratusVolumeMapper.
  *
  * In all other modes, which all volumes must then have, each volume is drawn by itself. In maximum, minimum, average and additive intensity
  * the picture shows the best of the values that show, the mean over the lengths in all volumes, or the sum. First hits, isosurfaces and

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Pictures of several volumes by the OpenCL device equal the host's to the bit, by packets and by one work item a ray, of one type of
- * values and of different ones. The device keeps unchanged data, and the host draws pictures that the device cannot draw. */
+ * values and of different ones, and with meshes among them. The device keeps unchanged data, and the host draws pictures that the device
+ * cannot draw. */
 #include "grid_case.h"
-#include "several_case.h"
+#include "mixed_case.h"
 #include "transfer_2d_case.h"
 #include "testing.h"
 
@@ -222,6 +223,125 @@ static void a_device_keeps_what_the_host_keeps(void** state)
   }
 }
 
+/* Meshes among volumes by samples and by cells, and without volumes; values of cells, a lattice, light, gradient opacity, two components;
+ * opaque geometry, clip planes, jitter, walls. */
+static void make_mesh_case(stratus_context* context, uint32_t seed, mixed_case* m, media_case* media, float* opaque)
+{
+  static const int volumes[] = { 1, 2, 1, 1, 0, 1, 1 };
+  mixed_create(context, m, volumes[seed], seed % 2 ? 2 : 1, 520 + seed);
+  picture_case* c = &m->volumes.of[0];
+  tetra_case* mesh = &m->meshes[m->mesh_count - 1];
+  c->options.skipping.audit = 1;
+  c->options.sampling.jitter = seed == 1;
+  if (seed == 2) { /* a sharp function, by cells */
+    const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
+    const double sharp[8] = { base + 0.1 * scale, 0, base + 0.13 * scale, 0.8, base + 0.16 * scale, 0, base + scale, 0 };
+    memcpy(c->opacity, sharp, sizeof sharp);
+    c->options.sampling.rule = STRATUS_SAMPLING_CELLS;
+    c->options.sampling.cell_error = 0.001;
+    mesh->mesh.cell_values = 1;
+    for (int64_t cell = 0; cell < mesh->mesh.cell_count; ++cell) {
+      mesh->values[cell] = (float)(0.5 + 0.4 * sin(0.37 * (double)cell));
+    }
+  }
+  if (seed == 3) { /* a wall in a lit mesh with gradient opacity, and a volume lit by the midpoint rule */
+    static const double thin[6] = { 0.05, 0.0, 0.25, 0.6, 0.6, 1.0 };
+    const double wall[8] = { 0.0, 0.0, 0.6, 0.1, 0.6, 1.0, 1.0, 1.0 };
+    memcpy(mesh->opacity, wall, sizeof wall);
+    mesh->options.shade = 1;
+    mesh->transfer.gradient = thin;
+    mesh->transfer.gradient_count = 3;
+    c->options.light.shade = 1;
+    c->options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+  }
+  if (seed == 6) { /* two components of the same values */
+    static float values[2 * 64];
+    for (int64_t i = 0; i < 2 * mesh->mesh.point_count; ++i) {
+      values[i] = mesh->values[i / 2];
+    }
+    for (int n = 0; n < 2; ++n) {
+      media->transfers[n] = mesh->transfer;
+      media->transfers[n].weight = 1.0 - 0.5 * n;
+    }
+    mesh->mesh.values = values;
+    mesh->mesh.value_stride = mesh->mesh.components = 2;
+    mesh->options.shade = 1;
+    mesh->options.mean_components = 1;
+    m->transfers[0] = media->transfers;
+  }
+  if (seed == 5) {
+    for (int i = 0; i < CASE_PIXELS; ++i) {
+      opaque[i] = i % 7 == 0 ? 1.0f : (float)(i % CASE_WIDTH) / CASE_WIDTH;
+    }
+    c->camera.near_k = 55.0;
+    c->camera.far_k = 85.0;
+    c->opaque_depth = opaque;
+    const double plane[4] = { 0.3, 0.5, -0.2, 1.0 };
+    mesh->options.clip_plane_count = 1;
+    memcpy(mesh->options.clip_planes[0], plane, sizeof plane);
+    tetra_destroy(&m->meshes[0]);
+    tetra_create(&m->meshes[0], 3, 0.2, 0.0, 4);
+    place_mesh(&m->meshes[0], 3, 2);
+    tetra_as_lattice(&m->meshes[0], 3);
+  }
+}
+
+static void compare_meshes(bool one_ray)
+{
+  static float opaque[CASE_PIXELS];
+  static media_case media;
+  stratus_context* host = case_context("host", 2);
+  stratus_context* device = case_context("0", 2);
+  assert_true(stratus_context_on_device(device));
+  device->device->is_cpu = !one_ray;
+  for (uint32_t seed = 0; seed < 7; seed += few_run() || one_ray ? 3 : 1) {
+    mixed_case m;
+    make_mesh_case(host, seed, &m, &media, opaque);
+    assert_int_equal(mixed_draw(&m, &on_host), STRATUS_OK);
+    const stratus_status status = mixed_draw_by(device, &m, &on_device);
+    print_message("             seed %u: %d volumes, %d meshes, %d pixels, %d differ; %s%s\n", seed, m.volumes.count, m.mesh_count,
+      case_lit(&on_host), differing(), on_device.report.why, status ? stratus_context_message(device) : "");
+    assert_int_equal(status, STRATUS_OK);
+    assert_true(case_lit(&on_host) > 100);
+    assert_int_equal(differing(), 0);
+    assert_int_equal(on_device.report.differing_pixels, 0);
+    assert_true(on_device.report.samples > 0);
+    assert_null(strstr(on_device.report.why, "drawn on the host"));
+    mixed_destroy(&m);
+  }
+  stratus_context_destroy(device);
+  stratus_context_destroy(host);
+}
+
+static void a_device_draws_meshes_among_volumes_as_the_host(void** state)
+{
+  (void)state;
+  compare_meshes(false);
+}
+
+static void a_device_by_rays_draws_meshes_among_volumes_as_the_host(void** state)
+{
+  (void)state;
+  compare_meshes(true);
+}
+
+static void meshes_that_the_device_cannot_hold_are_drawn_on_the_host(void** state)
+{
+  (void)state;
+  stratus_context* host = case_context("host", 2);
+  stratus_context* device = case_context("0", 2);
+  mixed_case m;
+  mixed_create(host, &m, 0, 2, 527);
+  assert_int_equal(mixed_draw(&m, &on_host), STRATUS_OK);
+  device->device->largest_allocation = 3000;
+  assert_int_equal(mixed_draw_by(device, &m, &on_device), STRATUS_OK);
+  assert_non_null(strstr(on_device.report.why, "drawn on the host: volume 0: the mesh's cells are larger"));
+  assert_int_equal(differing(), 0);
+  mixed_destroy(&m);
+  stratus_context_destroy(device);
+  stratus_context_destroy(host);
+}
+
 /* Only what changed is sent again: for another function of one volume by the midpoint rule, its table, its layers and its map. */
 static void what_did_not_change_stays_on_the_device(void** state)
 {
@@ -328,6 +448,16 @@ int test_ray_several_media_device(void)
     cmocka_unit_test(a_device_draws_sharp_functions_as_the_host),
     cmocka_unit_test(a_device_draws_several_media_as_the_host),
     cmocka_unit_test(a_device_keeps_what_the_host_keeps),
+  };
+  return RUN(tests);
+}
+
+int test_ray_several_meshes_device(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_device_draws_meshes_among_volumes_as_the_host),
+    cmocka_unit_test(a_device_by_rays_draws_meshes_among_volumes_as_the_host),
+    cmocka_unit_test(meshes_that_the_device_cannot_hold_are_drawn_on_the_host),
   };
   return RUN(tests);
 }

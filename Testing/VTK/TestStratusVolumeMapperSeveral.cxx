@@ -357,7 +357,7 @@ struct Cells {
     this->Transfer.color = this->ColorPoints;
     this->Transfer.color_count = 2;
     this->Transfer.unit_distance = 3.0;
-    return { &this->Mesh, &this->Transfer, 0, nullptr };
+    return { &this->Mesh, &this->Transfer, 0, nullptr, nullptr, nullptr };
   }
 
   double OpacityPoints[4] = { 0.1, 0.0, 1.0, 0.4 }, ColorPoints[8] = { 0.0, 0.9, 0.2, 0.8, 1.0, 0.2, 1.0, 0.4 };
@@ -381,9 +381,26 @@ void Meshes()
   scene.Multi->SetVolume(cells.Volume, 2);
   scene.Renderer->ResetCamera();
   const std::vector<float> picture = scene.Mixed();
-  const reference_mesh mesh = cells.Reference();
+  reference_mesh mesh = cells.Reference();
   const double db = scene.Psnr(picture, nullptr, &mesh);
   CHECK(db >= 60.0, "%.1f dB with a mesh at the default tolerance", db);
+  vtkVolumeProperty* property = cells.Volume->GetProperty();
+  vtkNew<vtkPiecewiseFunction> gradient;
+  gradient->AddPoint(0.0, 0.25);
+  property->SetGradientOpacity(gradient);
+  property->ShadeOn();
+  property->SetAmbient(0.5);
+  property->SetDiffuse(0.0);
+  mesh.light = [](const void*, int64_t, const double*, const double*, double* rgb, double* depth) {
+    std::for_each(rgb, rgb + 3, [](double& c) { c *= 0.5; });
+    *depth *= 0.25;
+  };
+  const double lit = scene.Psnr(scene.Mixed(), nullptr, &mesh);
+  CHECK(lit >= 60.0 && scene.Errors->Count == 0, "%.1f dB with a mesh in half of the light and a quarter of its depth: %s", lit,
+    scene.Errors->Text.c_str());
+  property->ShadeOff();
+  property->SetGradientOpacity(static_cast<vtkPiecewiseFunction*>(nullptr));
+  CHECK(scene.Mixed() == picture, "a mesh that is lit no more");
   CHECK(scene.Errors->Count == 0 && std::string(scene.Multi->GetReason(2)).find("from face to face") != std::string::npos, "%s, %s",
     scene.Errors->Text.c_str(), scene.Multi->GetReason(2));
   scene.Mapper->AuditOn();
@@ -619,9 +636,12 @@ void Refusals()
     cells.Mapper->SetMethodToProject();
     scene.Multi->SetVolume(cells.Volume, 2);
   });
-  refuses("the volume at port 2: light on a mesh", [](Pair& scene) {
+  refuses("mesh 1 of several has a gradient opacity over a length of 0.5", [](Pair& scene) {
     const Cells cells;
-    cells.Volume->GetProperty()->ShadeOn();
+    vtkNew<vtkPiecewiseFunction> gradient;
+    gradient->AddPoint(0.0, 0.5);
+    cells.Volume->GetProperty()->SetGradientOpacity(gradient);
+    cells.Mapper->SetGradientOpacityDistance(0.5);
     scene.Multi->SetVolume(cells.Volume, 2);
   });
   refuses("the volume at port 2: the input is a", [](Pair& scene) {

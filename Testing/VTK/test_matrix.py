@@ -93,8 +93,7 @@ each combination, compares it with a reference in double precision, and compares
 - **-**: refused, by an error that names the reason; nothing is drawn.
 
 The grids are `vtkImageData`, `vtkRectilinearGrid`, `vtkOverlappingAMR` of three levels, two blocks of an image, tetrahedra, two images in
-`vtkStratusMultiVolume`, and an image and tetrahedra there. Of several volumes, the first has the feature. Where a device leaves a picture to
-the host, as in composite mode with tetrahedra among several volumes, the picture is right, and the report says so.
+`vtkStratusMultiVolume`, and an image and tetrahedra there. Of several volumes, the first has the feature.
 """
 
 

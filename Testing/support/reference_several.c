@@ -46,6 +46,7 @@ static void keep_positive(double f0, double slope, double* begin, double* end)
 /* A cell that a line passes: from begin to end, where the field is value + slope times the place. */
 typedef struct passed_cell {
   const reference_mesh* of;
+  int64_t cell;
   double begin, end, value, slope;
 } passed_cell;
 
@@ -159,7 +160,7 @@ static int meet_cell(const reference_mesh* of, int64_t cell, const line* r, pass
     weight[0] -= weight[i + 1];
     slope[0] -= slope[i + 1];
   }
-  *passed = (passed_cell){ of, r->begin, r->end, 0.0, 0.0 };
+  *passed = (passed_cell){ of, cell, r->begin, r->end, 0.0, 0.0 };
   for (int i = 0; i < 4; ++i) {
     keep_positive(weight[i], slope[i], &passed->begin, &passed->end);
     const double value = mesh->cell_values ? (double)values[cell] / 4.0 : (double)values[mesh->vertices[4 * cell + i]];
@@ -174,13 +175,16 @@ static int meet_cell(const reference_mesh* of, int64_t cell, const line* r, pass
   return passed->begin < passed->end;
 }
 
-static void add_cell(const passed_cell* cell, double s, double* tau, double glow[3])
+static void add_cell(const passed_cell* cell, const line* r, double s, double* tau, double glow[3])
 {
   const stratus_transfer* transfer = cell->of->transfer;
   const double value = cell->value + s * cell->slope, opacity = reference_opacity(transfer, value);
-  const double own = fmin(-log1p(-opacity) / transfer->unit_distance, WALL);
-  double rgb[3];
+  double own = fmin(-log1p(-opacity) / transfer->unit_distance, WALL), rgb[3];
   reference_color(transfer, value, rgb);
+  if (cell->of->light && own > 0.0) {
+    const double place[3] = { r->origin[0] + s * r->direction[0], r->origin[1] + s * r->direction[1], r->origin[2] + s * r->direction[2] };
+    cell->of->light(cell->of->data, cell->cell, place, r->direction, rgb, &own);
+  }
   *tau += own;
   for (int a = 0; a < 3; ++a) {
     glow[a] += own * rgb[a];
@@ -217,7 +221,7 @@ static part part_about(const passage* p, const line* r, double middle, double le
   }
   for (size_t m = 0; m < p->cell_count; ++m) {
     if (middle > p->cells[m].begin && middle < p->cells[m].end) {
-      add_cell(&p->cells[m], middle, &at.tau, at.glow);
+      add_cell(&p->cells[m], r, middle, &at.tau, at.glow);
     }
   }
   return at;

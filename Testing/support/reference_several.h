@@ -18,6 +18,9 @@ typedef struct reference_mesh {
   const stratus_transfer* transfer;
   int clip_plane_count;
   const double (*clip_planes)[4]; /* world: points with a x + b y + c z + d >= 0 show */
+  /* Lights the colour of a cell at a place of a ray, which goes along `along`, and multiplies the optical depth there; NULL: nothing. */
+  void (*light)(const void* data, int64_t cell, const double place[3], const double along[3], double rgb[3], double* depth);
+  const void* data;
 } reference_mesh;
 
 /* The input of a picture of volumes and meshes: at least one of them. */

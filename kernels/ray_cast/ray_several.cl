@@ -23,6 +23,10 @@
 #define SEVERAL_MEDIA 0
 #endif
 #define RAY_WITH_FUNCTIONS_2D SEVERAL_MEDIA
+/* 1: there is a mesh. */
+#ifndef SEVERAL_MESHES
+#define SEVERAL_MESHES 0
+#endif
 /* Pixels along each side of a work item's tile of packets. */
 #ifndef RAY_TILE
 #define RAY_TILE 16
@@ -71,36 +75,76 @@ typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRAT
     from[n].preintegrated = parts[n].preintegrated;                                                                                        \
   }
 
+#if SEVERAL_MESHES
+/* The kernel's arguments of a mesh in addition to a volume's, of which it has the points and their values in `values`, the sums of
+ * stratus_tetra_sums() in `hidden`, gradients in `map`, gradient opacities in `rough`, the cells in `grid` and the values of cells in
+ * `besides`. In `table` it has the running sums, or the places of several components. */
+#define MESH_ARGUMENTS(n)                                                                                                                  \
+  __global const float *lines##n, __global const float *ends##n, __global const int *faces##n, __global const uint *first##n,              \
+    __global int *entries##n
+
+#define MESH_SOURCE(n)                                                                                                                     \
+  if (n < count) {                                                                                                                         \
+    from[n].mesh = parts[n].mesh ? meshes + n : 0;                                                                                         \
+    meshes[n].a = mesh_arguments + n;                                                                                                      \
+    meshes[n].places = &parts[n].places;                                                                                                   \
+    meshes[n].view.scene.cells = grid##n;                                                                                                  \
+    meshes[n].view.scene.points = (__global const float*)values##n;                                                                        \
+    meshes[n].view.scene.sums = meshes[n].view.scene.media = (__global const int*)hidden##n;                                               \
+    meshes[n].view.scene.components = (__global const float*)table##n;                                                                     \
+    meshes[n].view.scene.gradients = (__global const float*)map##n;                                                                        \
+    meshes[n].view.scene.factors = (__global const float*)rough##n;                                                                        \
+    meshes[n].view.scene.cell_values = (__global const float*)besides##n;                                                                  \
+    meshes[n].view.lines = lines##n;                                                                                                       \
+    meshes[n].view.ends = ends##n;                                                                                                         \
+    meshes[n].view.faces = faces##n;                                                                                                       \
+    meshes[n].view.first = first##n;                                                                                                       \
+    meshes[n].view.entries = entries##n;                                                                                                   \
+  }
+#define MESHES_ARGUMENTS                                                                                                                   \
+  , __constant stratus_tetra_arguments *mesh_arguments, MESH_ARGUMENTS(0), MESH_ARGUMENTS(1), MESH_ARGUMENTS(2), MESH_ARGUMENTS(3),        \
+    MESH_ARGUMENTS(4), MESH_ARGUMENTS(5), MESH_ARGUMENTS(6), MESH_ARGUMENTS(7)
+#else
+#define MESHES_ARGUMENTS
+#define MESH_SOURCE(n)
+#endif
+#define SOURCE(n) VOLUME_SOURCE(n) MESH_SOURCE(n)
+
 /* a, parts: one for each volume; the first volume's say which outputs are written. counts: rays, samples, skipped, lookups of each row of
  * pixels, or of each tile. */
 PACKET_KERNEL void ray_several(__constant stratus_ray_cast_arguments* a, __constant stratus_several_arguments* parts, int count,
   VOLUME_ARGUMENTS(0), VOLUME_ARGUMENTS(1), VOLUME_ARGUMENTS(2), VOLUME_ARGUMENTS(3), VOLUME_ARGUMENTS(4), VOLUME_ARGUMENTS(5),
   VOLUME_ARGUMENTS(6), VOLUME_ARGUMENTS(7), __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8,
-  __global float* depth, __global uint* samples, __global uint* counts)
+  __global float* depth, __global uint* samples, __global uint* counts MESHES_ARGUMENTS)
 {
   const stratus_pixels to = { rgba, rgba8, depth, samples };
   several_source from[SEVERAL_MOST];
   several_volume volumes[SEVERAL_MOST];
+#if SEVERAL_MESHES
+  several_mesh meshes[SEVERAL_MOST];
+#endif
   count = min(count, SEVERAL_MOST);
-  VOLUME_SOURCE(0)
-  VOLUME_SOURCE(1)
+  SOURCE(0)
+#if SEVERAL_MOST > 1
+  SOURCE(1)
+#endif
 #if SEVERAL_MOST > 2
-  VOLUME_SOURCE(2)
+  SOURCE(2)
 #endif
 #if SEVERAL_MOST > 3
-  VOLUME_SOURCE(3)
+  SOURCE(3)
 #endif
 #if SEVERAL_MOST > 4
-  VOLUME_SOURCE(4)
+  SOURCE(4)
 #endif
 #if SEVERAL_MOST > 5
-  VOLUME_SOURCE(5)
+  SOURCE(5)
 #endif
 #if SEVERAL_MOST > 6
-  VOLUME_SOURCE(6)
+  SOURCE(6)
 #endif
 #if SEVERAL_MOST > 7
-  VOLUME_SOURCE(7)
+  SOURCE(7)
 #endif
 #if STRATUS_WIDTH == 1
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);

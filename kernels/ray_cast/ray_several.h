@@ -120,7 +120,7 @@ INLINE void several_load(
     v->now = v->shows = v->comes = 0;
     v->knows = m_none();
     v->ahead = v_set(0.0f);
-#ifndef STRATUS_DEVICE
+#if SEVERAL_MESHES
     if (from[n].mesh) {
       several_mesh_load(&from[n], v, x, y, whole[n]);
       k->hits = k->hits | v->k.hits;

@@ -9,7 +9,7 @@
 #if SEVERAL_CELLS
 #include "several_cells.h"
 #endif
-#ifndef STRATUS_DEVICE
+#if SEVERAL_MESHES
 #include "several_mesh.h"
 #endif
 
@@ -189,6 +189,24 @@ INLINE void several_stretch(const several_source* from, const several_volume* vo
 }
 
 #if SEVERAL_STRETCHES
+/* Gives the rays of the mask their next stretch. Returns those that wait for it, as several_cells_next() has it. */
+INLINE vmask several_next(const several_source* from, several_volume* v, vmask mask, vmask going, vmask live)
+{
+#if SEVERAL_MESHES
+  if (from->mesh) {
+    several_mesh_next(from, v, mask);
+    return m_none();
+  }
+#endif
+#if SEVERAL_CELLS
+  return several_cells_next(from, v, mask, going, live);
+#else
+  (void)going;
+  (void)live;
+  return m_none();
+#endif
+}
+
 /* From `u` segments behind `since` on, at which the rays `going` are: gives those whose stretch has ended another, and takes from `going`
  * those that have to wait for it. Lowers *until to where each ray's stretch ends or, at a whole segment before it where that is far,
  * begins. live: rays that are not at their end. */
@@ -198,17 +216,7 @@ INLINE void several_until(const several_source* from, several_volume* v, vint si
   const vfloat s0 = v_from_int(since - v->offset), one = v_set(1.0f);
   vmask ended = m_andnot(*going & v_le(way->hi - s0, u), way->stops);
   while (m_any(ended)) {
-    vmask waits = m_none();
-#ifdef STRATUS_DEVICE
-    waits = several_cells_next(from, v, ended, *going, live);
-#else
-    if (from->mesh) {
-      several_mesh_next(from, v, ended);
-    } else {
-      waits = several_cells_next(from, v, ended, *going, live);
-    }
-#endif
-    *going = m_andnot(*going, waits);
+    *going = m_andnot(*going, several_next(from, v, ended, *going, live));
     ended = m_andnot(*going & v_le(way->hi - s0, u), way->stops);
   }
   const vfloat begins = way->lo - s0, ends = v_max(way->hi - s0, u);

@@ -1,25 +1,38 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * A mesh of tetrahedra among several volumes: its rays march from cell to cell, and hand out one stretch after the other on which the field
- * is linear and shows anything. Host only. */
+ * is linear and shows anything. */
 #ifndef STRATUS_SEVERAL_MESH_H
 #define STRATUS_SEVERAL_MESH_H
 
 #include "several_way.h"
 
-/* The number of segments from the eye to z = 0 of the mesh's rays (base) and for each unit of z (scale), and by how much a ray's lattice
- * lies farther. */
-INLINE void several_mesh_places(const several_mesh* m, int x, int y, double* base, double* scale, float* shift)
+/* Places of a packet's rays on the lattice. The segment before the one in which a ray enters is whole[0] + whole[1], exactly; from there on
+ * z is at base + scale z segments. first: that segment, for depth. */
+typedef struct several_mesh_start {
+  float whole[2][STRATUS_WIDTH], base[STRATUS_WIDTH], scale[STRATUS_WIDTH], first[STRATUS_WIDTH];
+} several_mesh_start;
+
+/* Finds the places of REAL_WIDTH rays of the packet, from ray number `part` on. x, y: their pixels (whole numbers); w: their jitter;
+ * enters: the z where they enter. */
+INLINE void several_mesh_start_part(
+  const several_source* from, const float* x, const float* y, const float* w, const float* enters, int part, several_mesh_start* start)
 {
-  const double u = (2.0 * x + 1.0) / m->width - 1.0, v = (2.0 * y + 1.0) / m->height - 1.0;
-  double square = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double along = m->forward[axis] + (m->parallel ? 0.0 : u * m->right[axis] + v * m->up[axis]);
-    square += along * along;
-  }
-  const double segments = sqrt(square) * m->per_step;
-  *shift = m->jitter ? ray_jitter(x, y, m->seed) : 0.0f;
-  *base = segments * (m->middle - (m->lean[0] * u + m->lean[1] * v)) + (double)*shift;
-  *scale = segments * m->per_z;
+  CONSTANT stratus_ray_cast_arguments* a = from->a;
+  CONSTANT stratus_several_places* places = from->mesh->places;
+  const real half_one = r_number(0.5f), one = r_number(1.0f), two = r_number(2.0f), farthest = r_number(SEVERAL_FARTHEST);
+  real origin[3], direction[3], per_k, unit;
+  (void)ray_line(a, x + part, y + part, origin, direction, &per_k, &unit);
+  const real u = r_sub(r_mul(r_mul(r_add(r_load(x + part), half_one), two), r_of(a->camera.pixel[0])), one);
+  const real v = r_sub(r_mul(r_mul(r_add(r_load(y + part), half_one), two), r_of(a->camera.pixel[1])), one);
+  const real lean = r_add(r_mul(r_of(places->lean[0]), u), r_mul(r_of(places->lean[1]), v)), shift = r_load(w + part);
+  const real base = r_add(r_mul(per_k, r_sub(r_of(places->middle), lean)), shift), scale = r_mul(per_k, r_of(places->per_z));
+  const real enter = r_sub(r_floor(r_add(base, r_mul(scale, r_load(enters + part)))), one);
+  const real number = r_max(r_min(enter, farthest), r_neg(farthest));
+  r_store(start->base + part, r_sub(base, number));
+  r_store(start->scale + part, scale);
+  r_store(start->first + part, r_sub(number, shift));
+  r_store(start->whole[0] + part, number);
+  r_store(start->whole[1] + part, r_sub(number, r_load(start->whole[0] + part)));
 }
 
 /* The lanes that are at an entry into the mesh before the end of their visible part; z: the entry's place. */
@@ -64,8 +77,19 @@ INLINE vmask several_mesh_cell(const several_source* from, several_volume* v, vm
   const vfloat behind = v_max(v->mesh.reached - lo, v_set(0.0f)), place = table_place(t, first), last_place = table_place(t, last);
   lo = lo + behind;
   hi = hi + behind;
-  const vmask shown =
-    seen & v_lt(lo, hi) & v_lt(v_min(place, last_place), v_set(t->shown_beyond)) & v_le(v_set(t->shown_first), v_max(place, last_place));
+  vmask shown = seen & v_lt(lo, hi);
+  if (!m->a->media.components) {
+    shown = shown & v_lt(v_min(place, last_place), v_set(t->shown_beyond)) & v_le(v_set(t->shown_first), v_max(place, last_place));
+  }
+#if SEVERAL_LIT_MESHES
+  if (from->lit) {
+    const several_cell_part part = { begin, end, lo, hi, first, last };
+    shown = several_mesh_cut(m, &v->mesh, &passage, &part, shown);
+    several_mesh_piece(m, &v->mesh, shown, next);
+    v->mesh.reached = v_select(shown, hi, v->mesh.reached);
+    return shown;
+  }
+#endif
   v->mesh.reached = v_select(shown, hi, v->mesh.reached);
   next->lo = v_select(shown, lo, next->lo);
   next->hi = v_select(shown, hi, next->hi);
@@ -82,6 +106,15 @@ INLINE void several_mesh_next(const several_source* from, several_volume* v, vma
   vmask left = mask, found = m_none();
   next->lo = next->hi = beyond;
   next->front = next->rise = next->entries = next->wall[0] = next->wall[1] = next->wall[2] = zero;
+  next->rate[0] = next->rate[1] = next->rate[2] = next->rate[3] = zero;
+  next->stops = m_none();
+#if SEVERAL_LIT_MESHES
+  if (from->lit) {
+    found = left & v_lt(v->mesh.piece, v->mesh.pieces);
+    several_mesh_piece(from->mesh, &v->mesh, found, next);
+    left = m_andnot(left, found);
+  }
+#endif
   while (m_any(left)) {
     const vmask outside = m_andnot(left, v->mesh.lanes.live);
     if (m_any(outside)) {
@@ -100,19 +133,27 @@ INLINE void several_mesh_next(const several_source* from, several_volume* v, vma
     found = found | shown;
     left = m_andnot(left, shown);
   }
-  several_shade(from, v, found);
+  if (!from->mesh->a->media.components) {
+    several_shade(from, v, found);
+  }
   v->comes = -1; /* nothing is due of a mesh */
   several_take(v, mask);
+#if SEVERAL_LIT_MESHES
+  if (from->lit) {
+    several_mesh_take_light(v, mask);
+  }
+#endif
 }
 
 /* Makes the rays of the packet at pixel (x, y) ready, at their first stretch. whole: the segment before the one in which each enters. */
 INLINE void several_mesh_load(const several_source* from, several_volume* v, int x, int y, several_number_t whole[STRATUS_WIDTH])
 {
+  CONSTANT stratus_ray_cast_arguments* a = from->a;
   const several_mesh* m = from->mesh;
   stratus_tetra_walk* walk = &v->mesh.walk;
   stratus_tetra_lanes* lanes = &v->mesh.lanes;
   const vint px = (vi_lanes() & vi_set(PACKET_X - 1)) + vi_set(x), py = (vi_lanes() >> vi_set(PACKET_X_LOG2)) + vi_set(y);
-  const vmask inside = vi_lt(px, vi_set(m->width)) & vi_lt(py, vi_set(m->height));
+  const vmask inside = vi_lt(px, vi_set(a->picture.width)) & vi_lt(py, vi_set(a->picture.height));
   walk->view = &m->view;
   walk->arguments = m->a;
   walk->x0 = x / TETRA_TILE * TETRA_TILE;
@@ -120,39 +161,39 @@ INLINE void several_mesh_load(const several_source* from, several_volume* v, int
   walk->tile = y / TETRA_TILE * m->a->columns + x / TETRA_TILE;
   walk->next = walk->count = 0;
   walk->found = (stratus_tetra_found){ 0, 0, 0, 0 };
-  lanes_begin(walk, lanes);
+  lanes_clear(lanes);
   lanes_take(walk, lanes, inside, ((py - vi_set(walk->y0)) << vi_set(TETRA_TILE_LOG2)) + (px - vi_set(walk->x0)));
-  lanes->live = lanes->done = m_none();
   vfloat z;
   vmask meets = several_mesh_entry(v, inside, &z);
   z = v_max(z, lanes->ray.begin);
   meets = meets & v_lt(z, lanes->ray.end);
-  float enters[STRATUS_WIDTH], base[STRATUS_WIDTH], scale[STRATUS_WIDTH], first[STRATUS_WIDTH];
+  float fx[STRATUS_WIDTH], fy[STRATUS_WIDTH], fw[STRATUS_WIDTH], enters[STRATUS_WIDTH];
   int met[STRATUS_WIDTH];
-  v_store(enters, z);
+  several_mesh_start start;
+  v_store(fx, v_from_int(px));
+  v_store(fy, v_from_int(py));
+  v_store(enters, v_select(meets, z, v_set(0.0f)));
   vi_store(met, vi_select(meets, vi_set(1), vi_set(0)));
   for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    base[lane] = scale[lane] = first[lane] = 0.0f;
-    whole[lane] = 0;
-    if (met[lane]) {
-      double from_eye, per_z;
-      float shift;
-      several_mesh_places(m, x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), &from_eye, &per_z, &shift);
-      const double number = floor(from_eye + per_z * (double)enters[lane]) - 1.0;
-      whole[lane] = (several_number_t)fmax(fmin(number, (double)SEVERAL_FARTHEST), -(double)SEVERAL_FARTHEST);
-      base[lane] = (float)(from_eye - number);
-      scale[lane] = (float)per_z;
-      first[lane] = (float)(number - (double)shift);
-    }
+    fw[lane] = a->lattice.jitter ? ray_jitter(x + (lane & (PACKET_X - 1)), y + (lane >> PACKET_X_LOG2), a->lattice.seed) : 0.0f;
+  }
+  for (int part = 0; part < STRATUS_WIDTH; part += REAL_WIDTH) {
+    several_mesh_start_part(from, fx, fy, fw, enters, part, &start);
+  }
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    whole[lane] = met[lane] ? (several_number_t)start.whole[0][lane] + (several_number_t)start.whole[1][lane] : 0;
   }
   packet_nothing(&v->k);
-  v->k.first = v_load(first);
+  v->k.first = v_load(start.first);
   v->k.i = v->k.last = vi_set(0);
   v->k.hits = meets;
-  v->mesh.base = v_load(base);
-  v->mesh.scale = v_load(scale);
+  v->mesh.base = v_load(start.base);
+  v->mesh.scale = v_load(start.scale);
   v->mesh.reached = v_set(-SEVERAL_BEYOND);
   v->ways[0].stops = m_none();
+#if SEVERAL_LIT_MESHES
+  several_mesh_light_load(v);
+#endif
   several_mesh_next(from, v, meets);
   v->ways[0].lo = v_select(meets, v->ways[0].lo, v_set(SEVERAL_BEYOND));
   v->ways[0].hi = v_select(meets, v->ways[0].hi, v_set(SEVERAL_BEYOND));

@@ -5,10 +5,24 @@
 
 #include "lighting.h"
 #include "ray_several_arguments.h"
-#ifndef STRATUS_DEVICE
+/* 1: there is a mesh of tetrahedra. A device compiles the code for meshes only then, as for all that follows. */
+#ifndef SEVERAL_MESHES
+#ifdef STRATUS_DEVICE
+#define SEVERAL_MESHES 0
+#else
+#define SEVERAL_MESHES 1
+#endif
+#endif
+#if SEVERAL_MESHES
 #include "tetra_tile.h"
 #endif
-/* 1: some volume has rays that go from cell to cell. A device compiles the code for them only then. */
+/* 1: some mesh has light, gradient opacity or several components. */
+#if SEVERAL_MESHES && TETRA_LIT
+#define SEVERAL_LIT_MESHES 1
+#else
+#define SEVERAL_LIT_MESHES 0
+#endif
+/* 1: some volume has rays that go from cell to cell. */
 #ifndef SEVERAL_CELLS
 #define SEVERAL_CELLS 1
 #endif
@@ -21,11 +35,7 @@
 #include "local_runs.h"
 #endif
 /* Whether there may be sources of stretches. */
-#if SEVERAL_CELLS || !defined(STRATUS_DEVICE)
-#define SEVERAL_STRETCHES 1
-#else
-#define SEVERAL_STRETCHES 0
-#endif
+#define SEVERAL_STRETCHES (SEVERAL_CELLS || SEVERAL_MESHES)
 
 /* A device compiles a kernel for as many volumes as there are. */
 #ifndef SEVERAL_MOST
@@ -45,13 +55,12 @@ typedef int64_t several_number_t;
 #endif
 #define SEVERAL_FARTHEST 4e18f
 
-#ifndef STRATUS_DEVICE
-/* The data of a mesh of tetrahedra that all rays read: its frame, and the numbers that turn its z into segments of the lattice. */
+#if SEVERAL_MESHES
+/* The data of a mesh of tetrahedra that all rays read. */
 typedef struct several_mesh {
   stratus_tetra_view view;
-  const stratus_tetra_arguments* a;
-  double forward[3], right[3], up[3], middle, per_z, lean[2], per_step;
-  int width, height, parallel, jitter, seed;
+  CONSTANT stratus_tetra_arguments* a;
+  CONSTANT stratus_several_places* places;
 } several_mesh;
 
 typedef struct several_mesh_rays {
@@ -59,6 +68,14 @@ typedef struct several_mesh_rays {
   stratus_tetra_lanes lanes;
   vfloat base, scale; /* segments from the one in which the ray enters are base + scale z */
   vfloat reached;     /* where the last stretch ends */
+#if SEVERAL_LIT_MESHES
+  /* the part of a cell that a ray sees: its gradients and, of several, the values of components; the path is from lo to hi, and of one
+   * component values are from front to back */
+  stratus_tetra_stretch stretches[TETRA_COMPONENTS];
+  stratus_tetra_values values;
+  vfloat lo, hi, front, back, length; /* length: in the world, of several components */
+  vfloat piece, pieces;               /* the next of its pieces, and their number */
+#endif
 } several_mesh_rays;
 #endif
 
@@ -71,11 +88,11 @@ typedef struct several_source {
   /* table: pre-integrated, the running sums; midpoint, for each entry its colour times optical depth, and its optical depth, over one
    * segment. besides: with light or gradient opacity, the tables that these read. */
   GLOBAL const void *table, *besides;
-#ifndef STRATUS_DEVICE
-  const several_mesh* mesh; /* NULL: a volume */
+#if SEVERAL_MESHES
+  const several_mesh* mesh; /* 0: a volume */
 #endif
   int stride;        /* segments of the lattice to a sample of this volume, at least 1 */
-  int lit;           /* 1: it has light or gradient opacity */
+  int lit;           /* 1: it has light or gradient opacity, or is a mesh of several components */
   int cells;         /* SEVERAL_BY_SAMPLES, SEVERAL_BY_CELLS or SEVERAL_LOCAL */
   int media;         /* SEVERAL_COMPONENTS, SEVERAL_LABELS or SEVERAL_FUNCTION_2D; 0: each sample is one value's colour and opacity */
   float segment;     /* media: a segment's length in samples, for which its table is made */
@@ -119,7 +136,7 @@ typedef struct several_volume {
 #if SEVERAL_CELLS
   several_cells_rays cells;
 #endif
-#ifndef STRATUS_DEVICE
+#if SEVERAL_MESHES
   several_mesh_rays mesh;
 #endif
 } several_volume;
@@ -127,11 +144,12 @@ typedef struct several_volume {
 /* Whether its paths are stretches that begin and end within segments: paths through a mesh, or through a volume cell by cell. */
 INLINE int several_has_stretches(const several_source* from)
 {
-#ifdef STRATUS_DEVICE
-  return SEVERAL_CELLS && from->cells;
-#else
-  return from->mesh != 0 || from->cells;
+#if SEVERAL_MESHES
+  if (from->mesh) {
+    return 1;
+  }
 #endif
+  return SEVERAL_CELLS && from->cells;
 }
 
 /* The field, and its gradient, at x. */

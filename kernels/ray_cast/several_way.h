@@ -4,6 +4,9 @@
 #define STRATUS_SEVERAL_WAY_H
 
 #include "several_state.h"
+#if SEVERAL_LIT_MESHES
+#include "several_mesh_light.h"
+#endif
 
 /* Cuts off what lies beyond the table, where the volume is transparent. */
 INLINE void several_cut(CONSTANT stratus_table_arguments* t, vmask mask, several_way* way)
@@ -50,9 +53,16 @@ INLINE vmask several_stop(
 }
 
 /* Compute how light and gradient opacity change the path, by the gradient in its middle. */
-INLINE void several_light(const several_source* from, const stratus_packet* k, vmask mask, several_way* way)
+INLINE void several_light(const several_source* from, const several_volume* v, vmask mask, several_way* way)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
+  const stratus_packet* k = &v->k;
+#if SEVERAL_LIT_MESHES
+  if (from->mesh) {
+    several_mesh_light(from->mesh, &v->mesh, mask, way);
+    return;
+  }
+#endif
   const vfloat s = v_set(0.5f) * (way->lo + way->hi);
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   vfloat g[3];
@@ -152,7 +162,7 @@ INLINE void several_shade_middle(const several_source* from, several_volume* v, 
   way->entries = v_set(0.0f);
   v->comes = m_any(shown) != 0;
   if (from->lit && v->comes) {
-    several_light(from, &v->k, shown, way);
+    several_light(from, v, shown, way);
     several_light_rate(way, shown, way->rate);
   }
 }
@@ -207,7 +217,7 @@ INLINE void several_shade(const several_source* from, several_volume* v, vmask m
     if (!m_any(lit)) {
       return;
     }
-    several_light(from, &v->k, lit, way);
+    several_light(from, v, lit, way);
   }
   const several_end begin = { way->front, front }, end = { way->front + way->rise, entry };
   vfloat across;

@@ -34,6 +34,7 @@
 #define TETRA_SLICE 4      /* the values on a surface of the world, light behind light */
 #define TETRA_HITS 5       /* the first cell that shows anything: its points, of which the host makes a picture */
 #define TETRA_QUANTITIES 6 /* the field's integral, length, largest value and number of cells */
+#define TETRA_STRETCHES 7  /* none: rays hand out what they see of cells, among several volumes */
 /* Added to the numbers that a hit stores, so that they are the bits of floats between 0 and 1. */
 #define TETRA_HIT_NAME 0x10000000
 /* Ints of a label's record, which are before the labels' sums: where its sums begin, laid out as stratus_tetra_sums(); the bits of the

@@ -190,20 +190,19 @@ INLINE vfloat lit_pieces(
   return q;
 }
 
-/* Composites a stretch. */
-INLINE void tetra_media(
-  CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, stratus_tetra_light* light, vmask mask, vfloat near)
+/* Returns the lanes whose stretch shows anything; *pieces: into how many pieces it is cut. */
+INLINE vmask tetra_media_pieces(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, vmask mask, vfloat* pieces)
 {
   const vfloat one = v_set(1.0f), zero = v_set(0.0f);
-  const stratus_tetra_values* values = m->values;
-  vfloat glow[3], depth, from[TETRA_COMPONENTS], to[TETRA_COMPONENTS], own[TETRA_COMPONENTS], all = zero;
-  mix_components(a, m, values->from, values->to, zero, one, mask, glow, &depth, own);
+  vfloat glow[3], depth, own[TETRA_COMPONENTS], all = zero;
+  mix_components(a, m, m->values->from, m->values->to, zero, one, mask, glow, &depth, own);
   for (int c = a->media.dependent ? a->media.components - 1 : 0; c < a->media.components; ++c) {
     all = all + own[c];
   }
   mask = mask & v_lt(zero, all);
   if (!m_any(mask)) {
-    return;
+    *pieces = one;
+    return mask;
   }
   vfloat q = depth * v_set(a->pieces); /* a colour changes by 1 at most */
   if (a->media.dependent || a->media.mean) {
@@ -212,8 +211,22 @@ INLINE void tetra_media(
   if (a->light.on || a->thins) {
     q = v_max(q, lit_pieces(a, m, mask, own));
   }
-  const vfloat pieces = tetra_pieces_of(q), share = v_reciprocal(pieces);
-  vfloat piece = zero, at = zero;
+  *pieces = tetra_pieces_of(q);
+  return mask;
+}
+
+/* Composites a stretch. */
+INLINE void tetra_media(
+  CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, stratus_tetra_light* light, vmask mask, vfloat near)
+{
+  const vfloat one = v_set(1.0f), zero = v_set(0.0f);
+  const stratus_tetra_values* values = m->values;
+  vfloat glow[3], depth, from[TETRA_COMPONENTS], to[TETRA_COMPONENTS], own[TETRA_COMPONENTS], pieces, piece = zero, at = zero;
+  mask = tetra_media_pieces(a, m, mask, &pieces);
+  if (!m_any(mask)) {
+    return;
+  }
+  const vfloat share = v_reciprocal(pieces);
   for (int c = 0; c < TETRA_COMPONENTS; ++c) {
     from[c] = values->from[c];
   }

@@ -191,15 +191,14 @@ INLINE void tetra_light_piece(CONSTANT stratus_tetra_arguments* a, GLOBAL const 
   }
 }
 
-/* Composites a stretch from value `first` at place `from` to `last` at place `to`. */
-INLINE void tetra_light_stretch(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, GLOBAL const float* factors,
-  const stratus_tetra_stretch* s, stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, const stratus_tetra_place* from,
-  const stratus_tetra_place* to, vfloat near)
+/* Returns into how many pieces a stretch between two places of the table is cut. */
+INLINE vfloat tetra_stretch_pieces(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, GLOBAL const float* factors,
+  const stratus_tetra_stretch* s, vmask mask, const stratus_tetra_place* from, const stratus_tetra_place* to)
 {
-  const vfloat one = v_set(1.0f), weight = v_min(s->length * s->tau_scale, v_set(OPAQUE_WEIGHT));
+  const vfloat weight = v_min(s->length * s->tau_scale, v_set(OPAQUE_WEIGHT));
   const vfloat entries = v_abs(v_from_int(to->entry - from->entry));
   const vfloat sum = v_abs(v_from_int(to->sum[3] - from->sum[3])) * weight;
-  vfloat depth = sum * v_reciprocal(v_max(entries, one));
+  vfloat depth = sum * v_reciprocal(v_max(entries, v_set(1.0f)));
   const vmask level = mask & vi_zero(to->entry - from->entry);
   if (m_any(level)) {
     vint own[4];
@@ -210,7 +209,15 @@ INLINE void tetra_light_stretch(CONSTANT stratus_tetra_arguments* a, GLOBAL cons
   if (a->table.has_opaque && a->thins) {
     q = v_max(q, v_set(TETRA_PIECES_OPAQUE));
   }
-  const vfloat pieces = tetra_pieces_of(q), share = v_reciprocal(pieces);
+  return tetra_pieces_of(q);
+}
+
+/* Composites a stretch from value `first` at place `from` to `last` at place `to`. */
+INLINE void tetra_light_stretch(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, GLOBAL const float* factors,
+  const stratus_tetra_stretch* s, stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, const stratus_tetra_place* from,
+  const stratus_tetra_place* to, vfloat near)
+{
+  const vfloat one = v_set(1.0f), pieces = tetra_stretch_pieces(a, sums, factors, s, mask, from, to), share = v_reciprocal(pieces);
   stratus_tetra_piece p;
   vfloat piece = v_set(0.0f);
   p.from = *from;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The march through tetrahedra on a device. Where STRATUS_WIDTH is 16 (a CPU) a work item does a tile of pixels in packets, as the host
  * does; else (a GPU) it does one pixel. The kernel tetra_count counts the faces by which each ray enters. The host turns counts into
- * places, and the kernel tetra_march sorts the entries into them and marches. */
+ * places, and the kernel tetra_march sorts the entries into them and marches; tetra_find only sorts them, where another kernel marches. */
 #ifndef STRATUS_DEVICE
 #define STRATUS_DEVICE 1
 #endif
@@ -43,7 +43,21 @@ PACKET_KERNEL void tetra_count(__constant stratus_tetra_arguments* a, __global c
   }
 }
 
-/* found: scratch memory, a number for each pixel of the tiles. counts: of each tile rays, entries, segments and stuck rays; 0 before. */
+/* found: scratch memory, a number for each pixel of the tiles. */
+PACKET_KERNEL void tetra_find(__constant stratus_tetra_arguments* a, __global const float* points, __global const float* lines,
+  __global const int* faces, __global const uint* bin_begin, __global const int* bins, __global const uint* first, __global int* entries,
+  __global uint* found)
+{
+  const stratus_tetra_view view = {
+    .scene = { .points = points }, .lines = lines, .faces = faces, .bin_begin = bin_begin, .bins = bins, .first = first, .entries = entries
+  };
+  int tile, from, beyond;
+  if (my_pixels(a, &tile, &from, &beyond)) {
+    find_entries(&view, a, tile, from, beyond, 0, found + TETRA_PIXELS * (size_t)tile);
+  }
+}
+
+/* found: as of tetra_find. counts: of each tile rays, entries, segments and stuck rays; 0 before. */
 PACKET_KERNEL void tetra_march(
   __constant stratus_tetra_arguments* a, __global const int* cells, __global const float* cell_values, __global const int* sums,
   __global const float* colors, __global const float* points, __global const float* lines, __global const float* ends,

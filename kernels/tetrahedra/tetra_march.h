@@ -349,6 +349,17 @@ INLINE void tetra_add_product(CONSTANT stratus_tetra_arguments* a, const stratus
     a, scene->sums, light, mask, &place, &next, &value, (to - from) * (end - begin) * r->length, v_fma(begins, r->length, r->offset));
 }
 
+/* Sets the stretches of those components whose light or opacity depends on their gradients. */
+INLINE void tetra_component_stretches(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+  const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask, stratus_tetra_stretch stretches[TETRA_COMPONENTS])
+{
+  for (int c = 0; c < a->media.components; ++c) {
+    if (component_has_gradient(a, c)) {
+      stretches[c] = tetra_stretch(a, scene, c, r, passage, begin, end, mask);
+    }
+  }
+}
+
 /* Adds the light of several components on the part begin..end of a cell that was passed. */
 INLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask, vfloat near)
@@ -356,11 +367,7 @@ INLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const st
   stratus_tetra_values values;
   tetra_values_of(a, scene, r, passage, begin, end, mask, &values);
   stratus_tetra_stretch stretches[TETRA_COMPONENTS];
-  for (int c = 0; c < a->media.components; ++c) {
-    if (component_has_gradient(a, c)) {
-      stretches[c] = tetra_stretch(a, scene, c, r, passage, begin, end, mask);
-    }
-  }
+  tetra_component_stretches(a, scene, r, passage, begin, end, mask, stretches);
   const stratus_tetra_mixture mixture = { &values, stretches, scene->media, scene->factors, (end - begin) * r->length };
   tetra_media(a, &mixture, light, mask, near);
 }

@@ -75,7 +75,7 @@ INLINE stratus_tetra_sight tetra_sight(
   return sight;
 }
 
-INLINE void store_pixel(
+INLINE void tetra_store_pixel(
   const stratus_tetra_picture* picture, CONSTANT stratus_tetra_arguments* a, int x, int y, const float rgba[4], float depth, uint segments)
 {
   const size_t at = (size_t)y * (size_t)a->picture.width + (size_t)x;

@@ -361,7 +361,7 @@ static void store_tile(project_tile* t, stratus_project_found* found)
           rgba[c] = p->samples > 0 ? t->view->colors[4 * entry[0] + c] : 0.0f;
         }
       }
-      store_pixel(&t->view->picture, a, t->own_x + x, t->own_y + y, rgba, depth, p->samples);
+      tetra_store_pixel(&t->view->picture, a, t->own_x + x, t->own_y + y, rgba, depth, p->samples);
       found->rays += p->samples > 0;
       found->segments += p->samples;
     }

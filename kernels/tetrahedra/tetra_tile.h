@@ -189,7 +189,7 @@ INLINE void lanes_enter(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mas
 
 INLINE void store_ray(const stratus_tetra_walk* t, int pixel, const float rgba[4], float depth, int segments)
 {
-  store_pixel(&t->view->picture, t->arguments, t->x0 + pixel % TETRA_TILE, t->y0 + pixel / TETRA_TILE, rgba, depth, (uint)segments);
+  tetra_store_pixel(&t->view->picture, t->arguments, t->x0 + pixel % TETRA_TILE, t->y0 + pixel / TETRA_TILE, rgba, depth, (uint)segments);
 }
 
 /* Stores the pixels of lanes whose ray has ended. */
@@ -299,7 +299,8 @@ INLINE void lanes_go_on(stratus_tetra_walk* t, stratus_tetra_lanes* k)
   }
 }
 
-INLINE void lanes_begin(stratus_tetra_walk* t, stratus_tetra_lanes* k)
+/* Makes lanes that have no ray. */
+INLINE void lanes_clear(stratus_tetra_lanes* k)
 {
   const vfloat zero = v_set(0.0f);
   const vint none = vi_set(0), outside = vi_set(-1);
@@ -313,8 +314,13 @@ INLINE void lanes_begin(stratus_tetra_walk* t, stratus_tetra_lanes* k)
   r->cell = k->pixel = outside;
   k->light.red = k->light.green = k->light.blue = k->light.transparency = k->light.depth = k->light.most = zero;
   k->entry = k->beyond = k->steps = k->segments = k->piece = none;
-  k->live = m_none();
-  k->done = vi_ge(none, none);
+  k->live = k->done = m_none();
+}
+
+INLINE void lanes_begin(stratus_tetra_walk* t, stratus_tetra_lanes* k)
+{
+  lanes_clear(k);
+  k->done = vi_ge(k->entry, k->entry);
   lanes_go_on(t, k);
 }
 
