@@ -8,19 +8,6 @@
 
 #include <string.h>
 
-bool stratus_tetra_mixes(const stratus_mesh* mesh, const stratus_tetra_options* options)
-{
-  return stratus_tetra_meets_components(mesh, options) ||
-    (stratus_tetra_component_count(mesh) > 1 &&
-      (options->dependent || options->mode == STRATUS_TETRA_COMPOSITE || options->mode == STRATUS_TETRA_SLICE));
-}
-
-bool stratus_tetra_meets_components(const stratus_mesh* mesh, const stratus_tetra_options* options)
-{
-  return stratus_tetra_component_count(mesh) > 1 && !options->dependent &&
-    (options->mode == STRATUS_TETRA_ISOSURFACE || options->mode == STRATUS_TETRA_FIRST_HIT);
-}
-
 stratus_status stratus_tetra_components_check(
   stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options)
 {

@@ -14,13 +14,6 @@
 _Static_assert(STRATUS_TETRA_CONTOURS_MAX == TETRA_CONTOURS, "as many as the arguments hold");
 _Static_assert(STRATUS_TETRA_CLIP_PLANES_MAX + 6 == TETRA_PLANES, "as many as the arguments hold");
 
-const char* stratus_tetra_mode_name(stratus_tetra_mode mode)
-{
-  static const char* const names[] = { "composite", "maximum", "minimum", "average", "additive", "isosurface", "slice", "first-hit",
-    "quantities" };
-  return (unsigned)mode < sizeof names / sizeof *names ? names[mode] : "unknown";
-}
-
 static stratus_status check_planes(stratus_context* context, const stratus_tetra_options* options)
 {
   if (options->clip_plane_count < 0 || options->clip_plane_count > STRATUS_TETRA_CLIP_PLANES_MAX) {

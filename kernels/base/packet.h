@@ -14,6 +14,7 @@
 #define GLOBAL __global
 #define CONSTANT __constant
 #define INLINE static inline
+#define OUTLINE static __attribute__((unused))
 #ifndef STRATUS_WIDTH
 #define STRATUS_WIDTH 1
 #endif
@@ -32,6 +33,8 @@
 #define GLOBAL
 #define CONSTANT const
 #define INLINE static inline __attribute__((always_inline))
+/* Of long functions that few rays come to: they are not inlined on the host. Not every file needs each. */
+#define OUTLINE static __attribute__((noinline, unused))
 typedef unsigned char uchar;
 typedef unsigned short ushort;
 typedef unsigned int uint;

@@ -3,13 +3,6 @@
 #ifndef STRATUS_COMPONENT_H
 #define STRATUS_COMPONENT_H
 
-/* Not inlined: few samples come this far, and the code is long. */
-#ifdef STRATUS_DEVICE
-#define OUTLINE static
-#else
-#define OUTLINE static __attribute__((noinline))
-#endif
-
 /* The contribution of a sample's label: the entry in the table of its label, the layer of that over a whole sample, how far behind entries
  * their optical depths are, and how light and gradient change it. */
 typedef struct stratus_label_sample {

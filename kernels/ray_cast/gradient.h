@@ -232,7 +232,7 @@ INLINE vfloat RAY_NAME(field_at)(CONSTANT stratus_ray_cast_arguments* a, value_s
 /* Takes the gradient anew along the axes along which a clip plane hides a neighbour, a voxel before or behind x: with clipped_value in its
  * place. A neighbour that the volume does not have, or whose value is not finite, gives way to the field at x. Not inlined: few frames ask
  * for it. */
-GRID_OUTLINE void RAY_NAME(clip_gradient)(
+OUTLINE void RAY_NAME(clip_gradient)(
   CONSTANT stratus_ray_cast_arguments* a, value_source values, const vfloat x[3], vmask mask, vfloat g[3])
 {
   const vfloat hidden = v_set(a->crop.clipped_value), half_one = v_set(0.5f), one = v_set(1.0f);

@@ -22,12 +22,7 @@
  * the hull of its corners, whatever it rounds. */
 #define GRID_FRACTION_MOST 0x1.fffffep-1f
 
-/* Not inlined on the host: most volumes have no such grid, and the march should be compiled as if there were none. */
-#ifdef STRATUS_DEVICE
-#define GRID_OUTLINE static __attribute__((unused))
-#else
-#define GRID_OUTLINE static __attribute__((noinline, unused)) /* not every mode needs each */
-#endif
+/* Functions of grids are not inlined: most volumes have no such grid, and the march should be compiled as if there were none. */
 
 /* Whether the frame has such a grid. */
 #if defined(STRATUS_DEVICE) || !defined(__GNUC__)
@@ -47,7 +42,7 @@ INLINE vfloat grid_plane(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const in
 }
 
 /* The same; where the march is compiled for grids of equal spacing, too. */
-GRID_OUTLINE vfloat grid_plane_rare(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vint plane)
+OUTLINE vfloat grid_plane_rare(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vint plane)
 {
   return grid_plane(a, grid, axis, plane);
 }
@@ -80,14 +75,13 @@ INLINE vfloat grid_fraction(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const
   return v_clamp((y - grid_plane(a, grid, axis, cell + cell)) * per_unit, 0.0f, 1.0f);
 }
 
-GRID_OUTLINE vfloat grid_fraction_rare(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vint cell, vfloat y)
+OUTLINE vfloat grid_fraction_rare(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vint cell, vfloat y)
 {
   return grid_fraction(a, grid, axis, cell, y);
 }
 
 /* Cells and fractions at positions. */
-GRID_OUTLINE void grid_find(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, const vfloat y[3], vint cell[3], vfloat fraction[3])
+OUTLINE void grid_find(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, const vfloat y[3], vint cell[3], vfloat fraction[3])
 {
   for (int axis = 0; axis < 3; ++axis) {
     const vfloat at = v_min(y[axis], v_set(a->values.last[axis]));
@@ -97,7 +91,7 @@ GRID_OUTLINE void grid_find(
 }
 
 /* The cells at positions. */
-GRID_OUTLINE void grid_cells(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, const vfloat y[3], vint cell[3])
+OUTLINE void grid_cells(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, const vfloat y[3], vint cell[3])
 {
   for (int axis = 0; axis < 3; ++axis) {
     cell[axis] = grid_cell(a, grid, axis, y[axis]);
@@ -105,7 +99,7 @@ GRID_OUTLINE void grid_cells(CONSTANT stratus_ray_cast_arguments* a, GLOBAL cons
 }
 
 /* Makes positions index coordinates of the same cell and the same nearest value: a quarter of a cell from the value. */
-GRID_OUTLINE void grid_snap(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, vfloat y[3])
+OUTLINE void grid_snap(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, vfloat y[3])
 {
   for (int axis = 0; axis < 3; ++axis) {
     const vint cell = grid_cell(a, grid, axis, y[axis]);
@@ -116,7 +110,7 @@ GRID_OUTLINE void grid_snap(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const
 }
 
 /* The number of the last plane at or before a position: -1 before value 0. */
-GRID_OUTLINE vint grid_last_plane(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vfloat y)
+OUTLINE vint grid_last_plane(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* grid, int axis, vfloat y)
 {
   vint plane = grid_cell(a, grid, axis, y);
   plane = plane + plane;

@@ -4,13 +4,6 @@
 #ifndef STRATUS_RAY_ISOSURFACE_H
 #define STRATUS_RAY_ISOSURFACE_H
 
-/* Not inlined: few cells come this far, and the code is long. */
-#ifdef STRATUS_DEVICE
-#define SURFACE_OUTLINE static
-#else
-#define SURFACE_OUTLINE static __attribute__((noinline))
-#endif
-
 /* Lanes whose cell holds a surface: its corners are finite and on both sides of a contour value. */
 INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloat v[8], vmask mask)
 {
@@ -31,7 +24,7 @@ INLINE vmask surface_crosses(CONSTANT stratus_ray_cast_arguments* a, const vfloa
 #endif
 
 /* Composites the surface at point s of the rays. */
-SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const void* table, stratus_packet* k, vmask mask, vfloat s, vfloat layer[4])
 {
   if (RAY_RARE(RAY_COMPONENTS, a->media.dependent)) { /* the last component has the surface and its opacity */
@@ -72,7 +65,7 @@ SURFACE_OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments*
 
 /* Composites all surfaces in the cells of the rays in `mask`, in the order in which the rays meet them: piece by piece, and within a piece
  * by rising or falling values. */
-SURFACE_OUTLINE void RAY_NAME(surface_roots)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+OUTLINE void RAY_NAME(surface_roots)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const void* table, stratus_packet* k, const cell_walk* w, const stratus_cubic* cubic, vmask mask)
 {
   for (int piece = 0; piece < 3; ++piece) {

@@ -216,7 +216,7 @@ INLINE vmask tetra_media_pieces(CONSTANT stratus_tetra_arguments* a, const strat
 }
 
 /* Composites a stretch. */
-INLINE void tetra_media(
+OUTLINE void tetra_media(
   CONSTANT stratus_tetra_arguments* a, const stratus_tetra_mixture* m, stratus_tetra_light* light, vmask mask, vfloat near)
 {
   const vfloat one = v_set(1.0f), zero = v_set(0.0f);

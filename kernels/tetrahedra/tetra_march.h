@@ -361,7 +361,7 @@ INLINE void tetra_component_stretches(CONSTANT stratus_tetra_arguments* a, const
 }
 
 /* Adds the light of several components on the part begin..end of a cell that was passed. */
-INLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+OUTLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask, vfloat near)
 {
   stratus_tetra_values values;
@@ -373,7 +373,7 @@ INLINE void tetra_shade_components(CONSTANT stratus_tetra_arguments* a, const st
 }
 
 /* Adds the light of the part begin..end of cells, from value `first` to `last`, by the function of each cell's label. Labels take turns. */
-INLINE void tetra_shade_labels(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+OUTLINE void tetra_shade_labels(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vfloat first, vfloat last, vmask mask,
   vfloat near)
 {
@@ -432,7 +432,7 @@ INLINE void tetra_measure(stratus_tetra_light* light, vmask mask, vfloat first, 
 
 #if TETRA_LIT
 /* Composites a surface of component c at a part of begin..end of a cell, in its light. Dependent components have their own colour. */
-INLINE void tetra_lit_surface(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+OUTLINE void tetra_lit_surface(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, int c, vfloat begin, vfloat end, vfloat part, vmask mask,
   vfloat color[4], vfloat distance)
 {
@@ -454,7 +454,7 @@ INLINE void tetra_lit_surface(CONSTANT stratus_tetra_arguments* a, const stratus
 /* Composite the surfaces that the part begin..end of a cell passes, from value `first` to `last`, in their order along it. Surfaces of
  * several independent components at one place are in the components' order. A surface is where the field passes its value upwards or
  * downwards, so that one on the border of two cells counts once. */
-INLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+OUTLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vfloat first, vfloat last, vmask mask)
 {
   const vfloat one = v_set(1.0f), none = v_set(2.0f), zero = v_set(0.0f);
@@ -521,7 +521,7 @@ INLINE void tetra_surfaces(CONSTANT stratus_tetra_arguments* a, const stratus_te
 }
 
 /* Composites the values that the part begin..end of a cell shows on the slice. */
-INLINE void tetra_slice(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+OUTLINE void tetra_slice(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vmask mask)
 {
   const vfloat slope = (passage->last - passage->first) * v_reciprocal(v_max(passage->to - passage->from, v_set(1e-30f)));
@@ -550,7 +550,7 @@ INLINE void tetra_slice(CONSTANT stratus_tetra_arguments* a, const stratus_tetra
 /* Ends rays at a cell whose part begin..end shows, between the values `first` and `last` or of any independent component. Keeps the numbers
  * of the cell's points, of which the first three are the face by which the ray entered. Of values of cells the fourth number is the
  * cell's. */
-INLINE void tetra_hit(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
+OUTLINE void tetra_hit(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_scene* scene, const stratus_tetra_ray* r,
   stratus_tetra_light* light, const stratus_tetra_passage* passage, vfloat begin, vfloat end, vfloat first, vfloat last, vmask mask)
 {
   vint entry;
