@@ -33,7 +33,7 @@ stratus_quantities stratus_quantities_default(void)
   return (stratus_quantities){ .threshold = 0.5 };
 }
 
-/* What is drawn in place of an input: its options for the picture, and a view of one component. */
+/* The picture draws this in place of an input: the options are its own, and a view shows one component. */
 typedef struct own_input {
   stratus_ray_cast_options options;
   stratus_tetra_options tetra_options;

@@ -4,6 +4,7 @@
 #include "ray_cast_packets.h"
 #include "ray_reading.h"
 #include "ray_several_host.h"
+#include "tetra_march_view.h"
 
 #define STRATUS_TYPE -2
 #define STRATUS_PREINTEGRATED 0
@@ -16,29 +17,6 @@
 #include "ray_several.h"
 
 _Static_assert(SEVERAL_MOST == STRATUS_SEVERAL_MAX, "as many as the API takes");
-
-/* Set the mesh arrays that several_mesh.h reads, in the host's layout. */
-static void set_mesh(const stratus_several_part* part, several_mesh* m)
-{
-  const stratus_tetra_frame* frame = part->mesh;
-  *m = (several_mesh){ .view = { .scene = { .cells = frame->cells,
-                                   .points = frame->places,
-                                   .sums = frame->march_sums,
-                                   .cell_values = frame->cell_values,
-                                   .gradients = frame->gradients,
-                                   .factors = frame->factors,
-                                   .components = frame->components,
-                                   .media = frame->media },
-                         .lines = frame->us,
-                         .ends = frame->ends,
-                         .faces = (const int32_t*)frame->faces,
-                         .bin_begin = frame->bin_begin,
-                         .bins = frame->bins,
-                         .first = frame->first,
-                         .entries = frame->entries },
-    .a = &frame->arguments,
-    .places = &part->arguments.places };
-}
 
 /* Finds where the tile's rays enter a mesh. */
 static void find_mesh(const several_mesh* m, int x0, int y0, int x1, int y1)
@@ -79,7 +57,7 @@ void STRATUS_ISA_NAME(stratus_several_tile)(
       .segment = part->arguments.segment,
       .preintegrated = part->arguments.preintegrated };
     if (part->mesh) {
-      set_mesh(part, &meshes[n]);
+      meshes[n] = (several_mesh){ .view = tetra_view_of(part->mesh), .a = &part->mesh->arguments, .places = &part->arguments.places };
       find_mesh(&meshes[n], x0, y0, x1, y1);
     }
   }

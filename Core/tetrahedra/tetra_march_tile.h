@@ -4,31 +4,15 @@
 #ifndef STRATUS_TETRA_MARCH_TILE_H
 #define STRATUS_TETRA_MARCH_TILE_H
 
-#include "tetra_march_frame.h"
-
-#include "tetra_tile.h"
+#include "tetra_march_view.h"
 
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-function" /* this file uses only some of the headers' functions */
 #endif
 
-static stratus_tetra_view view_of(const stratus_tetra_frame* frame)
-{
-  return (stratus_tetra_view){ .scene = { frame->cells, frame->places, frame->march_sums, frame->cell_values, frame->gradients,
-                                 frame->factors, frame->components, frame->media, frame->table->rgba },
-    .lines = frame->us,
-    .ends = frame->ends,
-    .faces = (const int32_t*)frame->faces,
-    .bin_begin = frame->bin_begin,
-    .bins = frame->bins,
-    .first = frame->first,
-    .entries = frame->entries,
-    .picture = { frame->image.rgba, frame->image.rgba8, frame->image.depth, frame->image.samples } };
-}
-
 void TETRA_TILE_NAME(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts)
 {
-  const stratus_tetra_view view = view_of(frame);
+  const stratus_tetra_view view = tetra_view_of(frame);
   uint32_t filled[TETRA_PIXELS];
   uint32_t* first = frame->first + (size_t)tile * TETRA_PIXELS;
   if (counting) {

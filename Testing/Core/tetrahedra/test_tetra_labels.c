@@ -58,7 +58,7 @@ static void labels_are_right(void** state)
     l.c.mesh.cell_values = seed % 5 == 4;
     l.c.options.shade = seed % 4 == 1;
     l.c.options.shading.specular = 0.3;
-    if (seed % 4 > 1) { /* the other labels have that of label 0, or none */
+    if (seed % 4 > 1) { /* the other labels have the gradient opacity of label 0, or none */
       l.transfers[seed % 8 > 3 ? 0 : 3].gradient = thin[0];
       l.transfers[seed % 8 > 3 ? 0 : 3].gradient_count = 3;
       l.transfers[1].gradient = thin[1];
