@@ -279,14 +279,20 @@ static stratus_status project(stratus_tetra_caster* caster, const stratus_mesh* 
   return stratus_tetra_project(caster->projector, mesh, frame, leaves, project_tiles, caster, report);
 }
 
+/* Whether the functions show any value. */
+static bool shows_values(const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options)
+{
+  const bool several = stratus_tetra_mixes(mesh, options) || options->label_count > 0;
+  return several ? caster->components.shown : caster->look.table->shown > 0;
+}
+
 static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
 {
   stratus_tetra_frame frame;
   const double start = stratus_now_ms();
   const bool adds = options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE; /* black where nothing shows */
-  const bool shows =
-    stratus_tetra_mixes(mesh, options) || options->label_count > 0 ? caster->components.shown : caster->look.table->shown > 0;
+  const bool shows = shows_values(caster, mesh, options);
   const bool cropped = stratus_tetra_modes_regions(options) && options->crop_regions == 0;
   const bool needs = !adds && options->mode != STRATUS_TETRA_ISOSURFACE && options->mode != STRATUS_TETRA_QUANTITIES;
   if ((!shows && needs) || caster->mesh->face_count == 0 || cropped) {
@@ -429,8 +435,7 @@ stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const 
 {
   const stratus_mesh* drawn = NULL;
   TRY(take(caster, of, camera, image, &drawn, report));
-  *shows =
-    (stratus_tetra_mixes(drawn, of->options) ? caster->components.shown : caster->look.table->shown > 0) && caster->mesh->face_count > 0;
+  *shows = shows_values(caster, drawn, of->options) && caster->mesh->face_count > 0;
   if (*shows) {
     TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, drawn, camera, image, true, &caster->buffers, frame));
     frame->table = caster->look.table;
