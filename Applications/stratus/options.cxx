@@ -89,7 +89,7 @@ Rendering
                           60 dB, a quarter of an 8-bit step); 0: the finest settings
   --sample-distance D     world length between samples (default: by the tolerance)
   --sampling S            auto, midpoint, preintegrated, cells (default auto: the cheapest that keeps the tolerance). cells integrates
-                          cell by cell; only for composite without --shade and --mask
+                          cell by cell; only for composite without --mask
   --cell-error E          for --sampling cells: how far the field may depart from a line, as a fraction of the values that the functions
                           span (default: by the tolerance)
   --jitter SEED           shift each ray's samples by a random part of their distance, which turns banding into noise; the seed selects
@@ -510,9 +510,9 @@ void check_complete(const options& o)
       throw usage("--cell-error is for --sampling cells, or auto");
     }
     if (o.sampling == STRATUS_SAMPLING_CELLS) {
-      const char* what = o.mode != STRATUS_MODE_COMPOSITE ? "--mode" : o.shade ? "--shade" : o.mask.empty() ? nullptr : "--mask";
+      const char* what = o.mode != STRATUS_MODE_COMPOSITE ? "--mode" : o.mask.empty() ? nullptr : "--mask";
       if (what) {
-        throw usage(std::string("--sampling cells is for composite without light and mask: leave out ") + what);
+        throw usage(std::string("--sampling cells is for composite without mask: leave out ") + what);
       }
       if (o.sample_distance > 0.0) {
         throw usage("--sampling cells has no step: give --cell-error in place of --sample-distance");

@@ -11,14 +11,10 @@ void stratus_lamps_set(const stratus_camera* camera, const stratus_shading* shad
   lamps->shading = shading;
   lamps->count = shading->light_count;
   for (int i = 0; i < lamps->count; ++i) {
-    lamps->lights[i] = shading->lights[i];
+    lamps->lights[i] = stratus_light_in_world(camera, &shading->lights[i]);
   }
   if (shading->light_count < 0) {
-    stratus_light* light = &lamps->lights[0];
-    *light = (stratus_light){ .color = { 1.0, 1.0, 1.0 }, .positional = !camera->parallel };
-    for (int axis = 0; axis < 3; ++axis) {
-      light->vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
-    }
+    lamps->lights[0] = stratus_light_at_eye(camera);
     lamps->count = 1;
   }
   for (int i = 0; i < lamps->count; ++i) {

@@ -4,6 +4,8 @@
 
 #include "vector.h"
 
+#include <string.h>
+
 _Static_assert(STRATUS_LIGHTS_MAX == 8, "as many as the arguments hold");
 
 /* A positional light at least this many units of length away counts as directional. */
@@ -77,6 +79,43 @@ stratus_status stratus_shading_check(stratus_context* context, const stratus_sha
   return STRATUS_OK;
 }
 
+stratus_light stratus_light_in_world(const stratus_camera* camera, const stratus_light* light)
+{
+  stratus_light result = *light;
+  if (light->follows_camera) {
+    double basis[3][3];
+    memcpy(basis[0], camera->right, sizeof basis[0]);
+    memcpy(basis[1], camera->up, sizeof basis[1]);
+    (void)stratus_vector_normalize(basis[0]);
+    (void)stratus_vector_normalize(basis[1]);
+    stratus_vector_cross(basis[0], basis[1], basis[2]); /* forward may lead to the middle of a part of a picture */
+    (void)stratus_vector_normalize(basis[2]);
+    const double turn = stratus_vector_dot(basis[2], camera->forward) > 0.0 ? -1.0 : 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      basis[2][axis] *= turn;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      result.vector[axis] = light->positional ? camera->eye[axis] : 0.0;
+      result.axis[axis] = 0.0;
+      for (int i = 0; i < 3; ++i) {
+        result.vector[axis] += light->vector[i] * basis[i][axis];
+        result.axis[axis] += light->axis[i] * basis[i][axis];
+      }
+    }
+    result.follows_camera = 0;
+  }
+  return result;
+}
+
+stratus_light stratus_light_at_eye(const stratus_camera* camera)
+{
+  stratus_light light = { .color = { 1.0, 1.0, 1.0 }, .positional = !camera->parallel };
+  for (int axis = 0; axis < 3; ++axis) {
+    light.vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
+  }
+  return light;
+}
+
 static double length_of(const double v[3])
 {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -125,13 +164,11 @@ void stratus_lights_set(
   a->two_sided = !shading->one_sided;
   a->count = shading->light_count;
   for (int i = 0; i < shading->light_count; ++i) {
-    set_light(&shading->lights[i], origin, unit, i, a);
+    const stratus_light light = stratus_light_in_world(camera, &shading->lights[i]);
+    set_light(&light, origin, unit, i, a);
   }
   if (shading->light_count < 0) {
-    stratus_light light = { .color = { 1.0, 1.0, 1.0 }, .positional = !camera->parallel };
-    for (int axis = 0; axis < 3; ++axis) {
-      light.vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
-    }
+    const stratus_light light = stratus_light_at_eye(camera);
     set_light(&light, origin, unit, 0, a);
     a->count = 1;
   }

@@ -145,6 +145,7 @@ static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_
     [STRATUS_VARIANT_ISOSURFACE] = STRATUS_RAY_ISOSURFACE,
     [STRATUS_VARIANT_CELLS] = STRATUS_RAY_CELLS,
     [STRATUS_VARIANT_LOCAL] = STRATUS_RAY_LOCAL,
+    [STRATUS_VARIANT_LIT] = STRATUS_RAY_LOCAL,
     [STRATUS_VARIANT_TRANSFER_2D] = STRATUS_RAY_TRANSFER_2D,
     [STRATUS_VARIANT_SLICE] = STRATUS_RAY_SLICE,
     [STRATUS_VARIANT_QUANTITIES] = STRATUS_RAY_QUANTITIES,
@@ -153,10 +154,10 @@ static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_
   char defines[256];
   int used = snprintf(defines, sizeof defines,
     "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_PREINTEGRATED=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d "
-    "-DSTRATUS_ARGUMENTS_BYTES=%zu -DRAY_HAS=%d%s",
+    "-DSTRATUS_ARGUMENTS_BYTES=%zu -DRAY_HAS=%d%s%s",
     type, variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED, packets ? 16 : 1,
     STRATUS_RAY_DEVICE_TILE, sizeof(stratus_ray_cast_arguments), stratus_ray_rarities(arguments),
-    stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
+    variant == STRATUS_VARIANT_LIT ? " -DRAY_LIT=1" : "", stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   if (modes[variant]) {
     snprintf(defines + used, sizeof defines - (size_t)used, " -DSTRATUS_RAY_MODE=%d", modes[variant]);
   }

@@ -24,6 +24,7 @@ stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_
     [STRATUS_VARIANT_ISOSURFACE] = STRATUS_ISA_EACH(stratus_ray_isosurface_tile),
     [STRATUS_VARIANT_CELLS] = STRATUS_ISA_EACH(stratus_ray_cells_tile),
     [STRATUS_VARIANT_LOCAL] = STRATUS_ISA_EACH(stratus_ray_local_tile),
+    [STRATUS_VARIANT_LIT] = STRATUS_ISA_EACH(stratus_ray_lit_tile),
     [STRATUS_VARIANT_TRANSFER_2D] = STRATUS_ISA_EACH(stratus_ray_transfer_2d_tile),
     [STRATUS_VARIANT_SLICE] = STRATUS_ISA_EACH(stratus_ray_slice_tile),
     [STRATUS_VARIANT_QUANTITIES] = STRATUS_ISA_EACH(stratus_ray_quantities_tile),

@@ -18,6 +18,7 @@ typedef enum stratus_ray_variant {
   STRATUS_VARIANT_ISOSURFACE,
   STRATUS_VARIANT_CELLS,       /* composite, cell by cell */
   STRATUS_VARIANT_LOCAL,       /* composite, cell by cell in rough blocks */
+  STRATUS_VARIANT_LIT,         /* the same two, lit */
   STRATUS_VARIANT_TRANSFER_2D, /* composite, by a function of two variables */
   STRATUS_VARIANT_SLICE,
   STRATUS_VARIANT_QUANTITIES,       /* numbers of the field, cell by cell */
@@ -63,6 +64,7 @@ stratus_ray_cast_tile stratus_ray_sums_tile_isa0, stratus_ray_sums_tile_isa1, st
 stratus_ray_cast_tile stratus_ray_isosurface_tile_isa0, stratus_ray_isosurface_tile_isa1, stratus_ray_isosurface_tile_isa2;
 stratus_ray_cast_tile stratus_ray_cells_tile_isa0, stratus_ray_cells_tile_isa1, stratus_ray_cells_tile_isa2;
 stratus_ray_cast_tile stratus_ray_local_tile_isa0, stratus_ray_local_tile_isa1, stratus_ray_local_tile_isa2;
+stratus_ray_cast_tile stratus_ray_lit_tile_isa0, stratus_ray_lit_tile_isa1, stratus_ray_lit_tile_isa2;
 stratus_ray_cast_tile stratus_ray_transfer_2d_tile_isa0, stratus_ray_transfer_2d_tile_isa1, stratus_ray_transfer_2d_tile_isa2;
 stratus_ray_cast_tile stratus_ray_slice_tile_isa0, stratus_ray_slice_tile_isa1, stratus_ray_slice_tile_isa2;
 stratus_ray_cast_tile stratus_ray_quantities_tile_isa0, stratus_ray_quantities_tile_isa1, stratus_ray_quantities_tile_isa2;

@@ -98,6 +98,8 @@ struct stratus_ray_caster {
 
   stratus_ray_caster* parts[STRATUS_RAY_PARTS]; /* of independent components, see ray_caster_parts.c; NULL until such a mode is used */
 
+  bool together; /* it draws in one march with others, which light each sample */
+
   int keeps; /* > 0: pictures hold what rays keep (ray_kept.h), of surfaces this one of each ray, the nearest is 1 */
 
   stratus_first_hit* first_hit; /* first_hit_picture.h; NULL until mode FIRST_HIT is used */

@@ -84,6 +84,10 @@ static stratus_status check_options(stratus_context* context, const stratus_ray_
     return stratus_fail(
       context, STRATUS_INVALID_ARGUMENT, "cell error %g, must be positive and finite, or 0 for automatic", options->sampling.cell_error);
   }
+  if (!(options->sampling.light_spread >= 0.0) || !isfinite(options->sampling.light_spread)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light spread %g, must be positive and finite, or 0 for automatic",
+      options->sampling.light_spread);
+  }
   if (!(options->sampling.termination >= 0.0 && options->sampling.termination <= 1.0)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "termination %g outside 0..1", options->sampling.termination);
   }
@@ -215,6 +219,7 @@ void stratus_ray_fill_report(
   report->sample_distance = caster->choice.sample_distance;
   report->follows_voxels = caster->choice.follows;
   report->cell_error = stratus_ray_visits_cells(caster->choice.sampling) ? caster->choice.cell_error : 0.0;
+  report->light_spread = stratus_ray_lights_places(caster) ? caster->choice.light_spread : 0.0;
   report->expected_error = caster->choice.expected_error;
   report->tolerance_met = caster->choice.met;
   report->probe_builds = caster->probe_builds;
@@ -234,6 +239,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
     times && options->skipping.structure == STRATUS_STRUCTURE_AUTO && caster->keeps <= 1; /* later pictures have few rays */
 
   caster->where[0] = '\0';
+  caster->together = false;
   TRY(stratus_ray_update_tables(caster, volume, transfer, options, (size_t)image->width * (size_t)image->height, report));
   TRY(stratus_ray_update_structures(caster, options->skipping.structure, times, &used, why, sizeof why, report));
   if (caster->choice.provisional) {

@@ -131,7 +131,8 @@ static stratus_status keep_transfers(stratus_ray_caster* caster, const stratus_t
 }
 
 /* Return the inputs of the caster's choice, except values and transfer functions. */
-static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, const stratus_ray_cast_options* options)
+static stratus_ray_choice_inputs choice_inputs(
+  const stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   const int materials =
     options->light.materials && options->mode == STRATUS_MODE_COMPOSITE ? stratus_ray_shading_media(volume, options) : 0;
@@ -140,9 +141,12 @@ static stratus_ray_choice_inputs choice_inputs(const stratus_volume* volume, con
   in.sampling = options->sampling.rule;
   in.sample_distance = options->sampling.distance;
   in.cell_error = options->sampling.cell_error;
+  in.light_spread = options->sampling.light_spread;
   in.tolerance = options->sampling.tolerance;
   in.interpolation = options->sampling.interpolation;
   in.shade = options->light.shade != 0;
+  in.together = caster->together && in.shade;
+  in.clips_gradients = stratus_ray_clips_gradients(options) && in.shade;
   in.mean_components = options->optics.mean_components != 0;
   in.gradient_distance = options->optics.gradient_distance;
   in.gradient_length = options->optics.gradient_length;
@@ -224,7 +228,7 @@ stratus_status stratus_ray_update_table(stratus_ray_caster* caster, const stratu
  * measurement serves again. This happens after the coarse images of a moving camera. */
 static void update_choice(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, bool changed)
 {
-  const stratus_ray_choice_inputs inputs = choice_inputs(volume, options);
+  const stratus_ray_choice_inputs inputs = choice_inputs(caster, volume, options);
   if (changed) {
     caster->measured_for.tolerance = -1.0;
   }

@@ -330,7 +330,7 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
   a->termination = (float)(options->sampling.termination > 0.0 ? 1.0 - options->sampling.termination
                                                                : stratus_ray_termination(stratus_ray_tolerance(options)));
   set_clip_planes(options, index_to_world, a);
-  a->crop.clipped = options->clipping.clip_gradients && options->clipping.clip_plane_count > 0;
+  a->crop.clipped = stratus_ray_clips_gradients(options);
   a->crop.clipped_value = (float)fmax(fmin(options->clipping.clipped_value - caster->ranges->bias, CLIPPED_MOST), -CLIPPED_MOST);
   set_addressing(volume, a);
   a->grid = caster->grid.arguments;

@@ -211,6 +211,7 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
   if (stratus_ray_visits_cells(caster->choice.sampling)) {
     const double error = caster->choice.cell_error * changing_extent(caster->transfers, lo + summed->bias, hi + summed->bias);
     a->lattice.pieces_per_bend = error > 0.0 ? (float)fmin(1.0 / (8.0 * error), 1e30) : 0.0f;
+    a->lattice.light_spread = (float)caster->choice.light_spread;
   }
   if (caster->choice.sampling == STRATUS_SAMPLING_CELLS || options->mode == STRATUS_MODE_SLICE ||
     options->mode == STRATUS_MODE_QUANTITIES) {
@@ -239,6 +240,9 @@ void stratus_ray_modes_arguments(const stratus_ray_caster* caster, const stratus
 stratus_ray_variant stratus_ray_modes_variant(const stratus_ray_caster* caster)
 {
   const stratus_mode mode = caster->shown.mode;
+  if (stratus_ray_lights_places(caster)) {
+    return STRATUS_VARIANT_LIT;
+  }
   if (caster->shades && mode == STRATUS_MODE_COMPOSITE) {
     return caster->made.table->sums ? STRATUS_VARIANT_SHADING_PREINTEGRATED : STRATUS_VARIANT_SHADING_MIDPOINT;
   }

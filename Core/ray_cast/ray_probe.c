@@ -44,6 +44,12 @@
 /* Rule local's allowed error on the probe's rays, as a share of other rules' allowed error. It is half, because two parts of the rule err,
  * and few rays meet an error of few blocks. */
 #define LOCAL_SHARE 0.5
+/* Rung l of light is a spread of 2^(-2 - l/2): rungs 0..LIGHT_RUNGS - 1. While rules and steps are sought, light has the finest rung and
+ * errors may be LIT_SHARE of the allowed error, so that there is room for the light. The finer setting's light is finer still. */
+#define LIGHT_RUNGS 33
+#define LIGHT_START 22
+#define LIGHT_FINE 40
+#define LIT_SHARE 0.7
 #define PATCH (STRATUS_PROBE_WIDTH * STRATUS_PROBE_HEIGHT)
 
 /* Reads of memory: a sample fetches a cell and reads an entry, or two of running sums, which are neighbours in rule local; a cell takes
@@ -57,6 +63,7 @@ typedef struct setting {
   stratus_sampling sampling;
   int rung;
   int cells; /* local: the rung of cells in rough blocks */
+  int light; /* cells, local, lit: the rung of light */
 } setting;
 
 /* The results of one sampling rule so far, at all its rungs. */
@@ -80,6 +87,7 @@ typedef struct probe {
   int count;
   stratus_probe_classes classes;
   stratus_distance_map* rough[STRATUS_PROBE_CLASSES]; /* number c: of the blocks of classes below c; NULL: not made */
+  bool lit;                                           /* rays by cells are lit */
   double voxel;
   float *fine, *coarse; /* pictures of all patches: of the finer setting, and of the candidate */
   uint64_t samples;     /* of all settings together */
@@ -93,6 +101,7 @@ static void take(const probe* p, const setting* s, stratus_ray_choice* choice)
   choice->sampling = s->sampling;
   const int cell_rung = s->sampling == STRATUS_SAMPLING_LOCAL ? s->cells : s->rung;
   choice->cell_error = options->sampling.cell_error > 0.0 ? options->sampling.cell_error : exp2(-2.0 - 0.5 * cell_rung);
+  choice->light_spread = options->sampling.light_spread > 0.0 ? options->sampling.light_spread : exp2(-2.0 - 0.5 * s->light);
   choice->sample_distance = cells      ? p->voxel
     : options->sampling.distance > 0.0 ? options->sampling.distance
                                        : exp2(2.0 - 0.25 * s->rung) * p->voxel;
@@ -233,7 +242,7 @@ static bool alike(stratus_sampling a, stratus_sampling b)
 
 static setting setting_of(const family* f, int rung)
 {
-  return (setting){ f->sampling, rung, f->cells };
+  return (setting){ f->sampling, rung, f->cells, LIGHT_RUNGS - 1 };
 }
 
 static void forget(family* f)
@@ -339,17 +348,18 @@ static stratus_status search_local(probe* p, candidates* k, double most, int cel
 {
   const stratus_probe_classes* classes = &p->classes;
   double all = 0.0, rough = 0.0, before = INFINITY, limit = LOCAL_GAIN * *least;
+  const int first = p->lit ? 0 : 1; /* not lit, samples of one lattice are a rule of their own, which is not local */
   for (int c = 0; c < STRATUS_PROBE_CLASSES; ++c) {
     all += (double)classes->count[c];
   }
-  for (int beyond = 1; beyond < STRATUS_PROBE_CLASSES; ++beyond) {
-    const double more = (double)classes->count[beyond - 1];
+  for (int beyond = first; beyond < STRATUS_PROBE_CLASSES; ++beyond) {
+    const double more = beyond > 0 ? (double)classes->count[beyond - 1] : 0.0;
     int rung = -1;
     rough += more;
     if (rough > LOCAL_MOST * all) {
       break;
     }
-    if (!(more > 0.0)) {
+    if (!(more > 0.0) && beyond > 0) {
       continue;
     }
     family f = { .sampling = STRATUS_SAMPLING_LOCAL,
@@ -426,6 +436,10 @@ static void add_family(candidates* k, const probe* p, stratus_sampling sampling)
 {
   const stratus_ray_cast_options* options = p->options;
   const bool cells = sampling == STRATUS_SAMPLING_CELLS;
+  const bool by_samples = sampling == STRATUS_SAMPLING_MIDPOINT || sampling == STRATUS_SAMPLING_PREINTEGRATED;
+  if (p->lit && by_samples && options->sampling.rule == STRATUS_SAMPLING_AUTO) {
+    return; /* each sample has a place of light of its own, which rules cells and local share at no greater cost */
+  }
   if (stratus_ray_can_sample(p->caster, options, sampling) &&
     (options->sampling.rule == STRATUS_SAMPLING_AUTO || options->sampling.rule == sampling ||
       !stratus_ray_can_sample(p->caster, options, options->sampling.rule))) {
@@ -453,11 +467,36 @@ static double expected_of(const family* f, int rung, double error, const setting
   return error / (1.0 - exp2(-falls * (fine->rung - rung)));
 }
 
-/* The error of the setting that is taken, whose rays end by the whole tolerance, as pictures' do. */
-static stratus_status measure_taken(probe* p, const family* f, int rung, const setting* fine, double* error)
+/* Find the coarsest rung of light by which a setting keeps `most`. */
+static stratus_status search_light(probe* p, const family* f, int rung, double most, int* light)
 {
-  const setting s = setting_of(f, rung);
-  if (f->beyond > 0) {
+  int low = p->options->sampling.light_spread > 0.0 ? LIGHT_RUNGS - 1 : 0, high = LIGHT_RUNGS - 1, next = LIGHT_START;
+  if (f->sampling == STRATUS_SAMPLING_LOCAL) {
+    TRY(lend_rough(p, f->beyond));
+  }
+  while (low < high) {
+    setting s = setting_of(f, rung);
+    s.light = next;
+    TRY(draw_patches(p, &s, p->options->sampling.tolerance, p->coarse));
+    const double error = error_of(p);
+    note(p, ", light %.2g: %.2g", p->caster->choice.light_spread, error);
+    if (error <= most) {
+      high = next;
+    } else {
+      low = next + 1;
+    }
+    next = (low + high) / 2;
+  }
+  *light = high;
+  return STRATUS_OK;
+}
+
+/* The error of the setting that is taken, whose rays end by the whole tolerance, as pictures' do. */
+static stratus_status measure_taken(probe* p, const family* f, int rung, int light, const setting* fine, double* error)
+{
+  setting s = setting_of(f, rung);
+  s.light = light;
+  if (f->sampling == STRATUS_SAMPLING_LOCAL) {
     TRY(lend_rough(p, f->beyond));
   }
   p->whole.sampling.tolerance = p->options->sampling.tolerance;
@@ -496,16 +535,16 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
   const stratus_ray_cast_options* options = p->options;
   const bool cells = stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_CELLS);
   const bool preintegrates = stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_PREINTEGRATED);
-  const double most = SHARE * options->sampling.tolerance;
+  const double most = SHARE * options->sampling.tolerance, for_rules = p->lit ? LIT_SHARE * most : most;
   const int last = (cells ? CELL_RUNGS : LATTICE_RUNGS) - 1;
-  candidates k = { .count = 0 };
+  candidates k = { .count = 0, .fine.light = LIGHT_FINE };
   for (stratus_sampling rule = STRATUS_SAMPLING_MIDPOINT; rule <= STRATUS_SAMPLING_CELLS; ++rule) {
     add_family(&k, p, rule);
   }
   k.fine.sampling = cells ? STRATUS_SAMPLING_CELLS : preintegrates ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
   if (!(options->sampling.tolerance > 0.0)) {
     const bool open = options->sampling.rule == STRATUS_SAMPLING_AUTO;
-    const setting finest = { .sampling = open ? k.fine.sampling : choice->sampling, .rung = last };
+    const setting finest = { .sampling = open ? k.fine.sampling : choice->sampling, .rung = last, .light = LIGHT_RUNGS - 1 };
     take(p, &finest, choice);
     return STRATUS_OK;
   }
@@ -516,15 +555,18 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
   for (;;) {
     family* found = NULL;
     int best = 0;
-    TRY(compare(p, &k, most, &best, &found));
+    TRY(compare(p, &k, for_rules, &best, &found));
     if (k.fine.rung == finest || (found && !too_near(p, found, best, &k.fine))) {
-      const setting s = found ? setting_of(found, best) : (setting){ .sampling = k.fine.sampling, .rung = last };
+      setting s = found ? setting_of(found, best) : (setting){ .sampling = k.fine.sampling, .rung = last, .light = LIGHT_RUNGS - 1 };
+      if (found && p->lit && stratus_ray_visits_cells(found->sampling)) {
+        TRY(search_light(p, found, best, most, &s.light));
+      }
       take(p, &s, choice);
       *beyond = found ? found->beyond : 0;
       choice->met = found != NULL;
       choice->expected_error = error_of_finest(&k, last);
       if (found) {
-        TRY(measure_taken(p, found, best, &k.fine, &choice->expected_error));
+        TRY(measure_taken(p, found, best, s.light, &k.fine, &choice->expected_error));
       }
       return STRATUS_OK;
     }
@@ -558,6 +600,8 @@ stratus_status stratus_ray_probe(
   stratus_distance_map* const last = caster->rough;
   void* memory = NULL;
   int beyond = 0;
+  p.lit = caster->shades && stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_CELLS) &&
+    (options->sampling.rule == STRATUS_SAMPLING_AUTO || stratus_ray_visits_cells(options->sampling.rule));
   p.whole.clipping.crop = p.whole.clipping.clip_plane_count = p.whole.sampling.jitter = 0;
   caster->tried[0] = '\0';
   stratus_status status = stratus_ray_probe_rays(caster, p.patches, &p.count, &p.classes);
@@ -579,8 +623,8 @@ stratus_status stratus_ray_probe(
   caster->rough = last;
   if (status == STRATUS_OK) {
     stratus_ray_drop_rough(caster);
-    caster->rough = p.rough[beyond];
-    p.rough[beyond] = NULL;
+    caster->rough = choice.sampling == STRATUS_SAMPLING_LOCAL ? p.rough[beyond] : NULL;
+    p.rough[beyond] = caster->rough ? NULL : p.rough[beyond];
   }
   for (int c = 0; c < STRATUS_PROBE_CLASSES; ++c) {
     stratus_distance_map_destroy(p.rough[c]);

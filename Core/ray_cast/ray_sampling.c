@@ -14,6 +14,10 @@
  * along the long side it would be a small part of a voxel at best. */
 #define SIDES_MOST 64.0
 
+/* The spread of light by default, over the tolerance, where no probe measures it. It is what the probe finds for noisy and for smooth
+ * scenes of record. */
+#define LIGHT_SHARE 0.25
+
 /* Gives the lengths of the shortest and of the longest side of a voxel among the axes along which the volume extends. */
 static void sides_of(const stratus_volume* volume, const double m[16], double* shortest, double* longest)
 {
@@ -63,18 +67,36 @@ static bool thins_opacity(const stratus_ray_caster* caster, const stratus_ray_ca
   return options->optics.gradient_distance > 0.0 && caster->transfers[0].gradient_count > 0;
 }
 
-/* Rule cells uses only a value's colour and opacity. The rules that pre-integrate treat the field as linear between two values of one
- * medium. A segment of rule local may be four voxels long and belongs to the piece of its middle, so that in a piece of a larger volume it
- * would read beyond one layer of ghosts. */
+bool stratus_ray_clips_gradients(const stratus_ray_cast_options* options)
+{
+  return options->clipping.clip_gradients && options->clipping.clip_plane_count > 0;
+}
+
+/* Whether rays by cells can be lit: they take light at places of their own, after they have composited (lit_places.h). Light must be
+ * smooth along a ray, which it is not where clip planes change gradients. */
+static bool can_light_places(const stratus_ray_caster* caster, const stratus_ray_cast_options* options)
+{
+  return options->light.shade && caster->transfers[0].gradient_count == 0 && !caster->together && !stratus_ray_clips_gradients(options) &&
+    options->sampling.interpolation != STRATUS_INTERPOLATION_NEAREST;
+}
+
+bool stratus_ray_lights_places(const stratus_ray_caster* caster)
+{
+  return caster->shades && caster->shown.mode == STRATUS_MODE_COMPOSITE && stratus_ray_visits_cells(caster->choice.sampling);
+}
+
+/* Rule cells uses only a value's colour and opacity, and light. The rules that pre-integrate treat the field as linear between two values
+ * of one medium. A segment of rule local may be four voxels long and belongs to the piece of its middle, so that in a piece of a larger
+ * volume it would read beyond one layer of ghosts. */
 bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling)
 {
   const bool one_medium = options->mode == STRATUS_MODE_COMPOSITE && !caster->transfer_2d.on && !stratus_ray_shading_several(caster);
+  const bool by_cells = one_medium && !options->mask.bytes && (!caster->shades || can_light_places(caster, options));
   switch (sampling) {
     case STRATUS_SAMPLING_CELLS:
-      return one_medium && !caster->shades && !options->mask.bytes;
+      return by_cells;
     case STRATUS_SAMPLING_LOCAL:
-      return one_medium && !caster->shades && !options->mask.bytes && options->sampling.interpolation != STRATUS_INTERPOLATION_NEAREST &&
-        caster->owns_all;
+      return by_cells && options->sampling.interpolation != STRATUS_INTERPOLATION_NEAREST && caster->owns_all;
     case STRATUS_SAMPLING_PREINTEGRATED:
       return one_medium && options->sampling.interpolation != STRATUS_INTERPOLATION_NEAREST && !thins_opacity(caster, options);
     default:
@@ -97,6 +119,7 @@ void stratus_ray_choose(const stratus_ray_caster* caster, const stratus_ray_cast
   const bool by_hand = options->sampling.rule != STRATUS_SAMPLING_AUTO && stratus_ray_can_sample(caster, options, options->sampling.rule);
   *choice = (stratus_ray_choice){ .sampling = by_hand ? options->sampling.rule : STRATUS_SAMPLING_MIDPOINT,
     .cell_error = options->sampling.cell_error,
+    .light_spread = options->sampling.light_spread > 0.0 ? options->sampling.light_spread : LIGHT_SHARE * stratus_ray_tolerance(options),
     .expected_error = NAN,
     .met = true };
   const bool cells =

@@ -14,7 +14,10 @@ typedef struct stratus_ray_choice {
    * stratus_ray_voxel_length(); sample_distance is then the shortest sample. */
   bool follows;
   double cell_error; /* cells, local: as in stratus_ray_cast_options */
-  bool provisional;  /* not measured yet: stratus_ray_probe() is to replace it */
+  /* cells, local, lit: how far what a ray shows may spread about one place of light, as opacity times squared voxels
+   * (kernels/ray_cast/lit_places.h) */
+  double light_spread;
+  bool provisional; /* not measured yet: stratus_ray_probe() is to replace it */
   /* The probe's results; NaN and true without a probe. */
   double expected_error;
   bool met;
@@ -22,10 +25,10 @@ typedef struct stratus_ray_choice {
 
 /* The inputs of a choice, except values and transfer functions. */
 typedef struct stratus_ray_choice_inputs {
-  double sample_distance, cell_error, tolerance, voxel;
+  double sample_distance, cell_error, light_spread, tolerance, voxel;
   stratus_sampling sampling;
   stratus_interpolation interpolation;
-  int shade, mean_components;
+  int shade, mean_components, together, clips_gradients;
   double gradient_distance, gradient_length;
   stratus_material materials[4];
 } stratus_ray_choice_inputs;
@@ -39,6 +42,10 @@ static inline bool stratus_ray_visits_cells(stratus_sampling sampling)
 {
   return sampling == STRATUS_SAMPLING_CELLS || sampling == STRATUS_SAMPLING_LOCAL;
 }
+/* Whether gradients take clipped_value in place of values that clip planes hide. */
+bool stratus_ray_clips_gradients(const stratus_ray_cast_options* options);
+/* Whether rays of the choice take light at places of their own. */
+bool stratus_ray_lights_places(const stratus_ray_caster* caster);
 /* Whether a rule can draw the scene at all. */
 bool stratus_ray_can_sample(const stratus_ray_caster* caster, const stratus_ray_cast_options* options, stratus_sampling sampling);
 /* Returns the world length of a voxel's shortest edge, among the axes along which the volume extends; less where that would cross a

@@ -90,6 +90,7 @@ static stratus_status update_volume(stratus_several* s, stratus_several_input* i
   stratus_ray_caster* caster = in->of->caster;
   const size_t rays = (size_t)s->image->width * (size_t)s->image->height;
   caster->where[0] = '\0';
+  caster->together = true;
   TRY(stratus_ray_update_tables(caster, in->of->volume, in->transfer, &in->options, rays, &in->report));
   if (!caster->owns_all) {
     return stratus_fail(s->context, STRATUS_UNSUPPORTED, "a volume of several has DUPLICATE ghosts: only whole volumes mix");

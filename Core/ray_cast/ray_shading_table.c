@@ -40,13 +40,12 @@ int stratus_ray_shading_media(const stratus_volume* volume, const stratus_ray_ca
 
 /* ---- checks */
 
-/* Sampling by cells uses only a value's colour and opacity. */
+/* Sampling by cells uses only a value's colour and opacity, and light. */
 static stratus_status check_cells(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const char* what = stratus_volume_components(volume) > 1 ? "of several components"
     : options->mask.bytes                                  ? "with a mask"
-    : options->light.shade                                 ? "with light"
     : transfer->gradient_count > 0                         ? "with a gradient opacity"
                                                            : NULL;
   if (options->sampling.rule == STRATUS_SAMPLING_CELLS && options->mode == STRATUS_MODE_COMPOSITE && what) {

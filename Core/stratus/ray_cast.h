@@ -67,8 +67,8 @@ typedef enum stratus_normals {
 #define STRATUS_LIGHT_MAX 1e15 /* largest number in a light or a shading, so that products and sums of such numbers fit floats */
 
 typedef struct stratus_light {
-  /* World coordinates. Positional lights: the light's position. Other lights: the direction from the scene to the light, of any length >
-   * 0. */
+  /* World coordinates, unless the light follows the camera. Positional lights: the light's position. Other lights: the direction from the
+   * scene to the light, of any length > 0. */
   double vector[3];
   double color[3]; /* red, green, blue, each 0..STRATUS_LIGHT_MAX */
   int positional;
@@ -79,12 +79,16 @@ typedef struct stratus_light {
    * the colour is multiplied by the cosine of the angle to the axis, to the power `cone_exponent`. 0 (default), or 90 and more: no cone;
    * `axis` and `cone_exponent` are not read. */
   double cone_angle;
-  double axis[3]; /* direction in which the light shines, world coordinates, any length > 0 */
+  double axis[3]; /* direction in which the light shines, coordinates as of `vector`, any length > 0 */
   /* 0..STRATUS_LIGHT_MAX */
   double cone_exponent;
   /* 1: highlights have the colour `specular_color`. 0 (default): they have `color`, and `specular_color` is not read. */
   int separate_specular;
   double specular_color[3]; /* red, green, blue, each 0..STRATUS_LIGHT_MAX */
+  /* 1: the light moves with the camera. `vector` and `axis` are in the camera's coordinates, in world lengths: x to the right of the
+   * picture, y up, z out of the picture towards the eye, which is at (0, 0, 0). The probe that measures for the tolerance moves the light
+   * with its rays. 0 (default): the light stays in the world. */
+  int follows_camera;
 } stratus_light;
 
 /* How one component reflects light. */
@@ -151,6 +155,10 @@ typedef struct stratus_ray_sampling_options {
   /* Rule cells: the largest departure of the field from a straight line within a piece, as a fraction of the values that the functions'
    * points span. At least 0 and finite; 0 (default): by the tolerance. A cell has at most 32 pieces. */
   double cell_error;
+  /* Rule cells, of one component that is lit without gradient opacity: how far along a ray what it shows may spread about one place at
+   * which light is computed: the sum of opacities times squared distances from that place, in squares of a voxel. At least 0 and finite; 0
+   * (default): by the tolerance, or a quarter of the default tolerance where rule and cell error are set. */
+  double light_spread;
   /* World length of a sample, at most 4096 voxels; 0 (default): by the tolerance. If a voxel's longest side is more than 64 times its
    * shortest, and the distance is automatic, then each ray has its own distance: a fixed fraction or multiple of the voxel length along
    * that ray. */
@@ -290,6 +298,7 @@ typedef struct stratus_ray_cast_report {
   double sample_distance;      /* the sample distance used, world length; if follows_voxels, of the rays that take the shortest */
   int follows_voxels;          /* 1: each ray's sample distance follows its way through the voxels; otherwise 0 */
   double cell_error;           /* the cell error used by rules cells and local; otherwise 0 */
+  double light_spread;         /* the light spread used by rules cells and local if they are lit; otherwise 0 */
   /* measured on the probe's rays, as the tolerance is defined, also if the tolerance is missed; NaN: not measured */
   double expected_error;
   int tolerance_met;      /* 0: the finest setting is expected to miss the tolerance; otherwise 1 */

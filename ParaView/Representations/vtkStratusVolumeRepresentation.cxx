@@ -246,16 +246,16 @@ void vtkStratusVolumeRepresentation::GatherWhole(vtkMultiProcessController* rank
 // Measures on rank 0 how a picture of the whole is sampled. Every rank must call it. Returns false if rank 0 has no whole, or draws none.
 bool vtkStratusVolumeRepresentation::MeasureWhole(vtkRenderer* renderer, vtkMultiProcessController* ranks)
 {
-  double measured[4] = { 0.0, 0.0, 0.0, 0.0 };
+  double measured[5] = { 0.0, 0.0, 0.0, 0.0, 0.0 };
   this->GatherWhole(ranks);
   if (this->Gathered && this->Whole) {
-    measured[3] = this->GetMapper()->MeasureSampling(renderer, this->Actor, measured, this->Whole);
+    measured[4] = this->GetMapper()->MeasureSampling(renderer, this->Actor, measured, this->Whole);
   }
   if (this->Gathered) {
-    ranks->Broadcast(measured, 4, 0);
-    std::copy_n(measured, 3, this->Agreed);
+    ranks->Broadcast(measured, 5, 0);
+    std::copy_n(measured, 4, this->Agreed);
   }
-  return this->Gathered && measured[3] != 0.0;
+  return this->Gathered && measured[4] != 0.0;
 }
 
 // Lets a function of two variables go over the ranges of all ranks' data. Gradients are in mean spacings, which on a rectilinear grid are
@@ -324,7 +324,7 @@ void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkM
   if (any[0] && !this->MeasureWhole(renderer, ranks)) {
     vtkStratusVolumeMapper* settings = this->GetSettings();
     const bool draws = this->Actor->GetVisibility() != 0;
-    double rule = 0.0, choice[3] = { 0.0, 0.0, 0.0 };
+    double rule = 0.0, choice[4] = { 0.0, 0.0, 0.0, 0.0 };
     bool measured = draws && this->GetMapper()->MeasureSampling(renderer, this->Actor, choice);
     const double own = measured ? choice[0] : 0.0;
     ranks->AllReduce(&own, &rule, 1, vtkCommunicator::MAX_OP);
@@ -332,18 +332,19 @@ void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkM
       settings->SetSampling(static_cast<int>(rule));
       measured = this->GetMapper()->MeasureSampling(renderer, this->Actor, choice);
     }
-    const double lengths[2] = { measured ? choice[1] : VTK_DOUBLE_MAX, measured ? choice[2] : VTK_DOUBLE_MAX };
-    double least[2];
-    ranks->AllReduce(lengths, least, 2, vtkCommunicator::MIN_OP);
+    double lengths[3] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX };
+    if (measured) {
+      std::copy_n(choice + 1, 3, lengths);
+    }
     this->Agreed[0] = rule;
-    this->Agreed[1] = least[0];
-    this->Agreed[2] = least[1];
+    ranks->AllReduce(lengths, this->Agreed + 1, 3, vtkCommunicator::MIN_OP);
   }
   if (this->Agreed[0] > 0.0) {
     vtkStratusVolumeMapper* settings = this->GetSettings();
     settings->SetSampling(static_cast<int>(this->Agreed[0]));
     settings->SetSampleDistance(this->Agreed[1]);
     settings->SetCellError(this->Agreed[2]);
+    settings->SetLightSpread(this->Agreed[3]);
   }
   this->AgreedFor = this->GetSamplingTime();
 }
@@ -469,6 +470,7 @@ void vtkStratusVolumeRepresentation::ApplySampling()
   this->GetSettings()->SetSampling(this->Sampling);
   this->GetSettings()->SetSampleDistance(this->SampleDistance);
   this->GetSettings()->SetCellError(this->CellError);
+  this->GetSettings()->SetLightSpread(0.0);
 }
 
 void vtkStratusVolumeRepresentation::SetSampling(int sampling)

@@ -134,12 +134,12 @@ private:
   int Sampling = 0; // of the user, as are the next two
   double SampleDistance = -1.0;
   double CellError = 0.0;
-  double WholeBounds[6];             // of all ranks
-  vtkMTimeType AgreedFor = 0;        // modification time of the settings that the ranks agreed on last
-  double Agreed[3] = { 0., 0., 0. }; // sampling, sample distance, cell error
-  bool Lost = false;                 // whether earlier data are shown, because the current data lack the array
-  std::string Refusal;               // of a device that is not there
-  std::string Problem, Reported;     // the fault in this rank's part, and the last message about it
+  double WholeBounds[6];                 // of all ranks
+  vtkMTimeType AgreedFor = 0;            // modification time of the settings that the ranks agreed on last
+  double Agreed[4] = { 0., 0., 0., 0. }; // sampling, sample distance, cell error, light spread
+  bool Lost = false;                     // whether earlier data are shown, because the current data lack the array
+  std::string Refusal;                   // of a device that is not there
+  std::string Problem, Reported;         // the fault in this rank's part, and the last message about it
   bool EndsAtBorders = false;
   vtkMTimeType EndedFor = 0;         // of the data
   vtkSmartPointer<vtkDataSet> Whole; // of all ranks' pieces, on rank 0

@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusLights.h"
 
+#include "vtkCamera.h"
 #include "vtkLight.h"
 #include "vtkLightCollection.h"
+#include "vtkMatrix4x4.h"
 #include "vtkRenderer.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
 
 namespace {
-// Converts a light. The renderer has already moved lights that follow the camera.
-void SetLight(vtkLight* light, stratus_light& result)
+// Converts a light. The renderer has already moved lights that follow the camera, whose place relative to the camera is what counts.
+void SetLight(vtkLight* light, vtkCamera* camera, stratus_light& result)
 {
-  double position[3], focal[3];
+  double position[4] = { 0.0, 0.0, 0.0, 1.0 }, focal[4] = { 0.0, 0.0, 0.0, 1.0 };
   light->GetTransformedPosition(position);
   light->GetTransformedFocalPoint(focal);
+  result.follows_camera = light->LightTypeIsHeadlight() || light->LightTypeIsCameraLight() ? 1 : 0;
+  if (result.follows_camera) {
+    vtkMatrix4x4* view = camera->GetViewTransformMatrix();
+    view->MultiplyPoint(position, position);
+    view->MultiplyPoint(focal, focal);
+  }
   result.positional = light->GetPositional() ? 1 : 0;
   const double* attenuation = light->GetAttenuationValues();
   // A light of angle 0 shines only along its axis; the core's 0 means no cone.
@@ -50,7 +58,7 @@ bool vtkStratusSetShading(vtkRenderer* renderer, vtkVolumeProperty* property, st
       error = "more than " + std::to_string(STRATUS_LIGHTS_MAX) + " lights that are on are not supported";
       return false;
     }
-    SetLight(light, shading.lights[shading.light_count++]);
+    SetLight(light, renderer->GetActiveCamera(), shading.lights[shading.light_count++]);
   }
   return true;
 }

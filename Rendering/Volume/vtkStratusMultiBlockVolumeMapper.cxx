@@ -89,7 +89,7 @@ public:
   void Configure(vtkStratusMultiBlockVolumeMapper* from, const std::vector<Block>& blocks); // makes a mapper of each block
   void Configure(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to) const;
   bool CutMask(std::string& error);                                         // gives each block its part of the mask
-  bool Measure(vtkRenderer* renderer, vtkVolume* volume, double choice[3]); // vtkStratusMultiBlockVolumeMapper::MeasureSampling()
+  bool Measure(vtkRenderer* renderer, vtkVolume* volume, double choice[4]); // vtkStratusMultiBlockVolumeMapper::MeasureSampling()
   // Draws all mappers' blocks in one picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* volume, std::string& error);
 
@@ -316,6 +316,7 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   to->SetStructure(settings->GetStructure());
   to->SetSampling(settings->GetSampling());
   to->SetCellError(settings->GetCellError());
+  to->SetLightSpread(settings->GetLightSpread());
   to->SetGradientOpacityDistance(settings->GetGradientOpacityDistance());
   to->SetComponentMixing(settings->GetComponentMixing());
   to->SetVectorMode(settings->GetVectorMode());
@@ -409,7 +410,7 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Cast(
   return true;
 }
 
-bool vtkStratusMultiBlockVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume* volume, double choice[3])
+bool vtkStratusMultiBlockVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume* volume, double choice[4])
 {
   if (this->Mappers.size() == 1) {
     return this->Mappers[0]->MeasureSampling(renderer, volume, choice);
@@ -420,11 +421,12 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Measure(vtkRenderer* renderer,
   }
   bool any = false;
   for (size_t i = 0; i < this->Mappers.size(); ++i) {
-    double own[3];
+    double own[4];
     if (this->Mappers[i]->Internal->Probe(this->Casters[i], this->Options[i], own)) {
       choice[0] = any ? std::max(choice[0], own[0]) : own[0];
       choice[1] = any ? std::min(choice[1], own[1]) : own[1];
       choice[2] = any ? std::min(choice[2], own[2]) : own[2];
+      choice[3] = any ? std::min(choice[3], own[3]) : own[3];
       any = true;
     }
   }
@@ -510,7 +512,7 @@ vtkImageData* vtkStratusMultiBlockVolumeMapper::GetLastImage()
   return mappers.size() == 1 ? mappers[0]->GetLastImage() : this->Internal->Picture.GetLastImage();
 }
 
-bool vtkStratusMultiBlockVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3], vtkDataSet* whole)
+bool vtkStratusMultiBlockVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[4], vtkDataSet* whole)
 {
   if (whole) {
     this->Internal->Configure(this, this->Internal->Whole);

@@ -113,7 +113,7 @@ public:
    * As of vtkStratusVolumeMapper, for all blocks: the largest sampling of any, and the shortest distance and least error. Returns false
    * where no block would be drawn. whole: an image or rectilinear grid that is measured in place of the input.
    */
-  bool MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3], vtkDataSet* whole = nullptr);
+  bool MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[4], vtkDataSet* whole = nullptr);
 
 protected:
   vtkStratusMultiBlockVolumeMapper();

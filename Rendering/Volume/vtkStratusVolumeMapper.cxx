@@ -59,7 +59,7 @@ void vtkStratusVolumeMapper::Render(vtkRenderer* ren, vtkVolume* vol)
   this->TimeToDraw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-bool vtkStratusVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3])
+bool vtkStratusVolumeMapper::MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[4])
 {
   try {
     return this->Internal->Measure(renderer, volume, choice);
@@ -244,6 +244,7 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Structure: " << this->GetStructureAsString() << "\n";
   os << indent << "Sampling: " << this->GetSamplingAsString() << "\n";
   os << indent << "CellError: " << this->CellError << "\n";
+  os << indent << "LightSpread: " << this->LightSpread << "\n";
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "BlockSize: " << this->BlockSize << "\n";

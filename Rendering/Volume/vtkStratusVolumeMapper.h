@@ -203,7 +203,7 @@ public:
   /**
    * Set/Get the sampling of a ray's segments. MIDPOINT_SAMPLING takes one value in the middle. PREINTEGRATED_SAMPLING integrates the
    * transfer function between the values at both ends; it is never used with nearest interpolation. CELLS_SAMPLING goes from cell to cell
-   * and integrates the field between a cell's walls, as finely as CellError says; composite of one component, without shading, mask and
+   * and integrates the field between a cell's walls, as finely as CellError says; composite of one component, without mask and
    * gradient opacity, else the picture is refused. AUTO_SAMPLING takes the cheapest of them that keeps ImageErrorTolerance, as a probe of
    * 640 rays measures, or cells in some blocks and midpoint in all others. Default AUTO_SAMPLING.
    */
@@ -223,6 +223,16 @@ public:
    */
   vtkSetMacro(CellError, double);
   vtkGetMacro(CellError, double);
+  //@}
+
+  //@{
+  /**
+   * Set/Get how far along a ray what it shows may spread about one place at which light is computed, where CELLS_SAMPLING draws with
+   * shading: the sum of opacities times squared distances from that place, in squares of a voxel; smaller is finer. 0 or less: by
+   * ImageErrorTolerance. Default 0.
+   */
+  vtkSetMacro(LightSpread, double);
+  vtkGetMacro(LightSpread, double);
   //@}
 
   enum { BinaryMaskType = 0, LabelMapMaskType };
@@ -618,10 +628,10 @@ public:
   /**
    * WARNING: INTERNAL METHOD - NOT INTENDED FOR GENERAL USE
    * Compute the automatic settings without drawing, so that the pieces of a larger volume can agree on one: the sampling (a SamplingType;
-   * CELLS_SAMPLING also for a mix of cells and midpoints), the sample distance and the cell error, 0 if it is not used. Builds the data
-   * that the next frame needs. Returns false if nothing would be drawn; the next frame reports the reason.
+   * CELLS_SAMPLING also for a mix of cells and midpoints), the sample distance, the cell error and the light spread, 0 if they are not
+   * used. Builds the data that the next frame needs. Returns false if nothing would be drawn; the next frame reports the reason.
    */
-  bool MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[3]);
+  bool MeasureSampling(vtkRenderer* renderer, vtkVolume* volume, double choice[4]);
 
 protected:
   vtkStratusVolumeMapper();
@@ -641,6 +651,7 @@ protected:
   int Structure = AUTO_STRUCTURE;
   int Sampling = AUTO_SAMPLING;
   double CellError = 0.0;
+  double LightSpread = 0.0;
   double ImageErrorTolerance = 0.001;
   double Termination = 0.0;
   int BlockSize = 0;

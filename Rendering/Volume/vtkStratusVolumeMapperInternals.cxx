@@ -340,6 +340,7 @@ bool vtkStratusVolumeMapper::Internals::SetOptions(vtkVolumeProperty* property, 
     property->GetInterpolationType() == VTK_NEAREST_INTERPOLATION ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   options.sampling.distance = mapper->SampleDistance <= 0.0 ? 0.0 : mapper->SampleDistance; // the core refuses NaN
   options.sampling.cell_error = mapper->CellError <= 0.0 ? 0.0 : mapper->CellError;
+  options.sampling.light_spread = mapper->LightSpread <= 0.0 ? 0.0 : mapper->LightSpread;
   options.sampling.termination = mapper->Termination;
   options.sampling.tolerance = mapper->ImageErrorTolerance;
   options.optics.gradient_distance = this->GetGradientOpacityDistance();

@@ -37,9 +37,9 @@ public:
   // Draws a whole picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* prop, std::string& error);
   // vtkStratusVolumeMapper::MeasureSampling().
-  bool Measure(vtkRenderer* renderer, vtkVolume* prop, double choice[3]);
+  bool Measure(vtkRenderer* renderer, vtkVolume* prop, double choice[4]);
   // The same by a caster, with options of Describe().
-  bool Probe(stratus_ray_caster* caster, stratus_ray_cast_options options, double choice[3]);
+  bool Probe(stratus_ray_caster* caster, stratus_ray_cast_options options, double choice[4]);
   // Checks everything that is drawn but the camera, and sets Image, Functions and the options by it. Needs no context.
   bool Describe(vtkRenderer* renderer, vtkVolume* prop, stratus_ray_cast_options& options, std::string& error);
   // Offers the input's tree to a caster of the context. A damaged tree is reported once, and the caster builds its own.
@@ -135,7 +135,7 @@ private:
   vtkSmartPointer<vtkAbstractArray> Offered; // the array of the tree that the caster was last given
   vtkMTimeType OfferedTime = 0;
   const stratus_ray_caster* OfferedTo = nullptr;
-  std::array<double, 21> LearnedFor{}; // settings and geometry for which FullMilliseconds and FullSampleDistance hold
+  std::array<double, 22> LearnedFor{}; // settings and geometry for which FullMilliseconds and FullSampleDistance hold
   double FullMilliseconds = 0.0;       // estimated cast time of an exact picture, 0: unknown
   double FullSampleDistance = 0.0;
   stratus_sampling FullSampling = STRATUS_SAMPLING_AUTO;

@@ -32,7 +32,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   vtkRenderWindow* window = renderer->GetRenderWindow();
   // The time of a full picture holds only for the settings and geometry that it was learned from.
   const stratus_volume& volume = this->Image.GetVolume();
-  std::array<double, 21> learnedFor;
+  std::array<double, 22> learnedFor;
   learnedFor[0] = mapper->SampleDistance;
   std::copy_n(volume.spacing, 3, learnedFor.begin() + 1);
   std::copy_n(volume.matrix, 12, learnedFor.begin() + 4);
@@ -41,6 +41,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   learnedFor[18] = mapper->ImageErrorTolerance;
   learnedFor[19] = mapper->Sampling;
   learnedFor[20] = mapper->CellError;
+  learnedFor[21] = mapper->LightSpread;
   if (learnedFor != this->LearnedFor) {
     this->LearnedFor = learnedFor;
     this->FullMilliseconds = 0.0;
@@ -130,7 +131,7 @@ bool vtkStratusVolumeMapper::Internals::Describe(
     this->SetShading(renderer, property, options, error);
 }
 
-bool vtkStratusVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume* prop, double choice[3])
+bool vtkStratusVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume* prop, double choice[4])
 {
   std::string error;
   stratus_ray_cast_options options;
@@ -138,7 +139,7 @@ bool vtkStratusVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume
 }
 
 // The choice does not depend on the camera, so that a frame of one ray is enough.
-bool vtkStratusVolumeMapper::Internals::Probe(stratus_ray_caster* caster, stratus_ray_cast_options options, double choice[3])
+bool vtkStratusVolumeMapper::Internals::Probe(stratus_ray_caster* caster, stratus_ray_cast_options options, double choice[4])
 {
   float rgba[4];
   stratus_image image = stratus_image();
@@ -154,6 +155,7 @@ bool vtkStratusVolumeMapper::Internals::Probe(stratus_ray_caster* caster, stratu
   choice[0] = std::min<int>(report.sampling, CELLS_SAMPLING);
   choice[1] = report.sample_distance;
   choice[2] = report.cell_error;
+  choice[3] = report.light_spread;
   return status == STRATUS_OK;
 }
 

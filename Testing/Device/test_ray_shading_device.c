@@ -57,7 +57,12 @@ static void device_and_host_show_the_same(void** state)
   case_create(host, &c, STRATUS_UINT8, 26, 24, 28, 5);
   c.options.light.shade = 1;
   c.options.light.shading.specular = 0.4;
+  c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
   compare(host, device, &c, &c.transfer, "lit");
+  c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
+  compare(host, device, &c, &c.transfer, "lit by cells");
+  c.options.sampling.rule = STRATUS_SAMPLING_AUTO;
+  compare(host, device, &c, &c.transfer, "lit, an automatic rule");
   c.transfer.gradient = steep;
   c.transfer.gradient_count = 2;
   c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;

@@ -45,6 +45,15 @@ void Samplings()
   CHECK(cells != middle && cells != integrated, "cells are as another rule");
   scene.Mapper->SetCellError(0.5);
   CHECK(scene.Picture() != cells, "the error of cells changes nothing");
+  scene.Mapper->SetCellError(1e-3);
+  scene.Volume->GetProperty()->ShadeOn();
+  scene.Mapper->SetLightSpread(1e-4);
+  const std::vector<float> lit = scene.Picture();
+  scene.Mapper->SetLightSpread(10.0);
+  CHECK(lit != cells && scene.Picture() != lit, "the spread of light changes nothing");
+  scene.Mapper->SetLightSpread(-1.0); // as 0: by the tolerance
+  CHECK(scene.Picture() != lit && scene.Errors->Count == 0, "a negative spread: %s", scene.Errors->Text.c_str());
+  scene.Volume->GetProperty()->ShadeOff();
   scene.Mapper->SetCellError(-1.0); // as 0: by the tolerance
   scene.Render();
   CHECK(scene.Errors->Count == 0 && scene.Mapper->GetExpectedError() <= scene.Mapper->GetImageErrorTolerance(), "expected error %g: %s",
@@ -69,10 +78,14 @@ void CellsRefused()
     bytes->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
     bytes->GetPointData()->GetScalars()->Fill(1);
     scene.Mapper->SetMaskInput(mask ? bytes.Get() : nullptr);
-    scene.Volume->GetProperty()->SetShade(!mask);
+    vtkNew<vtkPiecewiseFunction> steep;
+    steep->AddPoint(0.0, 1.0);
+    steep->AddPoint(1.0, 0.5);
+    scene.Volume->GetProperty()->SetDisableGradientOpacity(mask);
+    scene.Volume->GetProperty()->SetGradientOpacity(steep);
     scene.Mapper->SetSamplingToCells();
     scene.Render();
-    CHECK(scene.Errors->Count == 1 && scene.Errors->Has("sampling by cells") && scene.Errors->Has(mask ? "mask" : "light"), "%s",
+    CHECK(scene.Errors->Count == 1 && scene.Errors->Has("sampling by cells") && scene.Errors->Has(mask ? "mask" : "gradient opacity"), "%s",
       scene.Errors->Text.c_str());
     scene.Mapper->SetSamplingToAuto();
     CHECK(scene.Light() > 0.0 && *scene.Mapper->GetLastError() == '\0', "then %s", scene.Mapper->GetLastError());

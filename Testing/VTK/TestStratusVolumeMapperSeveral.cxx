@@ -617,9 +617,12 @@ void Refusals()
   });
   refuses("mode maximum", [](Pair& scene) { scene.OtherMapper->SetBlendModeToMaximumIntensity(); });
   refuses("mode first-hit", [](Pair& scene) { scene.OtherMapper->SetRenderModeToFirstHit(); });
-  refuses("by cells of a volume with light", [](Pair& scene) {
+  refuses("by cells of a volume with a gradient opacity", [](Pair& scene) {
+    vtkNew<vtkPiecewiseFunction> steep;
+    steep->AddPoint(0.0, 1.0);
+    steep->AddPoint(1.0, 0.5);
     scene.OtherMapper->SetSamplingToCells();
-    scene.Other->GetProperty()->ShadeOn();
+    scene.Other->GetProperty()->SetGradientOpacity(steep);
   });
   refuses("crop regions", [](Pair& scene) {
     scene.OtherMapper->CroppingOn();

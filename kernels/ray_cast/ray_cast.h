@@ -128,7 +128,7 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 }
 
 /* These are included here and not where they are used, because a device is sent each header once, in only one of the branches below. */
-#if STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS && STRATUS_RAY_MODE != STRATUS_RAY_LOCAL
+#if RAY_LIT || (STRATUS_RAY_MODE != STRATUS_RAY_COMPOSITE && STRATUS_RAY_MODE != STRATUS_RAY_CELLS && STRATUS_RAY_MODE != STRATUS_RAY_LOCAL)
 #if STRATUS_RAY_MODE != STRATUS_RAY_EXTREMES && STRATUS_RAY_MODE != STRATUS_RAY_SUMS
 #include "gradient.h"
 #endif
@@ -148,6 +148,9 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #if STRATUS_RAY_MODE == STRATUS_RAY_CELLS || STRATUS_RAY_MODE == STRATUS_RAY_LOCAL || RAY_WITH_CELLS
 #include "cell_way.h"
 #include "local_runs.h"
+#endif
+#if RAY_LIT
+#include "lit_places.h"
 #endif
 #if STRATUS_RAY_MODE == STRATUS_RAY_SHADING
 #include "ray_shading.h"

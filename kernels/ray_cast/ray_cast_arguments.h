@@ -92,6 +92,8 @@ typedef struct stratus_ray_lattice {
   stratus_pair per_voxel[3];
   /* cells: the square of the number of pieces of a path through a cell, over the field's largest second derivative on it */
   float pieces_per_bend;
+  /* lit cells and lit local: the spread of a bundle that is lit at one place (lit_places.h), in squares of voxels */
+  float light_spread;
   int jitter, seed; /* jitter 1: each ray's lattice lies farther from the eye by a part of a sample, which pixel and seed decide */
 } stratus_ray_lattice;
 

@@ -130,20 +130,35 @@ INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
   }
 }
 
+#endif
+
 /* Composite the next piece of the cell paths of the lanes in `mask`. Returns the lanes that have pieces left. */
-INLINE vmask cell_composite(
-  CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, const cell_walk* w, cell_way* way, vmask mask)
+INLINE vmask RAY_NAME(cell_composite)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* sums,
+  stratus_packet* k, const cell_walk* w, cell_way* way, vmask mask)
 {
-  const vfloat length = w->leave - w->s, begin = v_fma(way->from, length, w->s);
+  const vfloat length = w->leave - w->s, begin = v_fma(way->from, length, w->s), part = length * way->share;
   cell_piece piece;
   cell_next_piece(way, &piece);
-  cell_integrate(a, sums, k, mask, piece.front, piece.back, packet_length(a, k, length * way->share), begin);
+#if RAY_LIT
+  const lit_before before = lit_before_stretch(k);
+#endif
+  cell_integrate(a, sums, k, mask, piece.front, piece.back, packet_length(a, k, part), begin);
+#if RAY_LIT
+  vfloat parts;
+  const lit_stretch stretch = lit_stretch_of(&before, k, begin, part);
+  const vmask again = lit_take_back(k, &before, mask & v_lt(v_set(LIT_PIECE_LEAST), way->share), &stretch, &parts);
+  way->share = v_select(again, way->share * v_reciprocal(parts), way->share);
+  way->left = v_select(again, way->left * parts, way->left);
+  mask = m_andnot(mask, again);
+  RAY_NAME(lit_pass)(a, values, k, &before, mask, &stretch);
+#else
+  (void)values;
+  const vmask again = m_none();
+#endif
   const vmask left = cell_pass_piece(way, &piece, mask);
   k->live = m_andnot(k->live, mask & v_lt(k->transparency, v_set(a->termination)));
-  return left & k->live;
+  return (left | again) & k->live;
 }
-
-#endif
 
 /* Visits the cells of the lanes in `mask`. Returns the lanes whose path shows something, and writes their paths to `ways`. */
 INLINE vmask RAY_NAME(cell_visit)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
@@ -204,7 +219,7 @@ INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, value_s
         waiting = waiting | RAY_NAME(cell_visit)(a, values, hidden, k, &w, done, &ways);
       }
     } else {
-      waiting = cell_composite(a, sums, k, &w, &ways, waiting);
+      waiting = RAY_NAME(cell_composite)(a, values, sums, k, &w, &ways, waiting);
     }
     cell_leave(a, k, m_andnot(done, waiting), &w);
   } while (m_any(k->live));

@@ -36,7 +36,14 @@ INLINE void RAY_NAME(local_march)(CONSTANT stratus_ray_cast_arguments* a, value_
   while (m_any(k->live) && RAY_NAME(ray_leap)(a, map, k)) {
     const stratus_sample sample = RAY_NAME(ray_sample)(a, values, hidden, k);
     k->samples -= mask_int(k->live);
+#if RAY_LIT
+    const lit_before before = lit_before_stretch(k);
+#endif
     local_composite(a, sums, k, k->live & v_finite(sample.value), sample.value, sample.length, sample.lo);
+#if RAY_LIT
+    const lit_stretch stretch = lit_stretch_of(&before, k, sample.lo, sample.weight);
+    RAY_NAME(lit_pass)(a, values, k, &before, k->live, &stretch);
+#endif
     k->i = k->i + vi_set(1);
     k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
   }
@@ -49,6 +56,14 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
   const vfloat zero = v_set(0.0f), whole_begin = k->begin, whole_end = k->end;
   const vint never = vi_set(0x7fffffff);
   local_runs r;
+#if RAY_LIT
+  lit_begin(a, k);
+  if (a->rough.rows == 0) { /* all blocks are rough */
+    RAY_NAME(cell_march)(a, values, hidden, map, table, k, 0, 0);
+    RAY_NAME(lit_end)(a, values, k);
+    return;
+  }
+#endif
   r.begin = v_max(v_from_int(k->i), k->begin);
   r.end = v_min(v_from_int(k->last), k->end);
   vmask left = k->live & v_lt(r.begin, r.end);
@@ -86,4 +101,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
   k->begin = whole_begin;
   k->end = whole_end;
   k->live = m_none();
+#if RAY_LIT
+  RAY_NAME(lit_end)(a, values, k);
+#endif
 }

@@ -51,6 +51,24 @@ INLINE value_source component_values(CONSTANT stratus_ray_cast_arguments* a, val
 #define COMPONENT_VALUES(a, values, c) ((GLOBAL const uchar*)(values) + (size_t)(c) * (size_t)(uint)(a)->media.component_bytes)
 #endif
 
+/* 1: the rays are lit, at places that neighbouring stretches share (lit_places.h). */
+#ifndef RAY_LIT
+#define RAY_LIT 0
+#endif
+
+#if RAY_LIT
+/* The bundles of rays (lit_places.h). The colours of a ray's open bundle are the packet's own. Closed bundles of all rays wait in a
+ * queue, so that light is computed for as many of them at once as a packet has lanes. */
+#define LIT_QUEUE (2 * STRATUS_WIDTH)
+typedef struct stratus_lit_places {
+  vfloat limit;                         /* the largest spread of a bundle, in squares of samples */
+  vfloat weight, first, second, origin; /* of the open bundles: their opacity, and the moments of their places about `origin` */
+  float lit[3][STRATUS_WIDTH];          /* each ray's colours with light */
+  float x[3][LIT_QUEUE], d[3][LIT_QUEUE], color[3][LIT_QUEUE], opacity[LIT_QUEUE]; /* closed bundles: place, and direction of the ray */
+  int lane[LIT_QUEUE], count;
+} stratus_lit_places;
+#endif
+
 typedef struct stratus_packet {
   vfloat p[3], d[3], inverse[3], begin, end, first;
   vfloat unit; /* the length of a sample in sample distances */
@@ -66,6 +84,9 @@ typedef struct stratus_packet {
   vmask fresh;            /* the value at the segment's front is still to be sampled */
   GLOBAL const int* grid; /* the tables of a grid whose spacing changes */
   vfloat surface[2];      /* slices: where the rays meet the surface, the nearer first, in samples; LARGEST_FLOAT where they do not */
+#if RAY_LIT
+  stratus_lit_places places;
+#endif
 } stratus_packet;
 
 /* A sample of every ray, in the segment [lo, lo + weight]. */

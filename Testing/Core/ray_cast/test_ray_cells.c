@@ -239,19 +239,21 @@ static void what_it_does_not_know_is_refused(void** state)
   uint8_t mask[8 * 8 * 8] = { 0 };
   const double gradient[2] = { 1, 0.5 };
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
-  for (int what = 0; what < 7; ++what) {
+  for (int what = 0; what < 8; ++what) {
+    static const char* const words[] = { "", "cells", "cells", "cell error", "cell error", "cell error", "light spread", "light spread" };
     picture_case c;
     case_create(context, &c, STRATUS_UINT8, 8, 8, 8, 14u);
     c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
     c.options.mask.bytes = what == 1 ? mask : NULL;
-    c.options.light.shade = what == 2;
+    c.options.light.shade = 1;
     c.transfer.gradient = gradient;
-    c.transfer.gradient_count = what == 3;
-    c.options.sampling.cell_error = what == 4 ? -0.1 : what == 5 ? (double)NAN : what == 6 ? (double)INFINITY : 0.0;
+    c.transfer.gradient_count = what == 2;
+    c.options.sampling.cell_error = what == 3 ? -0.1 : what == 4 ? (double)NAN : what == 5 ? (double)INFINITY : 0.0;
+    c.options.sampling.light_spread = what == 6 ? -0.1 : what == 7 ? (double)NAN : 0.0;
     const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
     const stratus_status status = stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL);
-    assert_int_equal(status, what == 0 ? STRATUS_OK : what < 4 ? STRATUS_UNSUPPORTED : STRATUS_INVALID_ARGUMENT);
-    assert_true(what == 0 || strstr(stratus_context_message(context), what < 4 ? "cells" : "cell error"));
+    assert_int_equal(status, what == 0 ? STRATUS_OK : what < 3 ? STRATUS_UNSUPPORTED : STRATUS_INVALID_ARGUMENT);
+    assert_true(what == 0 || strstr(stratus_context_message(context), words[what]));
     case_destroy(&c);
   }
   stratus_ray_caster_destroy(caster);

@@ -366,8 +366,8 @@ static void what_does_not_mix_is_refused(void** state)
   m.of[1].options.mode = STRATUS_MODE_MAXIMUM;
   REFUSED(STRATUS_UNSUPPORTED, "volume 1 of several has mode maximum");
   m.of[1].options.sampling.rule = STRATUS_SAMPLING_CELLS;
-  m.of[1].options.light.shade = 1;
-  REFUSED(STRATUS_UNSUPPORTED, "by cells of a volume with light");
+  m.of[1].options.mask.bytes = (const uint8_t*)"";
+  REFUSED(STRATUS_UNSUPPORTED, "by cells of a volume with a mask");
   m.of[1].options.clipping.crop = 1;
   m.of[1].options.clipping.crop_regions = 5;
   REFUSED(STRATUS_UNSUPPORTED, "crop regions");

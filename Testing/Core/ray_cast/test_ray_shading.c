@@ -70,6 +70,101 @@ static void pictures_are_lit_as_the_reference_lights_them(void** state)
   stratus_context_destroy(context);
 }
 
+/* Rays by cells take light at places that neighbouring stretches share. The picture converges to the reference as the spread about a place
+ * falls, with no more samples; places that are far apart are seen. */
+static void rays_by_cells_are_lit_at_shared_places(void** state)
+{
+  (void)state;
+  static const double spreads[] = { 1e-5, 1e-3, 1e-1 }, wanted[] = { 70.0, 55.0, 35.0 };
+  stratus_context* context = case_context("host", 2);
+  for (int turned = 0; turned < 2; ++turned) {
+    picture_case c;
+    double last = INFINITY;
+    case_create(context, &c, turned ? STRATUS_UINT8 : STRATUS_FLOAT32, 30, 26, 28, 5);
+    shine(&c);
+    c.options.light.shading.light_count = 2;
+    c.options.light.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 1, 0.4, 0.2 } };
+    c.options.light.shading.lights[1] = (stratus_light){ .vector = { 40, 50, -10 }, .color = { 0.2, 0.5, 1.5 }, .positional = 1 };
+    c.options.light.shading.one_sided = 1;
+    c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
+    c.options.sampling.cell_error = 1e-4;
+    if (turned) {
+      const double matrix[16] = { 0.8, -0.6, 0, 30, 0.6, 0.8, 0.1, -7, 0, 0, -1.2, 900, 0, 0, 0, 1 };
+      memcpy(c.volume.matrix, matrix, sizeof matrix);
+      c.volume.spacing[1] = 1.6;
+      case_camera(context, &c, 3, 1);
+    }
+    for (int i = 0; i < 3; ++i) {
+      c.options.sampling.light_spread = spreads[i];
+      const double db = lit_psnr("by cells", context, &c, wanted[i]);
+      assert_true(db < last);
+      last = db;
+    }
+    case_destroy(&c);
+  }
+  stratus_context_destroy(context);
+}
+
+/* A light that follows the camera is the same light as one in the world where it is now. */
+static void lights_follow_the_camera(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  for (int parallel = 0; parallel < 2; ++parallel) {
+    picture_case c;
+    case_create(context, &c, STRATUS_FLOAT32, 30, 26, 28, 5);
+    shine(&c);
+    c.options.sampling.distance = 0.25;
+    case_camera(context, &c, 3, parallel);
+    c.options.light.shading.light_count = 2;
+    stratus_light* lights = c.options.light.shading.lights;
+    lights[0] = (stratus_light){ .vector = { 1, 2, 3 }, .color = { 1, 0.4, 0.2 }, .follows_camera = 1 };
+    lights[1] = (stratus_light){ .vector = { -4, 5, 1 },
+      .color = { 2, 3, 2 },
+      .positional = 1,
+      .cone_angle = 50.0,
+      .axis = { 0.1, -0.2, -1.0 },
+      .cone_exponent = 2.0,
+      .follows_camera = 1 };
+    case_render(context, &c, &drawn);
+    double basis[3][3];
+    memcpy(basis[0], c.camera.right, sizeof basis[0]);
+    memcpy(basis[1], c.camera.up, sizeof basis[1]);
+    for (int a = 0; a < 3; ++a) {
+      basis[2][a] = -c.camera.forward[a];
+    }
+    for (int i = 0; i < 3; ++i) {
+      const double length = sqrt(basis[i][0] * basis[i][0] + basis[i][1] * basis[i][1] + basis[i][2] * basis[i][2]);
+      for (int a = 0; a < 3; ++a) {
+        basis[i][a] /= length;
+      }
+    }
+    for (int l = 0; l < 2; ++l) {
+      const stratus_light own = lights[l];
+      for (int a = 0; a < 3; ++a) {
+        lights[l].vector[a] = own.positional ? c.camera.eye[a] : 0.0;
+        lights[l].axis[a] = 0.0;
+        for (int i = 0; i < 3; ++i) {
+          lights[l].vector[a] += own.vector[i] * basis[i][a];
+          lights[l].axis[a] += own.axis[i] * basis[i][a];
+        }
+      }
+      lights[l].follows_camera = 0;
+    }
+    case_render(context, &c, &other);
+    double largest = 0.0;
+    for (size_t i = 0; i < 4 * CASE_PIXELS; ++i) {
+      largest = fmax(largest, fabs((double)drawn.rgba[i] - (double)other.rgba[i]));
+    }
+    assert_true(case_lit(&drawn) > 20 && largest < 1e-5);
+    lights[0].vector[0] += 10.0;
+    case_render(context, &c, &other);
+    assert_memory_not_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    case_destroy(&c);
+  }
+  stratus_context_destroy(context);
+}
+
 /* Lights that get weaker with the distance, and lamps that shine into a cone, whose border crosses the volume. */
 static void lights_are_dimmed_and_have_cones_as_the_reference_says(void** state)
 {
@@ -193,9 +288,6 @@ static void no_structure_thread_or_instruction_set_changes_a_bit(void** state)
     char what[64];
     case_create_random(contexts[0], seed, &c);
     shine(&c);
-    if (c.options.sampling.rule == STRATUS_SAMPLING_CELLS) { /* which takes no light */
-      c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;
-    }
     c.options.skipping.structure = STRATUS_STRUCTURE_NONE;
     case_render(contexts[0], &c, &drawn);
     lit += case_lit(&drawn) > 0;
@@ -358,6 +450,8 @@ int test_ray_shading(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(pictures_are_lit_as_the_reference_lights_them),
+    cmocka_unit_test(rays_by_cells_are_lit_at_shared_places),
+    cmocka_unit_test(lights_follow_the_camera),
     cmocka_unit_test(lights_are_dimmed_and_have_cones_as_the_reference_says),
     cmocka_unit_test(what_is_wrong_with_a_lamp_is_said),
     cmocka_unit_test(border_voxels_and_every_type_are_lit),

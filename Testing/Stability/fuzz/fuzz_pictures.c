@@ -192,6 +192,7 @@ static void compare(fuzz* f, const picture_case* c, const stratus_image* image, 
     options.sampling.rule = report->sampling;
     options.sampling.distance = options.mode == STRATUS_MODE_FIRST_HIT ? options.sampling.distance : report->sample_distance;
     options.sampling.cell_error = report->cell_error;
+    options.sampling.light_spread = report->light_spread;
   }
   EXPECT(STATUS_OF(context, stratus_ray_caster_create(context, &caster)) == STRATUS_OK, "no caster");
   ++f->tally->objects;

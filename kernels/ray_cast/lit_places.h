@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Light at shared places. A ray composites its stretches without light. Stretches that follow one another make a bundle, which is lit at
+ * one place: the mean of its stretches' places, weighted by their opacities. Light along a ray is smooth. So the error of a bundle is, to
+ * second order, half of its spread times the second derivative of light; the spread is the sum of opacities times squared distances from
+ * the mean. A bundle is closed where its spread would pass a limit. Thus faint stretches, and those behind others, share a place over a
+ * long way, and a stretch that makes most of a pixel has its own.
+ *
+ * Closed bundles wait until the packet has one for each lane. A bundle follows from its ray alone, and a ray adds up the light of its
+ * bundles in their order, so that no pixel depends on the others of its packet. Included by ray_cast.h. */
+#ifndef STRATUS_LIT_PLACES_H
+#define STRATUS_LIT_PLACES_H
+
+/* A way through a cell is cut for its light into pieces of no less than this part. */
+#define LIT_PIECE_LEAST (1.0f / 64.0f)
+
+/* What a ray has gathered before a stretch. */
+typedef struct lit_before {
+  vfloat transparency, red, green, blue, depth;
+} lit_before;
+
+INLINE lit_before lit_before_stretch(const stratus_packet* k)
+{
+  const lit_before before = { k->transparency, k->red, k->green, k->blue, k->depth };
+  return before;
+}
+
+/* A stretch that a ray has composited: its opacity times what was left of the ray, its mean place and the spread of its places about that,
+ * in samples. */
+typedef struct lit_stretch {
+  vfloat weight, place, spread;
+} lit_stretch;
+
+/* Extinction counts as even along a stretch. Of the optical depth t and the opacity o the mean place is then 1 / t - (1 - o) / o of its
+ * length, and the variance 1 / t^2 - (1 - o) / o^2, which these series in o follow to 0.003 at o = 1/2 and to 0.03 at 0.9. Stretches of
+ * more opacity are cut, unless they are short. */
+INLINE lit_stretch lit_stretch_of(const lit_before* before, const stratus_packet* k, vfloat begin, vfloat length)
+{
+  lit_stretch s;
+  s.weight = before->transparency - k->transparency;
+  const vfloat o = s.weight * v_reciprocal(v_max(before->transparency, v_set(1e-30f)));
+  vfloat mean = v_fma(o, v_set(-863.0f / 60480.0f), v_set(-3.0f / 160.0f));
+  mean = v_fma(o, mean, v_set(-19.0f / 720.0f));
+  mean = v_fma(o, mean, v_set(-1.0f / 24.0f));
+  mean = v_fma(o, mean, v_set(-1.0f / 12.0f));
+  mean = v_fma(o, mean, v_set(0.5f));
+  s.place = v_fma(mean, length, begin);
+  const vfloat variance = v_fma(o * o, v_fma(o, v_set(-1.0f / 240.0f), v_set(-1.0f / 240.0f)), v_set(1.0f / 12.0f));
+  s.spread = s.weight * variance * (length * length);
+  return s;
+}
+
+/* Takes back the stretches of the mask that spread too far to be lit at one place, and returns their lanes. parts: in how many they are to
+ * be cut; of n parts each spreads 1 / n^3 as far. */
+INLINE vmask lit_take_back(stratus_packet* k, const lit_before* before, vmask mask, const lit_stretch* s, vfloat* parts)
+{
+  const vfloat limit = k->places.limit;
+  mask = mask & v_lt(limit, s->spread);
+  *parts = v_set(1.0f);
+  if (m_any(mask)) {
+    const vfloat n = v_select(
+      v_lt(limit * v_set(64.0f), s->spread), v_set(8.0f), v_select(v_lt(limit * v_set(8.0f), s->spread), v_set(4.0f), v_set(2.0f)));
+    *parts = v_select(mask, n, *parts);
+    k->transparency = v_select(mask, before->transparency, k->transparency);
+    k->red = v_select(mask, before->red, k->red);
+    k->green = v_select(mask, before->green, k->green);
+    k->blue = v_select(mask, before->blue, k->blue);
+    k->depth = v_select(mask, before->depth, k->depth);
+  }
+  return mask;
+}
+
+INLINE void lit_begin(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k)
+{
+  stratus_lit_places* p = &k->places;
+  const vfloat zero = v_set(0.0f);
+  v_store(p->lit[0], k->red);
+  v_store(p->lit[1], k->green);
+  v_store(p->lit[2], k->blue);
+  k->red = k->green = k->blue = zero;
+  p->limit = v_set(a->lattice.light_spread) * v_reciprocal(v_max(v_dot3(k->d, k->d), v_set(1e-30f)));
+  p->weight = p->first = p->second = p->origin = zero;
+  p->count = 0;
+  for (int c = 0; c < 3; ++c) { /* lanes without an entry read some place, too */
+    v_store(p->x[c], zero);
+    v_store(p->d[c], zero);
+    v_store(p->color[c], zero);
+  }
+  v_store(p->opacity, zero);
+}
+
+/* Puts the lanes of the mask, one after the other, to an array. */
+INLINE void lit_queue(float* queue, vmask mask, const int* lanes, int count, vfloat v)
+{
+#if STRATUS_WIDTH == 1
+  (void)lanes;
+  (void)count;
+  queue[0] = mask ? v : queue[0];
+#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
+  (void)lanes;
+  (void)count;
+  _mm512_storeu_ps(queue, _mm512_maskz_compress_ps(mask, v)); /* what it writes behind the lanes is free */
+#else
+  float all[STRATUS_WIDTH];
+  (void)mask;
+  v_store(all, v);
+  for (int i = 0; i < count; ++i) {
+    queue[i] = all[lanes[i]];
+  }
+#endif
+}
+
+/* Closes the open bundles of the lanes in `mask`, which have these colours. The queue must have fewer entries than a packet has lanes. */
+INLINE void lit_close(stratus_packet* k, vmask mask, vfloat red, vfloat green, vfloat blue)
+{
+  stratus_lit_places* p = &k->places;
+  const vfloat place = v_fma(p->first, v_reciprocal(v_max(p->weight, v_set(1e-30f))), p->origin);
+#if !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
+  const int count = m_count(mask);
+  _mm512_storeu_si512(p->lane + p->count, _mm512_maskz_compress_epi32(mask, (__m512i)vi_lanes()));
+#else
+  int wanted[STRATUS_WIDTH], count = 0;
+  vi_store(wanted, vi_select(mask, vi_set(1), vi_set(0)));
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    p->lane[p->count + count] = lane;
+    count += wanted[lane];
+  }
+#endif
+  for (int c = 0; c < 3; ++c) {
+    lit_queue(p->x[c] + p->count, mask, p->lane + p->count, count, v_fma(place, k->d[c], k->p[c]));
+    lit_queue(p->d[c] + p->count, mask, p->lane + p->count, count, k->d[c]);
+  }
+  lit_queue(p->color[0] + p->count, mask, p->lane + p->count, count, red);
+  lit_queue(p->color[1] + p->count, mask, p->lane + p->count, count, green);
+  lit_queue(p->color[2] + p->count, mask, p->lane + p->count, count, blue);
+  lit_queue(p->opacity + p->count, mask, p->lane + p->count, count, p->weight);
+  p->count += count;
+}
+#endif
+
+/* Lights the first closed bundles, as many as a packet has lanes. */
+OUTLINE void RAY_NAME(lit_shade)(CONSTANT stratus_ray_cast_arguments* a, value_source values, stratus_packet* k)
+{
+  stratus_lit_places* p = &k->places;
+  const int count = p->count < STRATUS_WIDTH ? p->count : STRATUS_WIDTH;
+  const vmask mask = vi_lt(vi_lanes(), vi_set(count));
+  const vfloat x[3] = { v_load(p->x[0]), v_load(p->x[1]), v_load(p->x[2]) }, d[3] = { v_load(p->d[0]), v_load(p->d[1]), v_load(p->d[2]) };
+  const vfloat opacity = v_load(p->opacity);
+  vfloat g[3], diffuse[3], specular[3];
+  RAY_NAME(ray_gradient)(a, values, k->grid, x, mask, g);
+  light_at(&a->light, 0, x, d, g, diffuse, specular);
+  for (int c = 0; c < 3; ++c) {
+    float light[STRATUS_WIDTH];
+    v_store(light, v_fma(v_load(p->color[c]), diffuse[c], opacity * specular[c]));
+    for (int i = 0; i < count; ++i) {
+      p->lit[c][p->lane[i]] += light[i];
+    }
+  }
+  p->count -= count;
+  for (int i = 0; i < p->count; ++i) {
+    const int from = STRATUS_WIDTH + i;
+    for (int c = 0; c < 3; ++c) {
+      p->x[c][i] = p->x[c][from];
+      p->d[c][i] = p->d[c][from];
+      p->color[c][i] = p->color[c][from];
+    }
+    p->opacity[i] = p->opacity[from];
+    p->lane[i] = p->lane[from];
+  }
+}
+
+/* Puts a stretch that the rays of `mask` have composited into their open bundles. */
+INLINE void RAY_NAME(lit_pass)(CONSTANT stratus_ray_cast_arguments* a, value_source values, stratus_packet* k, const lit_before* before,
+  vmask mask, const lit_stretch* s)
+{
+  stratus_lit_places* p = &k->places;
+  const vfloat zero = v_set(0.0f);
+  mask = mask & v_lt(k->transparency, before->transparency);
+  if (!m_any(mask)) {
+    return;
+  }
+  const vfloat weight = s->weight, place = s->place, own = s->spread;
+  const vmask open = v_lt(zero, p->weight);
+  p->origin = v_select(m_andnot(mask, open), place, p->origin);
+  const vfloat away = place - p->origin, moved = weight * away;
+  vfloat sum = p->weight + weight, first = p->first + moved, second = p->second + v_fma(moved, away, own);
+  const vfloat spread = v_fma(first * v_reciprocal(v_max(sum, v_set(1e-30f))), zero - first, second);
+  const vmask closes = mask & open & v_lt(p->limit, spread);
+  if (m_any(closes)) {
+    lit_close(k, closes, before->red, before->green, before->blue);
+    k->red = v_select(closes, k->red - before->red, k->red);
+    k->green = v_select(closes, k->green - before->green, k->green);
+    k->blue = v_select(closes, k->blue - before->blue, k->blue);
+    p->origin = v_select(closes, place, p->origin);
+    sum = v_select(closes, weight, sum);
+    first = v_select(closes, zero, first);
+    second = v_select(closes, own, second);
+  }
+  p->weight = v_select(mask, sum, p->weight);
+  p->first = v_select(mask, first, p->first);
+  p->second = v_select(mask, second, p->second);
+  if (p->count >= STRATUS_WIDTH) {
+    RAY_NAME(lit_shade)(a, values, k);
+  }
+}
+
+/* Lights what is left, and gives the packet its colours. */
+INLINE void RAY_NAME(lit_end)(CONSTANT stratus_ray_cast_arguments* a, value_source values, stratus_packet* k)
+{
+  stratus_lit_places* p = &k->places;
+  lit_close(k, v_lt(v_set(0.0f), p->weight), k->red, k->green, k->blue);
+  while (p->count > 0) {
+    RAY_NAME(lit_shade)(a, values, k);
+  }
+  k->red = v_load(p->lit[0]);
+  k->green = v_load(p->lit[1]);
+  k->blue = v_load(p->lit[2]);
+}
