@@ -44,11 +44,12 @@
 /* Rule local's allowed error on the probe's rays, as a share of other rules' allowed error. It is half, because two parts of the rule err,
  * and few rays meet an error of few blocks. */
 #define LOCAL_SHARE 0.5
-/* Rung l of light is a spread of 2^(-2 - l/2): rungs 0..LIGHT_RUNGS - 1. While rules and steps are sought, light has the finest rung and
- * errors may be LIT_SHARE of the allowed error, so that there is room for the light. The finer setting's light is finer still. */
-#define LIGHT_RUNGS 33
-#define LIGHT_START 22
-#define LIGHT_FINE 40
+/* Rung l of light is a spread of 2^(-2 - l/2), l in 0..LIGHT_FINEST. While rules and steps are sought, it is the tolerance times
+ * LIGHT_SOUGHT, and errors may be LIT_SHARE of the allowed error, so that there is room for a coarser one. The finer setting's is the
+ * tolerance times LIGHT_COMPARED. An error falls by about the power 2/3 of the spread. */
+#define LIGHT_FINEST 40
+#define LIGHT_SOUGHT 0x1p-6
+#define LIGHT_COMPARED 0x1p-10
 #define LIT_SHARE 0.7
 #define PATCH (STRATUS_PROBE_WIDTH * STRATUS_PROBE_HEIGHT)
 
@@ -240,9 +241,16 @@ static bool alike(stratus_sampling a, stratus_sampling b)
   return (a == STRATUS_SAMPLING_CELLS) == (b == STRATUS_SAMPLING_CELLS);
 }
 
-static setting setting_of(const family* f, int rung)
+/* The rung of light that is a part of the tolerance, or the next coarser one. */
+static int light_rung(const probe* p, double part)
 {
-  return (setting){ f->sampling, rung, f->cells, LIGHT_RUNGS - 1 };
+  const double rung = -2.0 * (log2(part * p->options->sampling.tolerance) + 2.0);
+  return rung < 0.0 ? 0 : rung < LIGHT_FINEST ? (int)rung : LIGHT_FINEST;
+}
+
+static setting setting_of(const probe* p, const family* f, int rung)
+{
+  return (setting){ f->sampling, rung, f->cells, light_rung(p, LIGHT_SOUGHT) };
 }
 
 static void forget(family* f)
@@ -254,7 +262,7 @@ static void forget(family* f)
 
 static stratus_status measure(probe* p, family* f, int rung)
 {
-  const setting s = setting_of(f, rung);
+  const setting s = setting_of(p, f, rung);
   if (f->error[rung] < 0.0) {
     TRY(draw_patches(p, &s, p->options->sampling.tolerance, p->coarse));
     f->error[rung] = error_of(p);
@@ -272,7 +280,7 @@ static stratus_status measure(probe* p, family* f, int rung)
  * every rung, but for their pieces. */
 static double cost_of(const probe* p, const family* f, int rung)
 {
-  const setting s = setting_of(f, rung);
+  const setting s = setting_of(p, f, rung);
   stratus_ray_choice c;
   take(p, &s, &c);
   const double lattice = f->cost * p->voxel / c.sample_distance;
@@ -470,12 +478,12 @@ static double expected_of(const family* f, int rung, double error, const setting
 /* Find the coarsest rung of light by which a setting keeps `most`. */
 static stratus_status search_light(probe* p, const family* f, int rung, double most, int* light)
 {
-  int low = p->options->sampling.light_spread > 0.0 ? LIGHT_RUNGS - 1 : 0, high = LIGHT_RUNGS - 1, next = LIGHT_START;
+  int high = light_rung(p, LIGHT_SOUGHT), low = p->options->sampling.light_spread > 0.0 ? high : 0, next = high / 2;
   if (f->sampling == STRATUS_SAMPLING_LOCAL) {
     TRY(lend_rough(p, f->beyond));
   }
   while (low < high) {
-    setting s = setting_of(f, rung);
+    setting s = setting_of(p, f, rung);
     s.light = next;
     TRY(draw_patches(p, &s, p->options->sampling.tolerance, p->coarse));
     const double error = error_of(p);
@@ -494,7 +502,7 @@ static stratus_status search_light(probe* p, const family* f, int rung, double m
 /* The error of the setting that is taken, whose rays end by the whole tolerance, as pictures' do. */
 static stratus_status measure_taken(probe* p, const family* f, int rung, int light, const setting* fine, double* error)
 {
-  setting s = setting_of(f, rung);
+  setting s = setting_of(p, f, rung);
   s.light = light;
   if (f->sampling == STRATUS_SAMPLING_LOCAL) {
     TRY(lend_rough(p, f->beyond));
@@ -537,14 +545,14 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
   const bool preintegrates = stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_PREINTEGRATED);
   const double most = SHARE * options->sampling.tolerance, for_rules = p->lit ? LIT_SHARE * most : most;
   const int last = (cells ? CELL_RUNGS : LATTICE_RUNGS) - 1;
-  candidates k = { .count = 0, .fine.light = LIGHT_FINE };
+  candidates k = { .count = 0, .fine.light = light_rung(p, LIGHT_COMPARED) };
   for (stratus_sampling rule = STRATUS_SAMPLING_MIDPOINT; rule <= STRATUS_SAMPLING_CELLS; ++rule) {
     add_family(&k, p, rule);
   }
   k.fine.sampling = cells ? STRATUS_SAMPLING_CELLS : preintegrates ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
   if (!(options->sampling.tolerance > 0.0)) {
     const bool open = options->sampling.rule == STRATUS_SAMPLING_AUTO;
-    const setting finest = { .sampling = open ? k.fine.sampling : choice->sampling, .rung = last, .light = LIGHT_RUNGS - 1 };
+    const setting finest = { .sampling = open ? k.fine.sampling : choice->sampling, .rung = last, .light = LIGHT_FINEST };
     take(p, &finest, choice);
     return STRATUS_OK;
   }
@@ -557,7 +565,7 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
     int best = 0;
     TRY(compare(p, &k, for_rules, &best, &found));
     if (k.fine.rung == finest || (found && !too_near(p, found, best, &k.fine))) {
-      setting s = found ? setting_of(found, best) : (setting){ .sampling = k.fine.sampling, .rung = last, .light = LIGHT_RUNGS - 1 };
+      setting s = found ? setting_of(p, found, best) : (setting){ .sampling = k.fine.sampling, .rung = last, .light = LIGHT_FINEST };
       if (found && p->lit && stratus_ray_visits_cells(found->sampling)) {
         TRY(search_light(p, found, best, most, &s.light));
       }
