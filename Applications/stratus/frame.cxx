@@ -46,12 +46,31 @@ stratus_image frame::view()
   return image;
 }
 
+void frame::set_units(const double scale[3], double metres, const std::string& values)
+{
+  this->InMetres = metres > 0.0;
+  this->ValueUnits = values;
+  for (int axis = 0; axis < 3; ++axis) {
+    this->Measure[axis] = (this->InMetres ? metres : 1.0) / scale[axis];
+  }
+}
+
+std::string frame::units_of(stratus_quantity quantity) const
+{
+  char text[256];
+  stratus_quantity_unit(quantity, this->ValueUnits.c_str(), this->InMetres ? 1 : 0, text, sizeof text);
+  return text;
+}
+
 stratus_quantities frame::numbers()
 {
   stratus_quantities all = stratus_quantities_default();
   all.width = this->Width;
   all.height = this->Height;
   all.threshold = this->Threshold;
+  for (int axis = 0; axis < 3; ++axis) {
+    all.measure[4 * axis] = this->Measure[axis];
+  }
   for (size_t i = 0; i < this->Wanted.size(); ++i) {
     all.of[this->Wanted[i]] = this->Numbers[i].data();
   }
@@ -63,8 +82,11 @@ std::vector<std::string> frame::describe_numbers() const
   std::vector<std::string> lines;
   for (size_t i = 0; i < this->Wanted.size(); ++i) {
     const value_range range = range_of(this->Numbers[i]);
+    const std::string own = this->units_of(this->Wanted[i]), units = own == "1" ? "" : own;
     lines.push_back(std::string(stratus_quantity_name(this->Wanted[i])) +
-      (range.count > 0 ? format(", %.6g .. %.6g in ", range.low, range.high) + grouped(range.count) + " pixels" : ": no ray has one"));
+      (range.count > 0
+          ? format(", %.6g .. %.6g", range.low, range.high) + (units.empty() ? "" : " " + units) + " in " + grouped(range.count) + " pixels"
+          : ": no ray has one"));
   }
   return lines;
 }
@@ -98,12 +120,12 @@ std::vector<uint8_t> frame::encode_exr() const
   };
   std::vector<vtkStratusEXRChannel> channels;
   for (size_t c = 0; c < 4; ++c) {
-    channels.push_back({ std::string(1, "RGBA"[c]), row_of(this->Rgba, 4, c) });
+    channels.push_back({ std::string(1, "RGBA"[c]), row_of(this->Rgba, 4, c), "" });
   }
-  channels.push_back({ "Z", row_of(this->Depth, 1, 0) });
-  channels.push_back({ "Samples", row_of(this->Samples, 1, 0) });
+  channels.push_back({ "Z", row_of(this->Depth, 1, 0), "" });
+  channels.push_back({ "Samples", row_of(this->Samples, 1, 0), "" });
   for (size_t i = 0; i < this->Wanted.size(); ++i) {
-    channels.push_back({ stratus_quantity_name(this->Wanted[i]), row_of(this->Numbers[i], 1, 0) });
+    channels.push_back({ stratus_quantity_name(this->Wanted[i]), row_of(this->Numbers[i], 1, 0), this->units_of(this->Wanted[i]) });
   }
   return vtkStratusEncodeEXR(this->Width, this->Height, channels);
 #else
@@ -127,7 +149,8 @@ heat_scale frame::scale_of(size_t number) const
   const std::string title = quantity == STRATUS_QUANTITY_MAXIMUM_DEPTH ? "depth of max."
     : quantity == STRATUS_QUANTITY_TRANSMITTANCE_DEPTH                 ? format("depth of %.3g", this->Threshold)
                                                                        : stratus_quantity_name(quantity);
-  return { low, high > low ? high : low + 1.0, title };
+  const std::string units = this->units_of(quantity);
+  return { low, high > low ? high : low + 1.0, title, units == "1" ? "" : units };
 }
 
 void frame::annotate(const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time)
@@ -143,7 +166,7 @@ void frame::write(output_file& file) const
     file.write(this->encode_exr());
   } else if (this->ShowsSamples) {
     const std::vector<float> samples(this->Samples.begin(), this->Samples.end());
-    const heat_scale scale = { 0.0, std::max(1.0, range_of(samples).high), "samples a pixel" };
+    const heat_scale scale = { 0.0, std::max(1.0, range_of(samples).high), "samples a pixel", "" };
     file.write(
       encode(this->Format, heat_map(samples, this->Width, this->Height, scale, this->Color), this->Width + heat_bar_width, this->Height));
   } else if (!this->Wanted.empty()) {

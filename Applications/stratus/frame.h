@@ -19,6 +19,9 @@ public:
   explicit frame(const options& o);
   // Borrows the arrays that the options need.
   stratus_image view();
+  // Sets the units of numbers of rays: lengths are measured in the coordinates of the data, not of the scene, which `scale` stretches.
+  // metres: of a unit of the coordinates, 0: unknown. values: the unit of the values, "": unknown.
+  void set_units(const double scale[3], double metres, const std::string& values);
   // The numbers of rays that the options need; none: nothing is wanted.
   stratus_quantities numbers();
   bool has_numbers() const { return !this->Wanted.empty(); }
@@ -32,6 +35,7 @@ public:
 
 private:
   std::vector<uint8_t> encode_exr() const;
+  std::string units_of(stratus_quantity quantity) const;
   heat_scale scale_of(size_t number) const;
 
   int Width, Height;
@@ -42,6 +46,9 @@ private:
   std::vector<float> Rgba, Depth;
   std::vector<stratus_quantity> Wanted;
   double Threshold;
+  double Measure[3] = { 1.0, 1.0, 1.0 };
+  bool InMetres = false;
+  std::string ValueUnits;
   std::vector<std::vector<float>> Numbers; // of each that is wanted
   std::vector<uint32_t> Samples;
 };

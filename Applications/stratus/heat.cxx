@@ -73,6 +73,7 @@ void draw_bar(canvas& to, int left, const heat_scale& scale, vtkColorTransferFun
     write_text(to, whole ? grouped(static_cast<unsigned long long>(n * step)) : format("%.4g", n * step), left + text_left, y);
   }
   write_text(to, scale.title, left + 8, to.height - bar_margin / 2 + 1);
+  write_text(to, scale.units, left + 8, bar_margin / 2 - 1);
 }
 } // namespace
 

@@ -21,7 +21,7 @@ value_range range_of(const std::vector<float>& values);
 // The values at the ends of the bar, low < high, and what they are.
 struct heat_scale {
   double low, high;
-  std::string title;
+  std::string title, units; // units: a line below the title; "": none
 };
 
 // Returns RGB bytes, bottom row first, width + heat_bar_width pixels per row. `color` is a value of --color, over the scale. Pixels without

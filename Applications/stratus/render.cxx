@@ -7,6 +7,9 @@
 #include "input.h"
 #include "series.h"
 
+#include <vtkDataArray.h>
+#include <vtkFieldData.h>
+
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -47,6 +50,15 @@ void annotate(cli::frame& frame, const cli::options& o, const cli::drawing& draw
   frame.annotate(cli::annotation(o), place, drawing.functions(), in ? in->time_of(step) : "");
 }
 
+// Of several INPUTs, whose values may have several units, only lengths have one.
+void set_units(cli::frame& frame, const cli::drawing& drawing, const cli::routed& data, const cli::series* in, const cli::options& o)
+{
+  vtkDataSet* set = data.image ? data.image : data.grid;
+  vtkDataArray* metres = set ? set->GetFieldData()->GetArray("MetresPerUnit") : nullptr;
+  frame.set_units(drawing.place().scale, metres && metres->GetNumberOfTuples() > 0 ? metres->GetComponent(0, 0) : 0.0,
+    in && o.companions.empty() ? in->value_units() : "");
+}
+
 std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& core, const cli::routed& data)
 {
   if (!o.companions.empty()) {
@@ -79,6 +91,7 @@ void render_one(const cli::options& o, const cli::routed& data, const cli::serie
   const stratus_image image = frame.view();
   drawing->draw(image);
   if (frame.has_numbers()) {
+    set_units(frame, *drawing, data, in, o);
     drawing->measure(frame.numbers());
   }
   annotate(frame, o, *drawing, in, step);
@@ -189,6 +202,7 @@ void render_film(const cli::options& o, cli::series& in)
       drawing->take(data);
       drawing->draw(image);
       if (frame.has_numbers()) {
+        set_units(frame, *drawing, data, &in, o);
         drawing->measure(frame.numbers());
       }
       annotate(frame, o, *drawing, &in, step);

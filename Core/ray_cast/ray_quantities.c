@@ -52,12 +52,24 @@ typedef struct quantities {
   own_input* own; /* of each that is drawn */
 } quantities;
 
+static bool is_measured(const stratus_quantities* wanted)
+{
+  static const double nothing[9];
+  return memcmp(wanted->measure, nothing, sizeof nothing) != 0;
+}
+
 static stratus_status check(const quantities* q)
 {
   const stratus_quantities* w = q->wanted;
   if (!(w->threshold > 0.0 && w->threshold < 1.0)) {
     return stratus_fail(
       q->context, STRATUS_INVALID_ARGUMENT, "threshold %g of the transmittance, must be above 0 and below 1", w->threshold);
+  }
+  double cross[3];
+  stratus_vector_cross(w->measure + 3, w->measure + 6, cross);
+  const double determinant = stratus_vector_dot(w->measure, cross);
+  if (is_measured(w) && (!isfinite(determinant) || determinant == 0.0)) {
+    return stratus_fail(q->context, STRATUS_INVALID_ARGUMENT, "measure has the determinant %g, must be finite and not 0", determinant);
   }
   if (q->count < 1 || (!w->blocks && q->count > STRATUS_SEVERAL_MAX)) {
     return stratus_fail(q->context, STRATUS_INVALID_ARGUMENT, "%d inputs, must be 1%s", q->count, w->blocks ? " or more" : "..8");
@@ -415,6 +427,34 @@ cleanup:
   return status;
 }
 
+/* ---- lengths */
+
+/* Takes lengths and depths from the world to the coordinates of `measure`. The map is linear, so a ray has one factor. */
+static void measure(const quantities* q)
+{
+  static const stratus_quantity lengths[] = { STRATUS_QUANTITY_INTEGRAL, STRATUS_QUANTITY_LENGTH, STRATUS_QUANTITY_MAXIMUM_DEPTH,
+    STRATUS_QUANTITY_TRANSMITTANCE_DEPTH };
+  const stratus_quantities* w = q->wanted;
+  const int sides[2] = { w->width, w->height };
+  const int64_t pixels = (int64_t)w->width * w->height;
+  if (!is_measured(w)) {
+    return;
+  }
+  for (int64_t i = 0; i < pixels; ++i) {
+    double from[3], along[3], measured[3];
+    stratus_camera_ray(q->camera, sides, (int)(i % sides[0]), (int)(i / sides[0]), from, along);
+    for (int axis = 0; axis < 3; ++axis) {
+      measured[axis] = stratus_vector_dot(w->measure + 3 * axis, along);
+    }
+    const double factor = sqrt(stratus_vector_dot(measured, measured) / stratus_vector_dot(along, along));
+    for (size_t n = 0; n < sizeof lengths / sizeof *lengths; ++n) {
+      if (w->of[lengths[n]]) {
+        w->of[lengths[n]][i] = (float)((double)w->of[lengths[n]][i] * factor);
+      }
+    }
+  }
+}
+
 /* ---- all */
 
 static stratus_status compute(quantities* q)
@@ -460,6 +500,9 @@ stratus_status stratus_ray_caster_render_quantities(
   stratus_status status = allocate(&q);
   if (status == STRATUS_OK) {
     status = compute(&q);
+  }
+  if (status == STRATUS_OK) {
+    measure(&q);
   }
   release(&q);
   return status;

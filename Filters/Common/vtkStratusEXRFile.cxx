@@ -131,11 +131,15 @@ void Encoder::WriteHeader(int width, int height, const std::vector<vtkStratusEXR
 {
   this->Check(exr_add_part(this->Context, "picture", EXR_STORAGE_SCANLINE, &this->Part));
   this->Check(exr_initialize_required_attr_simple(this->Context, this->Part, width, height, EXR_COMPRESSION_ZIP));
-  if (std::any_of(channels.begin(), channels.end(), [](const vtkStratusEXRChannel& one) { return one.Name.size() > ShortName; })) {
+  if (std::any_of(channels.begin(), channels.end(),
+        [](const vtkStratusEXRChannel& one) { return one.Name.size() + (one.Units.empty() ? 0 : 6) > ShortName; })) {
     this->Check(exr_set_longname_support(this->Context, 1));
   }
   for (const vtkStratusEXRChannel& channel : channels) {
     this->Check(exr_add_channel(this->Context, this->Part, channel.Name.c_str(), EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+    if (!channel.Units.empty()) {
+      this->Check(exr_attr_set_string(this->Context, this->Part, (channel.Name + ".units").c_str(), channel.Units.c_str()));
+    }
   }
   this->Check(exr_write_header(this->Context));
 }

@@ -102,8 +102,11 @@ void AddChannels(vtkAbstractArray* abstract, int width, std::vector<vtkStratusEX
     plain->DeepCopy(array);
   }
   const int components = array->GetNumberOfComponents();
+  vtkInformation* info = array->HasInformation() ? array->GetInformation() : nullptr;
+  const char* units = info && info->Has(vtkDataArray::UNITS_LABEL()) ? info->Get(vtkDataArray::UNITS_LABEL()) : nullptr;
   for (int c = 0; c < components; ++c) {
-    channels.push_back({ ChannelName(name, c, components), [=](int y, float* row) { GetRow(plain, c, width, y, what, row); } });
+    channels.push_back(
+      { ChannelName(name, c, components), [=](int y, float* row) { GetRow(plain, c, width, y, what, row); }, units ? units : "" });
   }
 }
 

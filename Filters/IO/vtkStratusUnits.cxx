@@ -29,6 +29,8 @@ constexpr struct {
   { "kilometre", vtkStratusQuantity::Length, 1000.0, 0.0 },
   { "kilometres", vtkStratusQuantity::Length, 1000.0, 0.0 },
   { "cm", vtkStratusQuantity::Length, 0.01, 0.0 },
+  { "mm", vtkStratusQuantity::Length, 0.001, 0.0 },
+  { "um", vtkStratusQuantity::Length, 1e-6, 0.0 },
   { "pa", vtkStratusQuantity::Pressure, 1.0, 0.0 },
   { "pascal", vtkStratusQuantity::Pressure, 1.0, 0.0 },
   { "hpa", vtkStratusQuantity::Pressure, 100.0, 0.0 },
@@ -155,4 +157,10 @@ vtkStratusUnit vtkStratusUnitOf(const std::string& text)
   }
   result.Quantity = vtkStratusIsEast(text) || vtkStratusIsNorth(text) ? vtkStratusQuantity::Angle : vtkStratusQuantity::None;
   return result;
+}
+
+double vtkStratusMetresOf(const std::string& text)
+{
+  const vtkStratusUnit unit = vtkStratusUnitOf(text);
+  return unit.IsLength() && unit.Scale > 0.0 ? unit.Scale : 0.0;
 }

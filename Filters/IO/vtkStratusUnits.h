@@ -23,6 +23,9 @@ constexpr double vtkStratusGravity = 9.80665; // m s-2
 // Reads a unit. Text that is no unit of the quantities above, or none at all, gives Quantity None and the scale 1.
 vtkStratusUnit vtkStratusUnitOf(const std::string& text);
 
+// Returns the metres of a unit of length, 0 for other text.
+double vtkStratusMetresOf(const std::string& text);
+
 // Returns whether the unit is one of CF's for longitudes ("degrees_east", "degree_E", "degreesE" ...), or for latitudes, in any case.
 bool vtkStratusIsEast(const std::string& units);
 bool vtkStratusIsNorth(const std::string& units);

@@ -2,10 +2,13 @@
 #include "vtkStratusVariableReader.h"
 
 #include "vtkStratusReadError.h"
+#include "vtkStratusUnits.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataObjectTypes.h"
+#include "vtkDoubleArray.h"
 #include "vtkErrorCode.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -178,6 +181,28 @@ int vtkStratusVariableReader::RequestInformation(vtkInformation*, vtkInformation
   return 1;
 }
 
+// Sets the unit of the variable's values, and how long a unit of the coordinates is if that is known.
+void vtkStratusVariableReader::SetUnits(vtkDataObject* output)
+{
+  const std::string name = this->ChosenName();
+  for (const VariableEntry& one : this->Variables) {
+    for (int kind = 0; one.Name == name && !one.Units.empty() && kind < 2; ++kind) {
+      vtkFieldData* data = output->GetAttributesAsFieldData(kind == 0 ? vtkDataObject::POINT : vtkDataObject::CELL);
+      vtkDataArray* values = data ? data->GetArray(name.c_str()) : nullptr;
+      if (values) {
+        values->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), one.Units);
+      }
+    }
+  }
+  const double metres = vtkStratusMetresOf(this->LengthUnits);
+  if (metres > 0.0) {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName("MetresPerUnit");
+    array->InsertNextValue(metres);
+    output->GetFieldData()->AddArray(array);
+  }
+}
+
 int vtkStratusVariableReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
   vtkInformation* info = outputs->GetInformationObject(0);
@@ -193,6 +218,7 @@ int vtkStratusVariableReader::RequestData(vtkInformation*, vtkInformationVector*
   }
   try {
     this->Build(step, output);
+    this->SetUnits(output);
     if (!this->Times.empty()) {
       output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Times[step]);
     }

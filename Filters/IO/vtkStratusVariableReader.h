@@ -6,6 +6,10 @@
  * A reader outputs one variable on its grid, at the time step that the pipeline requests (the nearest step at or before it, otherwise the
  * first). An error names the file and the fault, and empties the output.
  *
+ * The information of the output's array has the variable's unit as vtkDataArray::UNITS_LABEL(). If the unit of the coordinates is a length,
+ * the output's field data have an array "MetresPerUnit" of one number. By both, numbers of rays (vtkStratusVolumeMapper::SetQuantities())
+ * have units, and their lengths are in metres.
+ *
  * @sa vtkStratusCFReader vtkStratusImageReader vtkStratusUgridReader vtkStratusVDBReader
  */
 #ifndef vtkStratusVariableReader_h
@@ -118,6 +122,7 @@ private:
   void operator=(const vtkStratusVariableReader&) = delete;
 
   bool Look();
+  void SetUnits(vtkDataObject* output);
 
   vtkMTimeType LookTime = 0;
   std::string OutputClass;

@@ -72,7 +72,8 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
     opaque_depth   array (height, width) of OpenGL depths in 0..1 at which rays end, the top row first
     quantities     names of numbers of each pixel's ray, which are then arrays in the Rendering's quantities (xarray's for an xarray.DataArray):
                    integral of the values over the ray's length, length on which it meets values, mean, maximum, maximum_depth, cells that it
-                   passes, transmittance, transmittance_depth, where that falls to threshold. Lengths and depths in world units, before matrix;
+                   passes, transmittance, transmittance_depth, where that falls to threshold. Lengths and depths before matrix, in metres if units of
+                   all three coordinates of an xarray.DataArray are lengths, or VTK's field data have MetresPerUnit, otherwise in world units;
                    NaN where a ray has no such number. Of the values of the first component, whatever the mode and the functions
     threshold      of the transmittance, above 0 and below 1; default 0.5
     progress       function of a stage's name and a fraction in 0..1; a true result, an exception, or Ctrl+C ends the call.

@@ -106,19 +106,62 @@ class Image:
         return result
 
 
+_METRES = {"m": 1, "meter": 1, "meters": 1, "metre": 1, "metres": 1, "km": 1000, "kilometer": 1000, "kilometers": 1000, "kilometre": 1000,
+           "kilometres": 1000, "cm": 0.01, "mm": 0.001, "um": 1e-6, "ft": 0.3048, "feet": 0.3048, "foot": 0.3048, "nmi": 1852}
+
+
+class Units:
+    """The units of quantities. `metres`: of a unit of the world's x, y and z before `matrix`; None: unknown. `values`: the unit of the values."""
+
+    def __init__(self, data=None, axes=None, values=None, matrix=None):
+        """data: of any kind; an xarray.DataArray or a VTK data set may know. axes: the dimensions of the first along the world's x, y and z."""
+        self.metres, self.values, self.linear = None, values or "", None
+        if axes is not None:
+            self.metres = self._of_axes([data.coords[axis] for axis in axes if axis in data.coords])
+        elif hasattr(data, "GetFieldData"):
+            array = data.GetFieldData().GetArray("MetresPerUnit")
+            self.metres = [array.GetComponent(0, 0)] * 3 if array is not None and array.GetNumberOfTuples() and array.GetComponent(0, 0) > 0 else None
+        if matrix is not None:
+            self.linear = numpy.array(matrix, float)[:3, :3]
+
+    @staticmethod
+    def _of_axes(coordinates):
+        units = [str(axis.attrs.get("units", "")) for axis in coordinates]
+        metres = [_METRES.get(unit.strip()) for unit in units]
+        if len(metres) != 3 or None in metres or any(axis.ndim != 1 or axis.size < 2 or axis.dtype.kind not in "iuf" for axis in coordinates):
+            return None
+        if len(set(units)) > 1:  # the grid then has a spacing of 1 along each axis
+            metres = [metre * abs(float(axis[-1]) - float(axis[0])) / (axis.size - 1) for metre, axis in zip(metres, coordinates)]
+        return metres
+
+    def measure(self):
+        """The core's matrix: from the world, which `matrix` may have stretched, to lengths of the data."""
+        result = numpy.diag(self.metres or [1.0] * 3)
+        if self.linear is not None and numpy.linalg.det(self.linear):
+            result = result @ numpy.linalg.inv(self.linear)
+        return result.ravel()
+
+    def of(self, number):
+        text = ctypes.create_string_buffer(256)
+        library.stratus_quantity_unit(number, self.values.encode(), int(self.metres is not None), text, len(text))
+        return text.value.decode(errors="replace")
+
+
 class Quantities:
     """The core's numbers of each pixel's ray, with their buffers."""
 
     # Those in units of the values, which may have been scaled.
     _OF_VALUES = ("integral", "mean", "maximum")
 
-    def __init__(self, names, threshold, image):
+    def __init__(self, names, threshold, image, units=None):
         names = [names] if isinstance(names, str) else list(names or ())
         prefix, enum = "STRATUS_QUANTITY_", "stratus_quantity"
         self.numbers = {name: choice(name, enum, prefix, "a quantity", ("count",)) for name in names}
         self.struct = library.stratus_quantities_default()
         self.struct.threshold = number(threshold, "threshold")
         self.struct.width, self.struct.height, self.struct.opaque_depth = *image.size, image.struct.opaque_depth
+        self.units = units or Units()
+        self.struct.measure[:] = self.units.measure()
         self.buffers = {name: numpy.full(image.size[::-1], self._nothing(name), numpy.float32) for name in names}
         for name, place in self.numbers.items():
             self.struct.of[place] = address(self.buffers[name])
@@ -132,11 +175,11 @@ class Quantities:
             context.call(library.stratus_ray_caster_render_quantities, inputs, count, ctypes.byref(view), ctypes.byref(self.struct), progress=progress)
 
     def result(self, power=0, label=None):
-        """The arrays by their names, the top row first. label: a function of a name and an array, for the array in its place."""
+        """The arrays by their names, the top row first. label: a function of a name, an array and its unit, for the array in its place."""
         arrays = {}
         for name, buffer in self.buffers.items():
             array = numpy.ascontiguousarray(buffer[::-1])
             if power and name in self._OF_VALUES:
                 array = numpy.ldexp(array.astype(numpy.float64), power)
-            arrays[name] = label(name, array) if label else array
+            arrays[name] = label(name, array, self.units.of(self.numbers[name])) if label else array
         return arrays

@@ -9,7 +9,7 @@ from . import _declarations as c
 from . import _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library, type_of
 from ._grid import affine, chosen, of_package
-from ._look import Image, Quantities, crop_box, set_contours, set_planes, value_interval
+from ._look import Image, Quantities, Units, crop_box, set_contours, set_planes, value_interval
 from ._media import explain_each, functions_of, materials_of, set_surface
 from ._values import (Spread, explain, length_of, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled,
                       unit_length, visible, warn)
@@ -45,6 +45,7 @@ class Tetrahedra:
     """
 
     def __init__(self, points, tetrahedra=None, values=None, scalars=None, device=None, threads=None, matrix=None, component=None):
+        self._units = Units(points, matrix=None if matrix is None else affine(matrix).reshape(4, 4))
         if hasattr(points, "IsA") and hasattr(points, "GetPointData"):
             if tetrahedra is not None or values is not None:
                 raise ValueError("a data set of VTK has its own tetrahedra and values: leave these out")
@@ -153,7 +154,7 @@ class Tetrahedra:
         """
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_tetra_report()
-        numbers = Quantities(quantities, threshold, image)
+        numbers = Quantities(quantities, threshold, image, self._units)
         with self.context.lock:
             asked = AskedOfCells(self, opacity, color, unit_distance, mode, method, tolerance, shade, gradient_opacity, contours, crop, clip_planes,
                                  average_range, dependent, weights, mean_components, surface)

@@ -6,7 +6,7 @@ from . import _declarations as c
 from . import _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library
 from ._grid import affine, grid_of
-from ._look import Image, Quantities, crop_box, set_contours, set_planes, set_shading, value_interval
+from ._look import Image, Quantities, Units, crop_box, set_contours, set_planes, set_shading, value_interval
 from ._media import Function2D, Labels, explain_each, functions_of, looks_of, materials_of, set_surface
 from ._values import explain, length_of, number, own_points, pixels, positive, unit_length, warn
 
@@ -34,6 +34,10 @@ class Volume:
         self.grid = grid_of(data, spacing, origin, axes, scalars, component)
         of_xarray = hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs")
         self._named = (getattr(data, "name", None), data.attrs.get("units")) if of_xarray else None
+        dims = None
+        if of_xarray and spacing is None and origin is None:
+            dims = [data.dims[own] for _, own in sorted(zip(self.grid.world, self.grid.own))]
+        self._units = Units(data, dims, self._named[1] if of_xarray else None, matrix)
         self._place(matrix)
         self.context = context_of(device, threads)
         self._caster = Owned(self.context, library.stratus_ray_caster_destroy)
@@ -60,7 +64,7 @@ class Volume:
         """Draws a picture and returns a Rendering: rgba, depth, counters. See `render` for the parameters."""
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_ray_cast_report()
-        numbers = Quantities(quantities, threshold, image)
+        numbers = Quantities(quantities, threshold, image, self._units)
         with self.context.lock:
             asked = Asked(self, opacity, color, unit_distance, mode, interpolation, structure, sampling, sample_distance, tolerance, shade,
                           gradient_opacity, contours, crop, clip_planes, average_range, jitter, audit, dependent, weights, mean_components, labels,
@@ -75,15 +79,15 @@ class Volume:
         asked.explain(image.rgba, report.rays)
         return image.rendering(as_dict(report), numbers.result(0 if self.grid.nothing else asked.power, self._label))
 
-    def _label(self, name, array):
+    def _label(self, name, array, unit):
         """An array of a quantity as the data's own kind."""
         if self._named is None:
             return array
         import xarray
-        own, units = self._named
+        own = self._named[0]
         attributes = {"long_name": name.replace("_", " ") + (f" of {own}" if own else "")}
-        if units and name in ("mean", "maximum"):
-            attributes["units"] = units
+        if unit:
+            attributes["units"] = unit
         return xarray.DataArray(array, dims=("row", "column"), name=name, attrs=attributes)
 
 

@@ -3,13 +3,45 @@
 
 #include "vtkStratusPicture.h"
 
+#include "vtkAbstractVolumeMapper.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataSet.h"
+#include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkMath.h"
+#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkProp3D.h"
+#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <limits>
+
+namespace {
+double MetresPerUnitOf(vtkDataObject* data)
+{
+  vtkDataArray* array = data && data->GetFieldData() ? data->GetFieldData()->GetArray("MetresPerUnit") : nullptr;
+  const double metres = array && array->GetNumberOfTuples() > 0 ? array->GetComponent(0, 0) : 0.0;
+  return metres > 0.0 && metres < std::numeric_limits<double>::infinity() ? metres : 0.0;
+}
+
+// The first part of composite data, or the data.
+vtkDataSet* FirstOf(vtkDataObject* data)
+{
+  vtkCompositeDataSet* whole = vtkCompositeDataSet::SafeDownCast(data);
+  if (!whole) {
+    return vtkDataSet::SafeDownCast(data);
+  }
+  vtkSmartPointer<vtkCompositeDataIterator> at;
+  at.TakeReference(whole->NewIterator());
+  at->InitTraversal();
+  return at->IsDoneWithTraversal() ? nullptr : vtkDataSet::SafeDownCast(at->GetCurrentDataObject());
+}
+} // namespace
 
 bool vtkStratusQuantities::Set(const char* names, double threshold, std::string& error)
 {
@@ -35,11 +67,54 @@ bool vtkStratusQuantities::Set(const char* names, double threshold, std::string&
   return true;
 }
 
+void vtkStratusQuantities::AddVolume(vtkAbstractVolumeMapper* mapper, vtkProp3D* prop)
+{
+  vtkDataObject* data = mapper->GetInputDataObject(0, 0);
+  vtkDataSet* first = FirstOf(data);
+  int cells = 0;
+  vtkDataArray* values = first ? vtkAbstractMapper::GetScalars(first, mapper->GetScalarMode(), mapper->GetArrayAccessMode(),
+                                   mapper->GetArrayId(), mapper->GetArrayName(), cells)
+                               : nullptr;
+  double linear[9];
+  for (int n = 0; n < 9; ++n) {
+    linear[n] = prop->GetMatrix()->GetElement(n / 3, n % 3);
+  }
+  this->AddData(data, values, linear);
+}
+
+void vtkStratusQuantities::AddData(vtkDataObject* data, vtkDataArray* values, const double linear[9])
+{
+  const char* label = values && values->HasInformation() && values->GetInformation()->Has(vtkDataArray::UNITS_LABEL())
+    ? values->GetInformation()->Get(vtkDataArray::UNITS_LABEL())
+    : nullptr;
+  const std::string units = label ? label : "";
+  const double own = MetresPerUnitOf(data), metres = own > 0.0 ? own : MetresPerUnitOf(FirstOf(data));
+  const bool alike = std::equal(linear, linear + 9, this->Linear) && metres == this->MetresPerUnit;
+  if (this->Volumes == 0) {
+    std::copy(linear, linear + 9, this->Linear);
+    this->MetresPerUnit = metres;
+    this->Units = units;
+  } else if (!alike) {
+    std::fill(this->Linear, this->Linear + 9, 0.0);
+    this->Linear[0] = this->Linear[4] = this->Linear[8] = 1.0;
+    this->MetresPerUnit = 0.0;
+  }
+  this->Units = units == this->Units ? units : "";
+  ++this->Volumes;
+}
+
 bool vtkStratusQuantities::Compute(stratus_context* context, const stratus_ray_cast_input* inputs, int count, bool blocks,
   const stratus_camera& camera, const stratus_image& rays, std::string& error)
 {
   stratus_quantities wanted = stratus_quantities_default();
   bool any = false;
+  double linear[3][3], inverse[3][3];
+  std::copy(this->Linear, this->Linear + 9, linear[0]);
+  if (vtkMath::Determinant3x3(linear) != 0.0) { // else drawing refuses the matrix
+    vtkMath::Invert3x3(linear, inverse);
+    std::transform(inverse[0], inverse[0] + 9, wanted.measure,
+      [this](double one) { return this->MetresPerUnit > 0.0 ? one * this->MetresPerUnit : one; });
+  }
   wanted.width = rays.width;
   wanted.height = rays.height;
   wanted.opaque_depth = rays.opaque_depth;
@@ -57,7 +132,7 @@ bool vtkStratusQuantities::Compute(stratus_context* context, const stratus_ray_c
   return status == STRATUS_OK;
 }
 
-void vtkStratusQuantities::AddTo(vtkImageData* image, const vtkStratusPicture& picture) const
+void vtkStratusQuantities::AddTo(vtkImageData* image, const vtkStratusPicture* picture) const
 {
   for (int q = 0; q < STRATUS_QUANTITY_COUNT; ++q) {
     if (!this->Wanted[q]) {
@@ -69,7 +144,16 @@ void vtkStratusQuantities::AddTo(vtkImageData* image, const vtkStratusPicture& p
     array->SetName(stratus_quantity_name(static_cast<stratus_quantity>(q)));
     array->SetNumberOfTuples(image->GetNumberOfPoints());
     array->Fill(nothing);
-    picture.Spread(this->Values[q].data(), 1, array->GetPointer(0));
+    char units[256];
+    stratus_quantity_unit(static_cast<stratus_quantity>(q), this->Units.c_str(), this->MetresPerUnit > 0.0 ? 1 : 0, units, sizeof units);
+    if (*units) {
+      array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), units);
+    }
+    if (picture) {
+      picture->Spread(this->Values[q].data(), 1, array->GetPointer(0));
+    } else {
+      std::copy(this->Values[q].begin(), this->Values[q].end(), array->GetPointer(0));
+    }
     image->GetPointData()->AddArray(array);
   }
 }

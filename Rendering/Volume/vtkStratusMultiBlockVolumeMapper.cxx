@@ -448,8 +448,10 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Render(vtkRenderer* renderer, 
   this->Scene.Cast = [this](const stratus_camera& camera, const stratus_image& image, bool whole, std::string& why) {
     return this->Cast(camera, image, whole, why);
   };
-  this->Scene.Measure = [this](
+  this->Scene.Measure = [this, volume](
                           const stratus_camera& camera, const stratus_image& image, vtkStratusQuantities& quantities, std::string& why) {
+    quantities.ForgetVolumes();
+    quantities.AddVolume(volume->GetMapper(), volume);
     return quantities.Compute(this->Context.Get(), this->Inputs.data(), static_cast<int>(this->Inputs.size()), true, camera, image, why);
   };
   this->Scene.Finder = renderer->GetSelector() ? &this->Finder : nullptr;

@@ -241,6 +241,11 @@ bool vtkStratusMultiVolume::Internals::Render(vtkRenderer* renderer, std::string
   };
   this->Scene.Measure = [this](
                           const stratus_camera& camera, const stratus_image& image, vtkStratusQuantities& quantities, std::string& why) {
+    quantities.ForgetVolumes();
+    for (int n = 0; n < this->Count; ++n) {
+      vtkVolume* volume = this->Volumes[this->Ports[n]];
+      quantities.AddVolume(volume->GetMapper(), volume);
+    }
     return quantities.Compute(this->Context.Get(), this->Inputs, this->Count, false, camera, image, why);
   };
   this->Renderer = renderer;

@@ -494,7 +494,10 @@ public:
    * - "transmittance", the part of light that passes by the property's functions, and "transmittance_depth", where it falls to
    *   TransmittanceThreshold.
    *
-   * Lengths and depths are in world units, depths along the ray from the eye (parallel: from its plane). A number that a ray does not have
+   * Depths are along the ray from the eye (parallel: from its plane). Lengths and depths are in the data's own units, whatever the volume's
+   * matrix, or in metres if the field data of the input have an array "MetresPerUnit", which Stratus' readers add. Of several volumes
+   * with different matrices or units they are in world units. Each array's vtkDataArray::UNITS_LABEL() has its unit, such as "kg m-2" for
+   * the integral of values whose UNITS_LABEL() is "kg m-3", or "grid units" for lengths of no known unit. A number that a ray does not have
    * is NaN. Numbers are of the same values as the picture's, within clipping planes, cropping regions and masks, and in front of opaque
    * geometry, whatever the blend mode. Integral, maximum and cells are exact but for the rounding of floats: the field is integrated cell
    * by cell. Other names are an error.

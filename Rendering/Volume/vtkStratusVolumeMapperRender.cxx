@@ -178,6 +178,8 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     return false;
   }
   this->LeftOut.Warn(this->Mapper);
+  this->Quantities.ForgetVolumes();
+  this->Quantities.AddVolume(this->Mapper, prop);
   this->WarnOfCrop(options);
   this->WarnOfGradientOpacity(prop->GetProperty());
   this->OfferTree(this->Caster, this->Context.Get());

@@ -61,7 +61,24 @@ def of_grids():
         return
     data = xarray.DataArray(field, dims=("z", "y", "x"), name="qc", attrs={"units": "kg kg-1"})
     mean = render(data, size=(20, 15), quantities="mean").quantities["mean"]
+    units_of_axes(xarray)
     check(isinstance(mean, xarray.DataArray) and mean.attrs["units"] == "kg kg-1" and "qc" in mean.attrs["long_name"], "xarray's own arrays")
+
+
+def units_of_axes(xarray):
+    """Lengths are in metres where the axes have units of length, and do not depend on a matrix that stretches the volume."""
+    for units, metres, unit, of_integral in (("km km km", 1000, "m", "kg m-2"), ("km km m", 1, "m", "kg m-2"), ("degrees degrees m", None, "grid units", "kg m-3 grid units")):
+        places = {axis: (axis, 10.0 + 2 * numpy.arange(8.0), {"units": each}) for axis, each in zip("xyz", units.split())}
+        data = xarray.DataArray(numpy.full((8, 8, 8), 3.0), dims=("z", "y", "x"), coords=places, attrs={"units": "kg m-3"})
+        for stretch in 1, 10:
+            drawn = Volume(data, matrix=numpy.diag([1, 1, stretch, 1]).tolist())
+            x0, x1, y0, y1, z0, z1 = drawn.bounds
+            middle = ((x0 + x1) / 2, (y0 + y1) / 2)
+            down = dict(position=(*middle, z1 + 100), focal_point=(*middle, z0), view_up=(0, 1, 0), parallel_scale=2)
+            q = drawn.render(0.1, size=(9, 9), camera=down, quantities=["length", "integral"]).quantities
+            want = 7 if metres is None else 14 * metres
+            check(numpy.allclose(q["length"], want) and numpy.allclose(q["integral"], 3 * want), f"{units}, heights times {stretch}: {q['length'].values[4, 4]}")
+            check((q["length"].attrs["units"], q["integral"].attrs["units"]) == (unit, of_integral), f"{units}: {q['length'].attrs}, {q['integral'].attrs}")
 
 
 def refusals():

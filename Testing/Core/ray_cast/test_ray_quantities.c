@@ -264,6 +264,78 @@ static void linear_fields(void** state)
   }
 }
 
+/* ---- units */
+
+/* Lengths of a world whose heights are stretched by 10 and whose unit is a kilometre: of each ray the length of its part in the data's own
+ * metres. */
+static void lengths_are_measured(void** state)
+{
+  static const double slope[3] = { 0.7, -0.4, 1.3 };
+  static const int lengths[] = { STRATUS_QUANTITY_INTEGRAL, STRATUS_QUANTITY_LENGTH, STRATUS_QUANTITY_MAXIMUM_DEPTH,
+    STRATUS_QUANTITY_TRANSMITTANCE_DEPTH };
+  for (int parallel = 0; parallel < 2; ++parallel) {
+    picture_case c;
+    stratus_ray_caster* caster = NULL;
+    case_create(*state, &c, STRATUS_FLOAT32, 12, 10, 9, 1u);
+    make_linear(&c, 10.0, slope);
+    case_camera(*state, &c, 1, parallel);
+    assert_int_equal(stratus_ray_caster_create(*state, &caster), STRATUS_OK);
+    const stratus_ray_cast_input input = { .caster = caster, .volume = &c.volume, .transfer = &c.transfer, .options = &c.options };
+    stratus_quantities wanted = want_all(numbers);
+    compute(*state, &input, 1, &c.camera, &wanted);
+    wanted = want_all(others);
+    wanted.measure[0] = wanted.measure[4] = 1000.0;
+    wanted.measure[8] = 100.0;
+    compute(*state, &input, 1, &c.camera, &wanted);
+    int lit = 0;
+    for (int i = 0; i < CASE_PIXELS; ++i) {
+      const double u = (2.0 * (i % CASE_WIDTH) + 1.0) / CASE_WIDTH - 1.0, v = (2.0 * (i / CASE_WIDTH) + 1.0) / CASE_HEIGHT - 1.0;
+      double along[3], whole = 0.0, measured = 0.0;
+      for (int a = 0; a < 3; ++a) {
+        along[a] = c.camera.forward[a] + (c.camera.parallel ? 0.0 : u * c.camera.right[a] + v * c.camera.up[a]);
+        whole += along[a] * along[a];
+        measured += along[a] * along[a] * (a < 2 ? 1e6 : 1e4);
+      }
+      for (int n = 0; n < 4; ++n) {
+        const double is = (double)others[lengths[n]][i], should = (double)numbers[lengths[n]][i] * sqrt(measured / whole);
+        assert_true(isnan(is) == isnan(should) && !(fabs(is - should) > 1e-5 * fabs(should))); /* a few roundings of floats */
+      }
+      lit += numbers[STRATUS_QUANTITY_LENGTH][i] > 0.0f;
+      assert_memory_equal(&others[STRATUS_QUANTITY_MEAN][i], &numbers[STRATUS_QUANTITY_MEAN][i], sizeof(float));
+    }
+    assert_true(lit > CASE_PIXELS / 8);
+    stratus_ray_caster_destroy(caster);
+    case_destroy(&c);
+  }
+}
+
+static void units_are_text(void** state)
+{
+  static const struct {
+    const char *values, *integral;
+  } cases[] = { { "kg m-3", "kg m-2" }, { "kg/m3", "kg m-2" }, { "kg.m^-3", "kg m-2" }, { "kg m**-3", "kg m-2" },
+    { "kg kg-1", "kg kg-1 m" }, { "g/kg", "g kg-1 m" }, { "1", "m" }, { "1/m", "1" }, { "m-1", "1" }, { "K", "K m" }, { "m", "m2" },
+    { "W m-2 sr-1", "W m-1 sr-1" }, { "%", "% m" }, { "kg/(m2 s)", "(kg/(m2 s)) m" }, { "10-3", "10-3 m" }, { "kg/", "(kg/) m" },
+    { "kg//m", "(kg//m) m" }, { "", "" }, { NULL, "" } };
+  char text[64];
+  (void)state;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+    stratus_quantity_unit(STRATUS_QUANTITY_INTEGRAL, cases[i].values, 1, text, sizeof text);
+    assert_string_equal(text, cases[i].integral);
+  }
+  stratus_quantity_unit(STRATUS_QUANTITY_INTEGRAL, "K", 0, text, sizeof text);
+  assert_string_equal(text, "K grid units");
+  stratus_quantity_unit(STRATUS_QUANTITY_LENGTH, NULL, 0, text, sizeof text);
+  assert_string_equal(text, "grid units");
+  stratus_quantity_unit(STRATUS_QUANTITY_MAXIMUM_DEPTH, "K", 1, text, sizeof text);
+  assert_string_equal(text, "m");
+  stratus_quantity_unit(STRATUS_QUANTITY_MEAN, "K", 1, text, sizeof text);
+  assert_string_equal(text, "K");
+  stratus_quantity_unit(STRATUS_QUANTITY_INTEGRAL, "abcdefgh ijk", 1, text, 6);
+  assert_string_equal(text, "abcde");
+  stratus_quantity_unit(STRATUS_QUANTITY_LENGTH, NULL, 1, NULL, 0);
+}
+
 /* ---- several, and blocks */
 
 /* Two halves that meet in a plane have the numbers of the whole; as several, too, because they do not overlap. */
@@ -347,6 +419,10 @@ static void bad_input_is_refused(void** state)
   assert_int_equal(stratus_ray_caster_render_quantities(&input, 0, &c.camera, &wanted), STRATUS_INVALID_ARGUMENT);
   assert_int_equal(stratus_ray_caster_render_quantities(&input, 1, &c.camera, NULL), STRATUS_INVALID_ARGUMENT);
   assert_int_equal(stratus_ray_caster_render_quantities(NULL, 1, &c.camera, &wanted), STRATUS_INVALID_ARGUMENT);
+  wanted.measure[0] = wanted.measure[4] = 1.0; /* nothing along z */
+  assert_int_equal(stratus_ray_caster_render_quantities(&input, 1, &c.camera, &wanted), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(*state), "measure has the determinant 0, must be finite and not 0"));
+  wanted = want_all(numbers);
   wanted.width = 0;
   assert_int_equal(stratus_ray_caster_render_quantities(&input, 1, &c.camera, &wanted), STRATUS_INVALID_ARGUMENT);
   stratus_ray_caster_destroy(caster);
@@ -361,6 +437,8 @@ int test_ray_quantities(void)
     cmocka_unit_test(masks_and_crop_regions),
     cmocka_unit_test(linear_fields),
     cmocka_unit_test(halves_have_the_numbers_of_the_whole),
+    cmocka_unit_test(lengths_are_measured),
+    cmocka_unit_test(units_are_text),
     cmocka_unit_test(bad_input_is_refused),
   };
   return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
