@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Shared by the methods that find first hits. This room finds hits and computes no colours. Core/ray_cast/first_hit_shading.c computes the
+ * Shared by the methods that find first hits. This room finds hits and computes no colours. Core/frame/first_hit_shading.c computes the
  * colour of a hit. */
 #ifndef STRATUS_FIRST_HIT_BATCH_H
 #define STRATUS_FIRST_HIT_BATCH_H

@@ -249,9 +249,9 @@ struct stratus_distance_map {
   size_t bytes_size; /* all maps and 64 bytes of padding, which traversal may read */
   uint8_t* bytes;
   /* If > 0, the offset in bytes[] of one float for each block: a bound on its largest value, or on the negative of its smallest. Rays that
-   * look for extremes skip blocks by it, see kernels/ray_cast/ray_extremes.h. */
+   * look for extremes skip blocks by it, see kernels/field/ray_extremes.h. */
   size_t bounds_at;
-  /* If > 0, bytes[] holds no map but a tree of so many nodes, in the layout of kernels/ray_cast/tree_map.h. kind, pitch and map_bytes then
+  /* If > 0, bytes[] holds no map but a tree of so many nodes, in the layout of kernels/field/tree_map.h. kind, pitch and map_bytes then
    * mean nothing. */
   int tree_nodes;
 };

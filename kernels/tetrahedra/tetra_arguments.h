@@ -88,7 +88,7 @@ typedef struct stratus_tetra_arguments {
   int mode;
   float sign; /* extremes: 1, or -1 for the smallest value */
   float grey; /* sums: factor of the sum; 0: it is divided by the length over which values count */
-  /* > 0: marched extremes and sums store what a ray has kept in place of its colour, as kernels/ray_cast/ray_modes.h says, but no blue; a
+  /* > 0: marched extremes and sums store what a ray has kept in place of its colour, as kernels/integrator/ray_modes.h says, but no blue; a
    * factor of sums. Isosurfaces and slices store only this one of a ray's surfaces, the nearest is 1. */
   float kept;
   int contour_count[4];

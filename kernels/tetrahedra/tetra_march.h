@@ -418,7 +418,7 @@ INLINE vmask tetra_extreme(stratus_tetra_light* light, vmask mask, vfloat first,
   return more;
 }
 
-/* Adds a cell to a ray's quantities, which kernels/ray_cast/ray_quantities.h describes: red, the integral; green, the length; blue, the
+/* Adds a cell to a ray's quantities, which kernels/integrator/ray_quantities.h describes: red, the integral; green, the length; blue, the
  * number of cells. The field is linear. */
 INLINE void tetra_measure(stratus_tetra_light* light, vmask mask, vfloat first, vfloat last, vfloat near, vfloat length)
 {
