@@ -38,6 +38,10 @@ static stratus_status check_light(stratus_context* context, const stratus_light*
   if (!light->positional) {
     return STRATUS_OK;
   }
+  if (light->follows_camera) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "light %d is positional and follows the camera, must be a direction to follow it", number);
+  }
   for (int i = 0; i < 3; ++i) {
     if (!(light->attenuation[i] >= 0.0 && light->attenuation[i] <= STRATUS_LIGHT_MAX)) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "light %d has attenuation (%g, %g, %g), must be 0..%g", number,
@@ -83,24 +87,17 @@ stratus_light stratus_light_in_world(const stratus_camera* camera, const stratus
 {
   stratus_light result = *light;
   if (light->follows_camera) {
-    double basis[3][3];
+    double basis[3][3], vector[3] = { light->vector[0], light->vector[1], light->vector[2] };
     memcpy(basis[0], camera->right, sizeof basis[0]);
     memcpy(basis[1], camera->up, sizeof basis[1]);
     (void)stratus_vector_normalize(basis[0]);
     (void)stratus_vector_normalize(basis[1]);
     stratus_vector_cross(basis[0], basis[1], basis[2]); /* forward may lead to the middle of a part of a picture */
     (void)stratus_vector_normalize(basis[2]);
+    (void)stratus_vector_normalize(vector);
     const double turn = stratus_vector_dot(basis[2], camera->forward) > 0.0 ? -1.0 : 1.0;
     for (int axis = 0; axis < 3; ++axis) {
-      basis[2][axis] *= turn;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      result.vector[axis] = light->positional ? camera->eye[axis] : 0.0;
-      result.axis[axis] = 0.0;
-      for (int i = 0; i < 3; ++i) {
-        result.vector[axis] += light->vector[i] * basis[i][axis];
-        result.axis[axis] += light->axis[i] * basis[i][axis];
-      }
+      result.vector[axis] = vector[0] * basis[0][axis] + vector[1] * basis[1][axis] + vector[2] * turn * basis[2][axis];
     }
     result.follows_camera = 0;
   }

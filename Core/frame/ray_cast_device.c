@@ -259,8 +259,8 @@ static void report_pages(stratus_ray_caster* caster, const stratus_ray_pages* pa
  * them, too: where it shows, the block about it is occupied. */
 static void find_margin(const stratus_ray_caster* caster, stratus_ray_variant variant, int margin[2])
 {
-  const bool lit =
-    variant >= STRATUS_VARIANT_SHADING_MIDPOINT || variant == STRATUS_VARIANT_ISOSURFACE || variant == STRATUS_VARIANT_TRANSFER_2D;
+  const bool lit = variant >= STRATUS_VARIANT_SHADING_MIDPOINT || variant == STRATUS_VARIANT_LIT || variant == STRATUS_VARIANT_ISOSURFACE ||
+    variant == STRATUS_VARIANT_TRANSFER_2D;
   const bool segments = variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED;
   margin[0] = lit ? 2 : 0; /* central differences, at a place that may be rounded into the next cell */
   margin[1] = lit ? 3 : 0;

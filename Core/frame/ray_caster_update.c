@@ -3,6 +3,7 @@
  */
 #include "ray_caster.h"
 
+#include "ray_mode.h"
 #include "ray_modes_render.h"
 #include "ray_sampling.h"
 #include "ray_shading_render.h"
@@ -93,6 +94,15 @@ static stratus_ray_choice_inputs choice_inputs(
   in.mean_components = options->optics.mean_components != 0;
   in.gradient_distance = options->optics.gradient_distance;
   in.gradient_length = options->optics.gradient_length;
+  if (in.shade) {
+    const stratus_shading* shading = &options->light.shading;
+    in.materials[0].ambient = shading->ambient;
+    in.materials[0].diffuse = shading->diffuse;
+    in.materials[0].specular = shading->specular;
+    in.materials[0].specular_power = shading->specular_power;
+    in.one_sided = shading->one_sided != 0;
+    in.lights = shading->light_count;
+  }
   for (int c = 0; c < materials && c < 4; ++c) { /* field by field: their padding is anything */
     in.materials[c].shade = options->light.materials[c].shade != 0;
     in.materials[c].ambient = options->light.materials[c].ambient;

@@ -6,6 +6,7 @@
 #include "matrix.h"
 #include "ray_caster.h"
 #include "ray_fetched.h"
+#include "ray_mode.h"
 #include "ray_sampling.h"
 #include "table_fill.h"
 #include "vector.h"

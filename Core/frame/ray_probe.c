@@ -63,8 +63,9 @@ static const double costs[] = { [STRATUS_SAMPLING_MIDPOINT] = 1.0,
 typedef struct setting {
   stratus_sampling sampling;
   int rung;
-  int cells; /* local: the rung of cells in rough blocks */
-  int light; /* cells, local, lit: the rung of light */
+  int cells;  /* local: the rung of cells in rough blocks */
+  int light;  /* cells, local, lit: the rung of light */
+  bool finer; /* it is what others are compared with, and has a light of its own */
 } setting;
 
 /* The results of one sampling rule so far, at all its rungs. */
@@ -102,7 +103,7 @@ static void take(const probe* p, const setting* s, stratus_ray_choice* choice)
   choice->sampling = s->sampling;
   const int cell_rung = s->sampling == STRATUS_SAMPLING_LOCAL ? s->cells : s->rung;
   choice->cell_error = options->sampling.cell_error > 0.0 ? options->sampling.cell_error : exp2(-2.0 - 0.5 * cell_rung);
-  choice->light_spread = options->sampling.light_spread > 0.0 ? options->sampling.light_spread : exp2(-2.0 - 0.5 * s->light);
+  choice->light_spread = options->sampling.light_spread > 0.0 && !s->finer ? options->sampling.light_spread : exp2(-2.0 - 0.5 * s->light);
   choice->sample_distance = cells      ? p->voxel
     : options->sampling.distance > 0.0 ? options->sampling.distance
                                        : exp2(2.0 - 0.25 * s->rung) * p->voxel;
@@ -252,7 +253,7 @@ static int light_rung(const probe* p, double part)
 
 static setting setting_of(const probe* p, const family* f, int rung)
 {
-  return (setting){ f->sampling, rung, f->cells, light_rung(p, LIGHT_SOUGHT) };
+  return (setting){ f->sampling, rung, f->cells, light_rung(p, LIGHT_SOUGHT), false };
 }
 
 static void forget(family* f)
@@ -447,7 +448,8 @@ static void add_family(candidates* k, const probe* p, stratus_sampling sampling)
   const stratus_ray_cast_options* options = p->options;
   const bool cells = sampling == STRATUS_SAMPLING_CELLS;
   const bool by_samples = sampling == STRATUS_SAMPLING_MIDPOINT || sampling == STRATUS_SAMPLING_PREINTEGRATED;
-  if (p->lit && by_samples && options->sampling.rule == STRATUS_SAMPLING_AUTO) {
+  if (p->lit && by_samples && options->sampling.rule == STRATUS_SAMPLING_AUTO &&
+    stratus_ray_can_sample(p->caster, options, STRATUS_SAMPLING_LOCAL)) {
     return; /* each sample has a place of light of its own, which rules cells and local share at no greater cost */
   }
   if (stratus_ray_can_sample(p->caster, options, sampling) &&
@@ -547,7 +549,7 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
   const bool preintegrates = stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_PREINTEGRATED);
   const double most = SHARE * options->sampling.tolerance, for_rules = p->lit ? LIT_SHARE * most : most;
   const int last = (cells ? CELL_RUNGS : LATTICE_RUNGS) - 1;
-  candidates k = { .count = 0, .fine.light = light_rung(p, LIGHT_COMPARED) };
+  candidates k = { .count = 0, .fine.light = light_rung(p, LIGHT_COMPARED), .fine.finer = true };
   for (stratus_sampling rule = STRATUS_SAMPLING_MIDPOINT; rule <= STRATUS_SAMPLING_CELLS; ++rule) {
     add_family(&k, p, rule);
   }

@@ -3,6 +3,7 @@
 #include "ray_sampling.h"
 
 #include "ray_caster.h"
+#include "ray_mode.h"
 
 /* The spread of light by default, over the tolerance, where no probe measures it. It is what the probe finds for noisy and for smooth
  * scenes of record. */
@@ -12,11 +13,6 @@
 static bool thins_opacity(const stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
   return options->optics.gradient_distance > 0.0 && caster->optics.transfers[0].gradient_count > 0;
-}
-
-bool stratus_ray_clips_gradients(const stratus_ray_cast_options* options)
-{
-  return options->clipping.clip_gradients && options->clipping.clip_plane_count > 0;
 }
 
 /* Whether rays by cells can be lit: they take light at places of their own, after they have composited (lit_places.h). Light must be

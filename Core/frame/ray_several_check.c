@@ -42,6 +42,9 @@ stratus_status stratus_several_check_volume(stratus_context* context, int n, con
     return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several has mode %s, which does not mix with composite", n,
       stratus_mode_name(options->mode));
   }
+  if (options->sampling.rule == STRATUS_SAMPLING_CELLS && options->light.shade) {
+    return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several is lit and sampled by cells, must be the only volume", n);
+  }
   for (int i = 0; options->optics.gradient_distance > 0.0 && i < stratus_ray_shading_media(in->of->volume, options); ++i) {
     if (in->transfer[i].gradient_count > 0) {
       return stratus_fail(context, STRATUS_UNSUPPORTED,

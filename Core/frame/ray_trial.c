@@ -339,7 +339,8 @@ static bool same_sampling(const stratus_ray_caster* caster)
 {
   const stratus_ray_choice *last = &caster->trial.choice, *next = &caster->integrator.choice;
   return caster->trial.table_serial == caster->optics.table_serial && last->sampling == next->sampling &&
-    last->sample_distance == next->sample_distance && (!stratus_ray_visits_cells(next->sampling) || last->cell_error == next->cell_error);
+    last->sample_distance == next->sample_distance &&
+    (!stratus_ray_visits_cells(next->sampling) || (last->cell_error == next->cell_error && last->light_spread == next->light_spread));
 }
 
 stratus_status stratus_ray_try(stratus_ray_caster* caster, stratus_ray_choice_frame* frame, char* why, size_t capacity)

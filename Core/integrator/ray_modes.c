@@ -210,7 +210,7 @@ void stratus_ray_modes_arguments(const stratus_ray_integrator* integrator, const
   if (stratus_ray_visits_cells(integrator->choice.sampling)) {
     const double error = integrator->choice.cell_error * changing_extent(optics->transfers, lo + summed->bias, hi + summed->bias);
     a->lattice.pieces_per_bend = error > 0.0 ? (float)fmin(1.0 / (8.0 * error), 1e30) : 0.0f;
-    a->lattice.light_spread = (float)integrator->choice.light_spread;
+    a->lattice.light_spread = (float)fmax(fmin(integrator->choice.light_spread, 1e30), 1e-30);
   }
   if (integrator->choice.sampling == STRATUS_SAMPLING_CELLS || options->mode == STRATUS_MODE_SLICE ||
     options->mode == STRATUS_MODE_QUANTITIES) {

@@ -23,10 +23,13 @@ int stratus_ray_shading_media(const stratus_volume* volume, const stratus_ray_ca
 static stratus_status check_cells(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
-  const char* what = stratus_volume_components(volume) > 1 ? "of several components"
-    : options->mask.bytes                                  ? "with a mask"
-    : transfer->gradient_count > 0                         ? "with a gradient opacity"
-                                                           : NULL;
+  const char* what = stratus_volume_components(volume) > 1             ? "of several components"
+    : options->mask.bytes                                              ? "with a mask"
+    : transfer->gradient_count > 0                                     ? "with a gradient opacity"
+    : !options->light.shade                                            ? NULL
+    : stratus_ray_clips_gradients(options)                             ? "with light by gradients that clip planes change"
+    : options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST ? "with light and nearest interpolation"
+                                                                       : NULL;
   if (options->sampling.rule == STRATUS_SAMPLING_CELLS && options->mode == STRATUS_MODE_COMPOSITE && what) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "sampling by cells of a volume %s is not supported", what);
   }

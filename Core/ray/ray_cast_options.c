@@ -3,6 +3,7 @@
 #include "stratus/ray_cast.h"
 
 #include "lights.h"
+#include "ray_mode.h"
 
 const char* stratus_structure_name(stratus_structure structure)
 {
@@ -22,4 +23,9 @@ stratus_ray_cast_options stratus_ray_cast_options_default(void)
     .light.shading = stratus_shading_default(),
     .optics.average_range = { -INFINITY, INFINITY },
     .clipping.crop_regions = STRATUS_CROP_INSIDE };
+}
+
+bool stratus_ray_clips_gradients(const stratus_ray_cast_options* options)
+{
+  return options->clipping.clip_gradients && options->clipping.clip_plane_count > 0;
 }

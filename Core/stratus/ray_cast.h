@@ -79,15 +79,15 @@ typedef struct stratus_light {
    * the colour is multiplied by the cosine of the angle to the axis, to the power `cone_exponent`. 0 (default), or 90 and more: no cone;
    * `axis` and `cone_exponent` are not read. */
   double cone_angle;
-  double axis[3]; /* direction in which the light shines, coordinates as of `vector`, any length > 0 */
+  double axis[3]; /* direction in which the light shines, world coordinates, any length > 0 */
   /* 0..STRATUS_LIGHT_MAX */
   double cone_exponent;
   /* 1: highlights have the colour `specular_color`. 0 (default): they have `color`, and `specular_color` is not read. */
   int separate_specular;
   double specular_color[3]; /* red, green, blue, each 0..STRATUS_LIGHT_MAX */
-  /* 1: the light moves with the camera. `vector` and `axis` are in the camera's coordinates, in world lengths: x to the right of the
-   * picture, y up, z out of the picture towards the eye, which is at (0, 0, 0). The probe that measures for the tolerance moves the light
-   * with its rays. 0 (default): the light stays in the world. */
+  /* 1: the light, a direction, moves with the camera. `vector` is in the camera's coordinates: x to the right of the picture, y up, z out
+   * of the picture. The probe that measures for the tolerance turns the light with its rays. Not for positional lights. 0 (default): the
+   * light stays in the world. */
   int follows_camera;
 } stratus_light;
 
@@ -166,7 +166,7 @@ typedef struct stratus_ray_sampling_options {
   double termination; /* a ray ends when its alpha exceeds this, 0..1; 0 (default): by the tolerance */
   /* The root mean square error of RGBA in 0..1 over the lit pixels that the automatic settings may cause. At least 0, finite. Default .001:
    * 60 dB, a quarter of an 8-bit step. 0: the finest settings. The tolerance governs the settings that are left automatic: rule, distance,
-   * cell_error and termination. */
+   * cell_error, light_spread and termination. */
   double tolerance;
   /* 1: each ray's samples move along it by 0..1 sample distances, by a number made from the pixel and jitter_seed. This turns wood grain
    * into noise. Rule cells does not jitter, and rule local jitters only in its smooth blocks. Default 0. */

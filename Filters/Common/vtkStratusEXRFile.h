@@ -13,7 +13,7 @@
 struct VTK_STRATUS_PRIVATE vtkStratusEXRChannel {
   std::string Name;                        // 1..255 bytes, unique; viewers know R, G, B, A and Z
   std::function<void(int, float*)> GetRow; // fills one row, row 0 is the bottom one; may throw
-  std::string Units;                       // an attribute "NAME.units" of the file; "": none
+  std::string Units{};                     // an attribute "NAME.units" of the file; "": none
 };
 
 // Gets the fraction done, 0..1. Throws to stop.

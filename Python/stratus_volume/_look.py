@@ -128,10 +128,11 @@ class Units:
     def _of_axes(coordinates):
         units = [str(axis.attrs.get("units", "")) for axis in coordinates]
         metres = [_METRES.get(unit.strip()) for unit in units]
-        if len(metres) != 3 or None in metres or any(axis.ndim != 1 or axis.size < 2 or axis.dtype.kind not in "iuf" for axis in coordinates):
+        places = [numpy.asarray(axis.values) for axis in coordinates]
+        if len(metres) != 3 or None in metres or any(axis.ndim != 1 or axis.size < 2 or axis.dtype.kind not in "iuf" for axis in places):
             return None
         if len(set(units)) > 1:  # the grid then has a spacing of 1 along each axis
-            metres = [metre * abs(float(axis[-1]) - float(axis[0])) / (axis.size - 1) for metre, axis in zip(metres, coordinates)]
+            metres = [metre * abs(float(axis[-1]) - float(axis[0])) / (axis.size - 1) for metre, axis in zip(metres, places)]
         return metres
 
     def measure(self):

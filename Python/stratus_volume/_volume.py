@@ -37,8 +37,8 @@ class Volume:
         dims = None
         if of_xarray and spacing is None and origin is None:
             dims = [data.dims[own] for _, own in sorted(zip(self.grid.world, self.grid.own))]
-        self._units = Units(data, dims, self._named[1] if of_xarray else None, matrix)
         self._place(matrix)
+        self._units = Units(data, dims, self._named[1] if of_xarray else None, matrix)
         self.context = context_of(device, threads)
         self._caster = Owned(self.context, library.stratus_ray_caster_destroy)
         with self.context.lock:

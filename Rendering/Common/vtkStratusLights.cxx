@@ -9,17 +9,36 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
-// Converts a light. The renderer has already moved lights that follow the camera, whose place relative to the camera is what counts.
+// Whether a camera's model and view only turn and move the world.
+bool IsRigid(vtkMatrix4x4* view)
+{
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      double dot = i == j ? -1.0 : 0.0;
+      for (int a = 0; a < 3; ++a) {
+        dot += view->GetElement(i, a) * view->GetElement(j, a);
+      }
+      if (!(std::abs(dot) < 1e-9)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+// Converts a light. The renderer has already moved lights that follow the camera; directions are turned back to the camera's coordinates.
 void SetLight(vtkLight* light, vtkCamera* camera, stratus_light& result)
 {
   double position[4] = { 0.0, 0.0, 0.0, 1.0 }, focal[4] = { 0.0, 0.0, 0.0, 1.0 };
   light->GetTransformedPosition(position);
   light->GetTransformedFocalPoint(focal);
-  result.follows_camera = light->LightTypeIsHeadlight() || light->LightTypeIsCameraLight() ? 1 : 0;
+  vtkMatrix4x4* view = camera->GetModelViewTransformMatrix();
+  const bool moves = light->LightTypeIsHeadlight() || light->LightTypeIsCameraLight();
+  result.follows_camera = moves && !light->GetPositional() && IsRigid(view) ? 1 : 0;
   if (result.follows_camera) {
-    vtkMatrix4x4* view = camera->GetViewTransformMatrix();
     view->MultiplyPoint(position, position);
     view->MultiplyPoint(focal, focal);
   }

@@ -421,8 +421,8 @@ public:
   /**
    * Set/Get the root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause, at least 0 and finite; any
    * other value is an error and is ignored. 0 selects the finest settings. Default 0.001: 60 dB, a quarter of an 8-bit step. It governs
-   * whichever of Sampling, SampleDistance (with cells: CellError) and Termination are automatic. GetExpectedError() returns the error that
-   * is expected.
+   * whichever of Sampling, SampleDistance (with cells: CellError, LightSpread) and Termination are automatic. GetExpectedError() returns
+   * the error that is expected.
    */
   virtual void SetImageErrorTolerance(double tolerance);
   vtkGetMacro(ImageErrorTolerance, double);

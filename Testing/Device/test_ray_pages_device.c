@@ -53,6 +53,7 @@ static const page_case cases[] = {
   { "nearest", STRATUS_INT64, COMPOSITE, MIDPOINT, NEAREST, DISTANCE, .9, .divisor = 4 },
   { "cells, nearest", STRATUS_FLOAT32, COMPOSITE, CELLS, NEAREST, DISTANCE, 0, .divisor = 3 },
   { "lit", STRATUS_INT8, COMPOSITE, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 2, .shade = 1 },
+  { "lit, cells", STRATUS_FLOAT32, COMPOSITE, CELLS, LINEAR, DISTANCE, 0, .divisor = 3, .shade = 1 },
   { "lit, pre-integrated, nearest", STRATUS_UINT32, COMPOSITE, PREINTEGRATED, NEAREST, DISTANCE, 1.1, .divisor = 3, .shade = 1 },
   { "lit by gradients of its own", STRATUS_FLOAT32, COMPOSITE, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 1, .shade = 1, .gradients = 1 },
   { "two components, lit by gradients of their own", STRATUS_FLOAT32, COMPOSITE, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 1, .shade = 1,

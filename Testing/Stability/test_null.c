@@ -328,6 +328,10 @@ static void ray_casters(const small_scene* scene)
   REFUSES(stratus_ray_caster_render_quantities(&no_transfer, 1, &scene->camera, &numbers));
   numbers = (stratus_quantities){ .width = 1, .height = 1, .threshold = 0.5 }; /* nothing is wanted */
   ACCEPTS(stratus_ray_caster_render_quantities(several, 1, &scene->camera, &numbers));
+  char unit[8];
+  TAKES(stratus_quantity_unit(STRATUS_QUANTITY_INTEGRAL, NULL, 1, unit, sizeof unit));
+  TAKES(stratus_quantity_unit(STRATUS_QUANTITY_INTEGRAL, "K", 1, NULL, sizeof unit));
+  TAKES(stratus_quantity_unit(STRATUS_QUANTITY_INTEGRAL, "K", 1, unit, 0));
   IS_SILENT(stratus_ray_caster_offer_tree(NULL, rgba, sizeof rgba));
   ACCEPTS(stratus_ray_caster_offer_tree(c, NULL, 8));
   stratus_ray_caster_destroy(c);

@@ -5,15 +5,15 @@
  * the mean. A bundle is closed where its spread would pass a limit. Thus faint stretches, and those behind others, share a place over a
  * long way, and a stretch that makes most of a pixel has its own.
  *
- * Closed bundles wait until the packet has one for each lane. A bundle follows from its ray alone, and a ray adds up the light of its
+ * Closed bundles wait until the packet has one for each lane. A bundle follows from its ray, and a ray adds up the light of its
  * bundles in their order, so that no pixel depends on the others of its packet. Included by ray_cast.h. */
 #ifndef STRATUS_LIT_PLACES_H
 #define STRATUS_LIT_PLACES_H
 
-/* A way through a cell is cut for its light into pieces of no less than this part. */
+/* Pieces of a cell are cut for their light only if they are longer than this part of the way through it. */
 #define LIT_PIECE_LEAST (1.0f / 64.0f)
 
-/* What a ray has gathered before a stretch. */
+/* A ray before a stretch. */
 typedef struct lit_before {
   vfloat transparency, red, green, blue, depth;
 } lit_before;
@@ -27,7 +27,7 @@ INLINE lit_before lit_before_stretch(const stratus_packet* k)
 /* A stretch that a ray has composited: its opacity times what was left of the ray, its mean place and the spread of its places about that,
  * in samples. */
 typedef struct lit_stretch {
-  vfloat weight, place, spread;
+  vfloat weight, place, spread, begin, end;
 } lit_stretch;
 
 /* Extinction counts as even along a stretch. Of the optical depth t and the opacity o the mean place is then 1 / t - (1 - o) / o of its
@@ -46,6 +46,8 @@ INLINE lit_stretch lit_stretch_of(const lit_before* before, const stratus_packet
   s.place = v_fma(mean, length, begin);
   const vfloat variance = v_fma(o * o, v_fma(o, v_set(-1.0f / 240.0f), v_set(-1.0f / 240.0f)), v_set(1.0f / 12.0f));
   s.spread = s.weight * variance * (length * length);
+  s.begin = begin;
+  s.end = begin + length;
   return s;
 }
 
@@ -77,7 +79,16 @@ INLINE void lit_begin(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k)
   v_store(p->lit[1], k->green);
   v_store(p->lit[2], k->blue);
   k->red = k->green = k->blue = zero;
-  p->limit = v_set(a->lattice.light_spread) * v_reciprocal(v_max(v_dot3(k->d, k->d), v_set(1e-30f)));
+  const vfloat voxels = v_reciprocal(v_max(v_dot3(k->d, k->d), v_set(1e-30f)));
+  p->limit = v_set(a->lattice.light_spread) * voxels;
+  p->gap = voxels * v_inverse_root(v_max(voxels, v_set(1e-30f)));
+  p->reach = zero;
+  p->from = v_set(-LARGEST_FLOAT);
+  p->to = v_set(LARGEST_FLOAT);
+  if (RAY_RARE(RAY_PIECE, a->crop.has_piece)) { /* beyond the first and the last segment's middle gradients may lack neighbours */
+    p->from = v_from_int(k->i) + v_set(0.5f);
+    p->to = v_max(v_from_int(k->last) - v_set(0.5f), p->from);
+  }
   p->weight = p->first = p->second = p->origin = zero;
   p->count = 0;
   for (int c = 0; c < 3; ++c) { /* lanes without an entry read some place, too */
@@ -113,7 +124,7 @@ INLINE void lit_queue(float* queue, vmask mask, const int* lanes, int count, vfl
 INLINE void lit_close(stratus_packet* k, vmask mask, vfloat red, vfloat green, vfloat blue)
 {
   stratus_lit_places* p = &k->places;
-  const vfloat place = v_fma(p->first, v_reciprocal(v_max(p->weight, v_set(1e-30f))), p->origin);
+  const vfloat mean = v_fma(p->first, v_reciprocal(v_max(p->weight, v_set(1e-30f))), p->origin), place = v_min(v_max(mean, p->from), p->to);
 #if !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
   const int count = m_count(mask);
   _mm512_storeu_si512(p->lane + p->count, _mm512_maskz_compress_epi32(mask, (__m512i)vi_lanes()));
@@ -184,7 +195,7 @@ INLINE void RAY_NAME(lit_pass)(CONSTANT stratus_ray_cast_arguments* a, value_sou
   const vfloat away = place - p->origin, moved = weight * away;
   vfloat sum = p->weight + weight, first = p->first + moved, second = p->second + v_fma(moved, away, own);
   const vfloat spread = v_fma(first * v_reciprocal(v_max(sum, v_set(1e-30f))), zero - first, second);
-  const vmask closes = mask & open & v_lt(p->limit, spread);
+  const vmask closes = mask & open & (v_lt(p->limit, spread) | v_lt(p->reach + p->gap, s->begin));
   if (m_any(closes)) {
     lit_close(k, closes, before->red, before->green, before->blue);
     k->red = v_select(closes, k->red - before->red, k->red);
@@ -195,6 +206,7 @@ INLINE void RAY_NAME(lit_pass)(CONSTANT stratus_ray_cast_arguments* a, value_sou
     first = v_select(closes, zero, first);
     second = v_select(closes, own, second);
   }
+  p->reach = v_select(mask, s->end, p->reach);
   p->weight = v_select(mask, sum, p->weight);
   p->first = v_select(mask, first, p->first);
   p->second = v_select(mask, second, p->second);

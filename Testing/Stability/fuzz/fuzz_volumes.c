@@ -392,9 +392,9 @@ void fuzz_shading(fuzz* f, const double bounds[6], double edge, stratus_shading*
     fuzz_vector(f, bounds[0] - 5.0 * edge, bounds[1] + 5.0 * edge, light->vector);
     fuzz_vector(f, 0.0, 1.0, light->color);
     light->separate_specular = fuzz_flag(f);
-    light->follows_camera = fuzz_flag(f);
     fuzz_vector(f, 0.0, 1.0, light->specular_color);
     light->positional = fuzz_flag(f);
+    light->follows_camera = !light->positional && fuzz_flag(f);
   }
   shading->one_sided = fuzz_flag(f);
 }
