@@ -120,10 +120,10 @@ std::vector<uint8_t> frame::encode_exr() const
   };
   std::vector<vtkStratusEXRChannel> channels;
   for (size_t c = 0; c < 4; ++c) {
-    channels.push_back({ std::string(1, "RGBA"[c]), row_of(this->Rgba, 4, c), "" });
+    channels.push_back({ std::string(1, "RGBA"[c]), row_of(this->Rgba, 4, c) });
   }
-  channels.push_back({ "Z", row_of(this->Depth, 1, 0), "" });
-  channels.push_back({ "Samples", row_of(this->Samples, 1, 0), "" });
+  channels.push_back({ "Z", row_of(this->Depth, 1, 0) });
+  channels.push_back({ "Samples", row_of(this->Samples, 1, 0) });
   for (size_t i = 0; i < this->Wanted.size(); ++i) {
     channels.push_back({ stratus_quantity_name(this->Wanted[i]), row_of(this->Numbers[i], 1, 0), this->units_of(this->Wanted[i]) });
   }

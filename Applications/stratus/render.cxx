@@ -7,8 +7,7 @@
 #include "input.h"
 #include "series.h"
 
-#include <vtkDataArray.h>
-#include <vtkFieldData.h>
+#include "vtkStratusMetres.h"
 
 #include <chrono>
 #include <cmath>
@@ -54,9 +53,7 @@ void annotate(cli::frame& frame, const cli::options& o, const cli::drawing& draw
 void set_units(cli::frame& frame, const cli::drawing& drawing, const cli::routed& data, const cli::series* in, const cli::options& o)
 {
   vtkDataSet* set = data.image ? data.image : data.grid;
-  vtkDataArray* metres = set ? set->GetFieldData()->GetArray("MetresPerUnit") : nullptr;
-  frame.set_units(drawing.place().scale, metres && metres->GetNumberOfTuples() > 0 ? metres->GetComponent(0, 0) : 0.0,
-    in && o.companions.empty() ? in->value_units() : "");
+  frame.set_units(drawing.place().scale, vtkStratusMetresPerUnit(set), in && o.companions.empty() ? in->value_units() : "");
 }
 
 std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& core, const cli::routed& data)

@@ -9,14 +9,7 @@
 void stratus_lamps_set(const stratus_camera* camera, const stratus_shading* shading, stratus_lamps* lamps)
 {
   lamps->shading = shading;
-  lamps->count = shading->light_count;
-  for (int i = 0; i < lamps->count; ++i) {
-    lamps->lights[i] = stratus_light_in_world(camera, &shading->lights[i]);
-  }
-  if (shading->light_count < 0) {
-    lamps->lights[0] = stratus_light_at_eye(camera);
-    lamps->count = 1;
-  }
+  lamps->count = stratus_lights_in_world(camera, shading, lamps->lights);
   for (int i = 0; i < lamps->count; ++i) {
     if (!lamps->lights[i].positional) {
       (void)stratus_vector_normalize(lamps->lights[i].vector);

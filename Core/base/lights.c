@@ -83,7 +83,7 @@ stratus_status stratus_shading_check(stratus_context* context, const stratus_sha
   return STRATUS_OK;
 }
 
-stratus_light stratus_light_in_world(const stratus_camera* camera, const stratus_light* light)
+static stratus_light light_in_world(const stratus_camera* camera, const stratus_light* light)
 {
   stratus_light result = *light;
   if (light->follows_camera) {
@@ -104,13 +104,19 @@ stratus_light stratus_light_in_world(const stratus_camera* camera, const stratus
   return result;
 }
 
-stratus_light stratus_light_at_eye(const stratus_camera* camera)
+int stratus_lights_in_world(const stratus_camera* camera, const stratus_shading* shading, stratus_light lights[STRATUS_LIGHTS_MAX])
 {
-  stratus_light light = { .color = { 1.0, 1.0, 1.0 }, .positional = !camera->parallel };
-  for (int axis = 0; axis < 3; ++axis) {
-    light.vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
+  for (int i = 0; i < shading->light_count; ++i) {
+    lights[i] = light_in_world(camera, &shading->lights[i]);
   }
-  return light;
+  if (shading->light_count >= 0) {
+    return shading->light_count;
+  }
+  lights[0] = (stratus_light){ .color = { 1.0, 1.0, 1.0 }, .positional = !camera->parallel };
+  for (int axis = 0; axis < 3; ++axis) {
+    lights[0].vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
+  }
+  return 1;
 }
 
 static double length_of(const double v[3])
@@ -159,14 +165,9 @@ void stratus_lights_set(
   const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit, stratus_light_arguments* a)
 {
   a->two_sided = !shading->one_sided;
-  a->count = shading->light_count;
-  for (int i = 0; i < shading->light_count; ++i) {
-    const stratus_light light = stratus_light_in_world(camera, &shading->lights[i]);
-    set_light(&light, origin, unit, i, a);
-  }
-  if (shading->light_count < 0) {
-    const stratus_light light = stratus_light_at_eye(camera);
-    set_light(&light, origin, unit, 0, a);
-    a->count = 1;
+  stratus_light lights[STRATUS_LIGHTS_MAX];
+  a->count = stratus_lights_in_world(camera, shading, lights);
+  for (int i = 0; i < a->count; ++i) {
+    set_light(&lights[i], origin, unit, i, a);
   }
 }

@@ -10,10 +10,9 @@
 stratus_shading stratus_shading_default(void);
 /* Checks what light makes of a medium, and the lights. */
 stratus_status stratus_shading_check(stratus_context* context, const stratus_shading* shading);
-/* Returns the light in world coordinates. */
-stratus_light stratus_light_in_world(const stratus_camera* camera, const stratus_light* light);
-/* Returns the light at the eye, in world coordinates: a direction where rays are parallel. */
-stratus_light stratus_light_at_eye(const stratus_camera* camera);
+/* Gives the lights in world coordinates; where a shading has none of its own, one at the eye, a direction where rays are parallel. Returns
+ * their number. */
+int stratus_lights_in_world(const stratus_camera* camera, const stratus_shading* shading, stratus_light lights[STRATUS_LIGHTS_MAX]);
 /* Sets count, sides and lights of the arguments. Places are relative to `origin` in the world, in units of `unit`. */
 void stratus_lights_set(
   const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit, stratus_light_arguments* a);

@@ -479,41 +479,30 @@ static double expected_of(const family* f, int rung, double error, const setting
   return error / (1.0 - exp2(-falls * (fine->rung - rung)));
 }
 
-/* Find the coarsest rung of light by which a setting keeps `most`. */
-static stratus_status search_light(probe* p, const family* f, int rung, double most, int* light)
+/* Gives a setting the coarsest light, up to its own, by which it keeps `most`. Its rough blocks are on loan. */
+static stratus_status search_light(probe* p, double most, setting* s)
 {
-  int high = light_rung(p, LIGHT_SOUGHT), low = p->options->sampling.light_spread > 0.0 ? high : 0, next = high / 2;
-  if (f->sampling == STRATUS_SAMPLING_LOCAL) {
-    TRY(lend_rough(p, f->beyond));
-  }
-  while (low < high) {
-    setting s = setting_of(p, f, rung);
-    s.light = next;
-    TRY(draw_patches(p, &s, p->options->sampling.tolerance, p->coarse));
+  int high = s->light, low = p->options->sampling.light_spread > 0.0 ? high : 0;
+  for (s->light = high / 2; low < high; s->light = (low + high) / 2) {
+    TRY(draw_patches(p, s, p->options->sampling.tolerance, p->coarse));
     const double error = error_of(p);
     note(p, ", light %.2g: %.2g", p->caster->integrator.choice.light_spread, error);
     if (error <= most) {
-      high = next;
+      high = s->light;
     } else {
-      low = next + 1;
+      low = s->light + 1;
     }
-    next = (low + high) / 2;
   }
-  *light = high;
+  s->light = high;
   return STRATUS_OK;
 }
 
-/* The error of the setting that is taken, whose rays end by the whole tolerance, as pictures' do. */
-static stratus_status measure_taken(probe* p, const family* f, int rung, int light, const setting* fine, double* error)
+/* The error of the setting that is taken, whose rays end by the whole tolerance, as pictures' do. Its rough blocks are on loan. */
+static stratus_status measure_taken(probe* p, const family* f, const setting* s, const setting* fine, double* error)
 {
-  setting s = setting_of(p, f, rung);
-  s.light = light;
-  if (f->sampling == STRATUS_SAMPLING_LOCAL) {
-    TRY(lend_rough(p, f->beyond));
-  }
   p->whole.sampling.tolerance = p->options->sampling.tolerance;
-  TRY(draw_patches(p, &s, p->options->sampling.tolerance, p->coarse));
-  *error = expected_of(f, rung, error_of(p), fine);
+  TRY(draw_patches(p, s, p->options->sampling.tolerance, p->coarse));
+  *error = expected_of(f, s->rung, error_of(p), fine);
   return STRATUS_OK;
 }
 
@@ -570,15 +559,18 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
     TRY(compare(p, &k, for_rules, &best, &found));
     if (k.fine.rung == finest || (found && !too_near(p, found, best, &k.fine))) {
       setting s = found ? setting_of(p, found, best) : (setting){ .sampling = k.fine.sampling, .rung = last, .light = LIGHT_FINEST };
+      if (found && found->sampling == STRATUS_SAMPLING_LOCAL) {
+        TRY(lend_rough(p, found->beyond));
+      }
       if (found && p->lit && stratus_ray_visits_cells(found->sampling)) {
-        TRY(search_light(p, found, best, most, &s.light));
+        TRY(search_light(p, most, &s));
       }
       take(p, &s, choice);
       *beyond = found ? found->beyond : 0;
       choice->met = found != NULL;
       choice->expected_error = error_of_finest(&k, last);
       if (found) {
-        TRY(measure_taken(p, found, best, s.light, &k.fine, &choice->expected_error));
+        TRY(measure_taken(p, found, &s, &k.fine, &choice->expected_error));
       }
       return STRATUS_OK;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusVariableReader.h"
 
+#include "vtkStratusMetres.h"
 #include "vtkStratusReadError.h"
 #include "vtkStratusUnits.h"
 
@@ -197,7 +198,7 @@ void vtkStratusVariableReader::SetUnits(vtkDataObject* output)
   const double metres = vtkStratusMetresOf(this->LengthUnits);
   if (metres > 0.0) {
     vtkNew<vtkDoubleArray> array;
-    array->SetName("MetresPerUnit");
+    array->SetName(vtkStratusMetresPerUnitName);
     array->InsertNextValue(metres);
     output->GetFieldData()->AddArray(array);
   }

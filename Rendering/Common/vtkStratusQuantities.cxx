@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusQuantities.h"
 
+#include "vtkStratusMetres.h"
 #include "vtkStratusPicture.h"
 
 #include "vtkAbstractVolumeMapper.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
-#include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -22,13 +22,6 @@
 #include <limits>
 
 namespace {
-double MetresPerUnitOf(vtkDataObject* data)
-{
-  vtkDataArray* array = data && data->GetFieldData() ? data->GetFieldData()->GetArray("MetresPerUnit") : nullptr;
-  const double metres = array && array->GetNumberOfTuples() > 0 ? array->GetComponent(0, 0) : 0.0;
-  return metres > 0.0 && metres < std::numeric_limits<double>::infinity() ? metres : 0.0;
-}
-
 // The first part of composite data, or the data.
 vtkDataSet* FirstOf(vtkDataObject* data)
 {
@@ -88,7 +81,7 @@ void vtkStratusQuantities::AddData(vtkDataObject* data, vtkDataArray* values, co
     ? values->GetInformation()->Get(vtkDataArray::UNITS_LABEL())
     : nullptr;
   const std::string units = label ? label : "";
-  const double own = MetresPerUnitOf(data), metres = own > 0.0 ? own : MetresPerUnitOf(FirstOf(data));
+  const double own = vtkStratusMetresPerUnit(data), metres = own > 0.0 ? own : vtkStratusMetresPerUnit(FirstOf(data));
   const bool alike = std::equal(linear, linear + 9, this->Linear) && metres == this->MetresPerUnit;
   if (this->Volumes == 0) {
     std::copy(linear, linear + 9, this->Linear);

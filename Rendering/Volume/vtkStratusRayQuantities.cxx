@@ -113,7 +113,8 @@ public:
   int Size[2] = { 1, 1 };
 
 private:
-  vtkDataArray* FindArray(vtkDataSet* set, int& association) const;
+  // Returns the array of a grid, and whether it is of cells; the first one stays as Array.
+  vtkDataArray* FindArray(vtkDataSet* set, bool& cells);
   bool AddGrid(vtkDataSet* grid, vtkDataArray* array, bool cells, const float* gradients, std::string& error);
   bool AddMesh(vtkDataSet* grid, vtkDataArray* array, bool cells, std::string& error);
   bool AddAll(vtkDataObject* input, std::string& error);
@@ -145,9 +146,13 @@ void vtkStratusRayQuantities::Internals::ReleaseCasters()
   this->Tetra = nullptr;
 }
 
-vtkDataArray* vtkStratusRayQuantities::Internals::FindArray(vtkDataSet* set, int& association) const
+vtkDataArray* vtkStratusRayQuantities::Internals::FindArray(vtkDataSet* set, bool& cells)
 {
-  return this->Filter->GetInputArrayToProcess(0, set, association);
+  int association = 0;
+  vtkDataArray* array = this->Filter->GetInputArrayToProcess(0, set, association);
+  cells = association == vtkDataObject::CELL;
+  this->Array = this->Array ? this->Array : array;
+  return array;
 }
 
 bool vtkStratusRayQuantities::Internals::AddGrid(
@@ -177,20 +182,18 @@ bool vtkStratusRayQuantities::Internals::AddComposite(vtkCompositeDataSet* whole
   parts.erase(std::remove_if(parts.begin(), parts.end(), is_empty), parts.end());
   if (std::all_of(parts.begin(), parts.end(), [](vtkDataSet* part) { return vtkStratusAsImage(part) != nullptr; })) {
     for (vtkDataSet* part : parts) {
-      int association = 0;
-      vtkDataArray* array = this->FindArray(part, association);
-      this->Array = this->Array ? this->Array : array;
-      if (array && !this->AddGrid(part, array, association == vtkDataObject::CELL, nullptr, error)) {
+      bool cells = false;
+      vtkDataArray* array = this->FindArray(part, cells);
+      if (array && !this->AddGrid(part, array, cells, nullptr, error)) {
         return false;
       }
     }
     return true;
   }
-  const auto find = [this](vtkDataSet* part, int& cells) {
-    int association = 0;
-    vtkDataArray* array = this->FindArray(part, association);
-    cells = association == vtkDataObject::CELL ? 1 : 0;
-    this->Array = this->Array ? this->Array : array;
+  const auto find = [this](vtkDataSet* part, int& of_cells) {
+    bool cells = false;
+    vtkDataArray* array = this->FindArray(part, cells);
+    of_cells = cells ? 1 : 0;
     return array;
   };
   if (!this->Blocks.Set(whole, find, error, false)) {
@@ -208,13 +211,7 @@ bool vtkStratusRayQuantities::Internals::AddAll(vtkDataObject* input, std::strin
     this->Bounds[side] = side % 2 ? -HUGE_VAL : HUGE_VAL;
   }
   if (auto* amr = vtkUniformGridAMR::SafeDownCast(input)) {
-    const auto find = [this](vtkDataSet* box, bool& cells) {
-      int association = 0;
-      vtkDataArray* array = this->FindArray(box, association);
-      cells = association == vtkDataObject::CELL;
-      this->Array = this->Array ? this->Array : array;
-      return array;
-    };
+    const auto find = [this](vtkDataSet* box, bool& cells) { return this->FindArray(box, cells); };
     bool added = this->Refined.Set(amr, find, vtkStratusAMR::Use(), error);
     for (const auto& grid : this->Refined.GetGrids()) {
       vtkDataSetAttributes* data =
@@ -227,13 +224,12 @@ bool vtkStratusRayQuantities::Internals::AddAll(vtkDataObject* input, std::strin
     return this->AddComposite(whole, error);
   }
   vtkDataSet* set = vtkDataSet::SafeDownCast(input);
-  int association = 0;
-  this->Array = set ? this->FindArray(set, association) : nullptr;
-  if (!this->Array) {
+  bool cells = false;
+  vtkDataArray* array = set ? this->FindArray(set, cells) : nullptr;
+  if (!array) {
     return true; // reported with the other inputs that have none
   }
-  const bool cells = association == vtkDataObject::CELL;
-  return vtkStratusAsImage(set) ? this->AddGrid(set, this->Array, cells, nullptr, error) : this->AddMesh(set, this->Array, cells, error);
+  return vtkStratusAsImage(set) ? this->AddGrid(set, array, cells, nullptr, error) : this->AddMesh(set, array, cells, error);
 }
 
 bool vtkStratusRayQuantities::Internals::MakeCasters(std::string& error)

@@ -4,12 +4,12 @@
  * @brief   numbers of parallel rays through a grid, as an image: column densities, path lengths, the largest values and their depths
  *
  * Input is a vtkImageData, vtkRectilinearGrid, vtkUnstructuredGrid, vtkStructuredGrid, vtkUniformGridAMR or a composite of such grids. The
- * values are those of SetInputArrayToProcess(), by default the active scalars; of components the first counts.
+ * array that SetInputArrayToProcess() names has the values, by default the active scalars. Of several components the first counts.
  *
- * Output is a vtkImageData of one point for each ray, which lies where the rays enter the data's bounding box. For an axis, the rays look
- * against it: down from the top for z. Points are pixels' middles. Each quantity is an array of floats of its name: "integral", "length",
- * "mean", "maximum", "maximum_depth", "cells". Integrals are exact: the field is integrated cell by cell. Depths are distances from the
- * image's plane. A ray without a value has the integral 0, and NaN for mean, maximum and its depth.
+ * Output is a vtkImageData of one point for each ray, on the side of the data's bounding box where rays enter it. For an axis, the rays
+ * look against it: down from the top for z. Points are pixels' middles. Each quantity is an array of floats of its name: "integral",
+ * "length", "mean", "maximum", "maximum_depth", "cells". Integrals are exact: the field is integrated cell by cell. Depths are distances
+ * from the image's plane. A ray without a value has the integral 0, and NaN for mean, maximum and its depth.
  *
  * Lengths are in the units of the coordinates, or in metres if the input's field data have an array "MetresPerUnit", which Stratus'
  * readers add. The information of each array has its unit as vtkDataArray::UNITS_LABEL(), "kg m-2" for the integral of values in "kg m-3".

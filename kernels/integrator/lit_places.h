@@ -10,7 +10,7 @@
 #ifndef STRATUS_LIT_PLACES_H
 #define STRATUS_LIT_PLACES_H
 
-/* Pieces of a cell are cut for their light only if they are longer than this part of the way through it. */
+/* Pieces of a cell are cut for their light only if they are longer than this part of the ray's path through it. */
 #define LIT_PIECE_LEAST (1.0f / 64.0f)
 
 /* A ray before a stretch. */
@@ -109,7 +109,7 @@ INLINE void lit_queue(float* queue, vmask mask, const int* lanes, int count, vfl
 #elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
   (void)lanes;
   (void)count;
-  _mm512_storeu_ps(queue, _mm512_maskz_compress_ps(mask, v)); /* what it writes behind the lanes is free */
+  _mm512_storeu_ps(queue, _mm512_maskz_compress_ps(mask, v)); /* the places behind the last lane are free */
 #else
   float all[STRATUS_WIDTH];
   (void)mask;
