@@ -345,15 +345,16 @@ def composite(layers, eyes, ways):
     return light
 
 
-def along(layers, eyes, ways):
-    """All samples of each layer: ray numbers, values (samples, components), in the order of distance a ray."""
+def along(layers, eyes, ways, cut=True):
+    """All samples of each layer: ray numbers, values (samples, components), in the order of distance a ray. What clip planes, crop regions and
+    masks hide is NaN, unless cut is false."""
     some, first, last, steps = samples(layers, eyes, ways)
     s = first[some, None] + (numpy.arange(steps) + 0.5) * STEP
     inside = s < last[some, None]
     ray = numpy.broadcast_to(some[:, None], s.shape)[inside]
     s = s[inside]
     points = eyes[ray] + s[:, None] * ways[ray]
-    return ray, s, [layer.value_at(points) for layer in layers]
+    return ray, s, [layer.value_at(points) if cut else layer.field.at(points) for layer in layers]
 
 
 def extremes(layers, eyes, ways, sign):
@@ -417,7 +418,8 @@ def blend(count, ray, s, rgb, alpha):
 
 
 def isosurface(layers, eyes, ways):
-    ray, s, values = along(layers, eyes, ways)
+    """Crossings are found in the whole field: a step that a plane cuts may cross on the side that is seen."""
+    ray, s, values = along(layers, eyes, ways, cut=False)
     found = []
     for layer, value, m in [(layer, value, m) for layer, value in zip(layers, values) for m in layer.media()]:
         contour = scenes.CONTOUR * (200 if "rgba" in layer.features else 1)
@@ -430,6 +432,8 @@ def isosurface(layers, eyes, ways):
             below = layer.field.at(eyes[ray[cross]] + middle[:, None] * ways[ray[cross]])[:, m] < contour
             low, high = numpy.where(below == rises, middle, low), numpy.where(below == rises, high, middle)
         points = eyes[ray[cross]] + low[:, None] * ways[ray[cross]]
+        seen = layer.keeps(points)
+        cross, low, points = cross[seen], low[seen], points[seen]
         rgb, opacity = layer.look(numpy.where(numpy.arange(layer.components) == m, contour, layer.field.at(points)), m)
         if "light" in layer.features:
             rgb = layer.lit(points, ways[ray[cross]], rgb, layer.field.gradient(points, m))
