@@ -4,11 +4,14 @@
 #ifndef STRATUS_TETRA_MARCH_TILE_H
 #define STRATUS_TETRA_MARCH_TILE_H
 
-#include "tetra_march_view.h"
-
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-function" /* this file uses only some of the headers' functions */
+#ifndef __clang__
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* a passage has its points' numbers in mode hits only, which alone reads them */
 #endif
+#endif
+
+#include "tetra_march_view.h"
 
 void TETRA_TILE_NAME(const stratus_tetra_frame* frame, int tile, bool counting, stratus_tetra_counts* counts)
 {
