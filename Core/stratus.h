@@ -33,6 +33,7 @@
 #include "stratus/visibility.h"
 #include "stratus/tetrahedra.h"
 #include "stratus/quantities.h"
+#include "stratus/path.h"
 #include "stratus/scenes.h"
 
 #endif

@@ -173,6 +173,35 @@ static stratus_status fill_octree(stratus_context* context, int number, uint64_t
   return status;
 }
 
+/* A tracer of which a request was refused draws the image at the next attempt. */
+static stratus_status trace_paths(stratus_context* context, int number, uint64_t* sum)
+{
+  float rgba[4 * SMALL_PIXELS];
+  const stratus_image image = { .width = SMALL_WIDTH, .height = SMALL_HEIGHT, .rgba = rgba };
+  const small_scene* scene = &jobs_data.scene;
+  stratus_path_options options = stratus_path_options_default();
+  stratus_path_tracer* tracer = NULL;
+  (void)number;
+  options.samples = 2;
+  stratus_status status = stratus_path_tracer_create(context, &tracer);
+  if (status != STRATUS_OK) {
+    assert_null(tracer);
+    return status;
+  }
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const stratus_status drawn =
+      stratus_path_tracer_render(tracer, &scene->volume, &scene->transfer, &scene->camera, &options, &image, NULL);
+    if (drawn == STRATUS_OK) {
+      *sum = job_sum(7, rgba, sizeof rgba);
+      break;
+    }
+    assert_int_equal(attempt, 0);
+    status = drawn;
+  }
+  stratus_path_tracer_destroy(tracer);
+  return status;
+}
+
 typedef struct call {
   const char* name;
   int number;
@@ -210,7 +239,7 @@ static void each_request_fails_once(void** state)
   static const call calls[] = { { "voxels", 0, make_any_voxels }, { "voxels of cells", 1, make_any_voxels },
     { "voxels of a list", 2, make_any_voxels }, { "bandwidth", 0, find_bandwidth }, { "occupancy between", 0, mark_between },
     { "saved tree", 0, load_tree }, { "tree that may serve", 0, compare_tree }, { "first hits", 0, trace_rays },
-    { "octree of turned boxes", 0, fill_octree } };
+    { "octree of turned boxes", 0, fill_octree }, { "path tracer", 0, trace_paths } };
   faulty_allocator allocator = { 0 };
   stratus_context* context = NULL;
   stratus_context_options options = faulty_options(&allocator, "host");

@@ -337,6 +337,33 @@ static void ray_casters(const small_scene* scene)
   stratus_ray_caster_destroy(c);
 }
 
+static void path_tracers(const small_scene* scene)
+{
+  static float rgba[4 * SMALL_PIXELS];
+  const stratus_image image = { .width = SMALL_WIDTH, .height = SMALL_HEIGHT, .rgba = rgba }, blank = { .width = 1, .height = 1 };
+  stratus_path_options options = stratus_path_options_default();
+  stratus_path_tracer* p = NULL;
+  const stratus_volume* v = &scene->volume;
+  const stratus_transfer* t = &scene->transfer;
+  options.samples = 1;
+  IS_SILENT(stratus_path_tracer_create(NULL, MAKES(stratus_path_tracer)));
+  REFUSES(stratus_path_tracer_create(context, NULL));
+  ACCEPTS(stratus_path_tracer_create(context, &p));
+  TAKES(stratus_path_tracer_destroy(NULL));
+  IS_SILENT(stratus_path_tracer_render(NULL, v, t, &scene->camera, NULL, &image, NULL));
+  REFUSES(stratus_path_tracer_render(p, NULL, t, &scene->camera, NULL, &image, NULL));
+  REFUSES(stratus_path_tracer_render(p, v, NULL, &scene->camera, NULL, &image, NULL));
+  REFUSES(stratus_path_tracer_render(p, v, t, NULL, NULL, &image, NULL));
+  REFUSES(stratus_path_tracer_render(p, v, t, &scene->camera, NULL, NULL, NULL));
+  REFUSES(stratus_path_tracer_render(p, v, t, &scene->camera, NULL, &blank, NULL));
+  IS_SILENT(stratus_path_tracer_errors(NULL, rgba));
+  IS_SILENT(stratus_path_tracer_errors(p, rgba)); /* of no image */
+  ACCEPTS(stratus_path_tracer_render(p, v, t, &scene->camera, &options, &image, NULL));
+  REFUSES(stratus_path_tracer_errors(p, NULL));
+  ACCEPTS(stratus_path_tracer_render(p, v, t, &scene->camera, NULL, &image, NULL));
+  stratus_path_tracer_destroy(p);
+}
+
 static void octree_queries(stratus_octree* tree)
 {
   uint32_t id = 0;
@@ -610,6 +637,7 @@ static void no_public_function_falls_over_null(void** state)
   structures(&scene);
   voxel_sets(&scene);
   ray_casters(&scene);
+  path_tracers(&scene);
   frustums(&scene);
   meshes(&scene);
   scenes();
