@@ -15,6 +15,9 @@ namespace {
 // The mode of meshes of the same name. Options for regular grids only are refused, so that none is ignored silently.
 stratus_tetra_mode mode_of(const cli::options& o)
 {
+  if (o.path) {
+    throw cli::usage("'" + o.source + "' is a grid of cells: --mode path is for images and rectilinear grids");
+  }
   if (o.structure != STRATUS_STRUCTURE_AUTO || o.sampling != STRATUS_SAMPLING_AUTO || o.nearest || o.audit || o.sample_distance != 0.0 ||
     o.cell_error != 0.0 || !o.mask.empty() || o.jitter >= 0) {
     throw cli::usage("'" + o.source +

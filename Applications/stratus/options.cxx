@@ -96,8 +96,8 @@ Rendering
                           the noise
   --structure S           how empty space is skipped: auto, none, block, distance, octant, hybrid (default auto); never changes the image
   --mode M                composite; first-hit: voxels of opacity > 0 as solids, lit from the eye; maximum, minimum: the colour of the
-                          largest or smallest value on a ray; average, additive: of opacity times value, in grey; isosurface; slice
-                          (default composite)
+                          largest or smallest value on a ray; average, additive: of opacity times value, in grey; isosurface; slice;
+                          path: light that is scattered any number of times, see below (default composite)
   --contours V,V,...      isosurfaces' values, 1 to 16, each in its colour and opacity by the transfer functions
   --slice X,Y,Z,NX,NY,NZ  the slice's plane: a point and the normal, in the file's coordinates
   --average-range A,B     range of the values that --mode average uses (default: all)
@@ -116,6 +116,17 @@ Rendering
                           in addition to the image
   --threshold T           the transmittance for --quantity transmittance_depth, above 0 and below 1 (default 0.5)
   --audit                 draw again without skipping and count the pixels that differ; any is a failure
+
+Scattered light: --mode path traces random paths until their number or their error is reached; images and rectilinear grids
+  --samples N             paths of each pixel (default 256, or as many as --tolerance needs)
+  --tolerance E           end when the standard error of the image, root mean square of RGBA over the lit pixels, is at most E
+  --sun X,Y,Z[,R,G,B]     direction to a sun, and its colour (default 1,1,1); repeat it for up to 8 (default: light from the eye, or no
+                          sun if there is a sky)
+  --sky R,G,B[,R,G,B]     colour of the sky at the zenith, and at and below the horizon (default: of one colour, as at the zenith)
+  --albedo A              part of the light that is scattered, times the colour; the rest is absorbed, 0..1 (default 1)
+  --anisotropy G          -.99...99; light is scattered forwards by G > 0 (default 0: evenly)
+  --bounces N             largest number of scatterings; 0: no limit (default 0)
+  --seed N                selects the noise (default 0)
 
 Trees
   --lower V, --upper V    range of the occupied values (default: values that the opacity shows)
@@ -224,7 +235,7 @@ stratus_mode mode_named(const std::string& text)
     }
     names += std::string(i ? ", " : "") + stratus_mode_name(mode);
   }
-  throw usage("--mode: '" + text + "' is none of " + names);
+  throw usage("--mode: '" + text + "' is none of " + names + ", path");
 }
 
 std::vector<double> numbers(const std::string& text, const std::string& what, size_t least, size_t most)
@@ -357,8 +368,49 @@ void set_frames(options& o, const std::string& word, const std::string& value)
   o.frames = value;
 }
 
+void set_mode(options& o, const std::string&, const std::string& value)
+{
+  o.path = value == "path";
+  o.mode = o.path ? STRATUS_MODE_COMPOSITE : mode_named(value);
+}
+
+// Keeps a whole number for --mode path.
+template <int options::*Number, int Least> void keep_path_number(options& o, const std::string& word, const std::string& value)
+{
+  o.*Number = whole_number(value, word, Least, 1000000000);
+  o.of_path = word;
+}
+
+void set_sun(options& o, const std::string& word, const std::string& value)
+{
+  o.suns.push_back(numbers(value, word, 3, 6));
+  o.of_path = word;
+  if (o.suns.back().size() % 3 != 0) {
+    throw usage(word + ": '" + value + "' is neither X,Y,Z nor X,Y,Z,R,G,B");
+  }
+  if (o.suns.size() > STRATUS_LIGHTS_MAX) {
+    throw usage(word + ": " + std::to_string(o.suns.size()) + format(" suns, must be %d at most", STRATUS_LIGHTS_MAX));
+  }
+}
+
+void set_sky(options& o, const std::string& word, const std::string& value)
+{
+  o.sky = numbers(value, word, 3, 6);
+  o.of_path = word;
+  if (o.sky.size() % 3 != 0) {
+    throw usage(word + ": '" + value + "' is neither R,G,B nor R,G,B,R,G,B");
+  }
+}
+
+template <double options::*Number> void keep_path_part(options& o, const std::string& word, const std::string& value)
+{
+  o.*Number = number(value, word); // the core knows the range
+  o.of_path = word;
+}
+
 void set_tolerance(options& o, const std::string& word, const std::string& value)
 {
+  o.has_tolerance = true;
   (o.command == "compare" ? o.largest_mean : o.tolerance) = not_negative(value, word);
 }
 
@@ -398,7 +450,7 @@ constexpr struct {
   { "--cell-error", keep_positive<&options::cell_error> },
   { "--jitter", [](options& o, text word, text value) { o.jitter = whole_number(value, word, 0, std::numeric_limits<int>::max()); } },
   { "--structure", [](options& o, text, text value) { o.structure = structure_named(value); } },
-  { "--mode", [](options& o, text, text value) { o.mode = mode_named(value); } },
+  { "--mode", set_mode },
   { "--contours", [](options& o, text word, text value) { o.contours = numbers(value, word, 1, STRATUS_CONTOURS_MAX); } },
   { "--slice", [](options& o, text word, text value) { o.slice = numbers(value, word, 6, 6); } },
   { "--average-range", [](options& o, text word, text value) { o.average = numbers(value, word, 2, 2); } },
@@ -410,6 +462,13 @@ constexpr struct {
   { "--show", set_show },
   { "--quantity", set_quantities },
   { "--threshold", set_threshold },
+  { "--samples", keep_path_number<&options::samples, 1> },
+  { "--sun", set_sun },
+  { "--sky", set_sky },
+  { "--albedo", keep_path_part<&options::albedo> },
+  { "--anisotropy", keep_path_part<&options::anisotropy> },
+  { "--bounces", keep_path_number<&options::bounces, 0> },
+  { "--seed", keep_path_number<&options::seed, 0> },
   { "--lower", keep_bound<&options::lower> },
   { "--upper", keep_bound<&options::upper> },
   { "--depth", [](options& o, text word, text value) { o.depth = whole_number(value, word, 0, 16); } },
@@ -480,8 +539,42 @@ void check_output(const options& o)
   }
 }
 
+void check_path(const options& o)
+{
+  if (!o.path) {
+    if (!o.of_path.empty()) {
+      throw usage(o.of_path + " is for --mode path");
+    }
+    return;
+  }
+  const char* other = o.shade               ? "--shade"
+    : o.sampling != STRATUS_SAMPLING_AUTO   ? "--sampling"
+    : o.sample_distance > 0.0               ? "--sample-distance"
+    : o.cell_error > 0.0                    ? "--cell-error"
+    : o.jitter >= 0                         ? "--jitter"
+    : o.structure != STRATUS_STRUCTURE_AUTO ? "--structure"
+    : o.audit                               ? "--audit"
+                                            : nullptr;
+  if (other) {
+    throw usage(std::string("--mode path has light and samples of its own: leave out ") + other);
+  }
+  if (o.command != "render") {
+    throw usage("--mode path is for render, not " + o.command);
+  }
+  if (!o.companions.empty()) {
+    throw usage("--mode path draws one INPUT: leave out '" + o.companions[0].source + "'");
+  }
+  if (o.device != "auto" && o.device != "host") {
+    throw usage("--mode path is computed by the host: leave out --device " + o.device);
+  }
+  if (o.has_tolerance && o.tolerance == 0.0) {
+    throw usage("--tolerance 0 is reached by no number of paths: give more, or --samples");
+  }
+}
+
 void check_complete(const options& o)
 {
+  check_path(o);
   if (o.command == "render" || o.command == "info" || o.command == "tree" || o.command == "sort") {
     if (o.source.empty()) {
       throw usage(o.command + ": which INPUT?");

@@ -39,6 +39,7 @@ struct options {
   double sample_distance = 0.0;
   double cell_error = 0.0;
   double tolerance = 0.001; // root mean square error of RGBA in 0..1
+  bool has_tolerance = false;
   int width = 512;
   int height = 512;
   int threads = 0;
@@ -65,10 +66,18 @@ struct options {
   bool uncorrected_flooding = false;                             // tree: hybrid-paper-raw instead of hybrid-paper
   stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_AUTO; // render: method for unstructured grids
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
-  std::vector<double> contours; // isosurface
-  std::vector<double> slice;    // slice: a point of the plane, and its normal
-  std::vector<double> average;  // average: empty, or the range of values that count
-  std::vector<double> crop;     // empty, or six planes across the grid's axes
+  bool path = false;                     // --mode path; `mode` is then composite
+  std::string of_path;                   // one of the options for it that were given
+  int samples = 0;                       // path: of each pixel; 0: as many as the tolerance needs
+  int bounces = 0;                       // path: 0: no limit
+  int seed = 0;                          // path
+  double albedo = 1.0, anisotropy = 0.0; // path
+  std::vector<std::vector<double>> suns; // path: x, y, z and, if given, red, green, blue
+  std::vector<double> sky;               // path: red, green, blue, or those of zenith and horizon
+  std::vector<double> contours;          // isosurface
+  std::vector<double> slice;             // slice: a point of the plane, and its normal
+  std::vector<double> average;           // average: empty, or the range of values that count
+  std::vector<double> crop;              // empty, or six planes across the grid's axes
   int crop_regions = STRATUS_CROP_INSIDE;
   std::string mask;     // file of an image of bytes, 0 where the volume is hidden
   std::string mask_raw; // layout of a headerless mask file

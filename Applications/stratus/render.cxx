@@ -79,7 +79,7 @@ void print_reading(const cli::series* in)
 void render_one(const cli::options& o, const cli::routed& data, const cli::series* in, size_t step)
 {
   const std::string time = in ? in->describe(step) : "";
-  cli::context core(o.device, o.threads);
+  cli::context core(o.path ? "host" : o.device, o.threads);
   cli::frame frame(o);
   const std::unique_ptr<cli::drawing> drawing = drawing_of(o, core, data);
   drawing->take(data);
@@ -177,7 +177,7 @@ private:
 
 void render_film(const cli::options& o, cli::series& in)
 {
-  cli::context core(o.device, o.threads);
+  cli::context core(o.path ? "host" : o.device, o.threads);
   core.quiet();
   cli::frame frame(o);
   {

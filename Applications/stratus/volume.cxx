@@ -4,6 +4,7 @@
 #include "casting.h"
 #include "drawing.h"
 #include "input.h"
+#include "paths.h"
 
 #include "vtkStratusAMR.h"
 
@@ -26,6 +27,7 @@ public:
   }
   ~volume_drawing() override
   {
+    stratus_path_tracer_destroy(this->Tracer);
     stratus_ray_caster_destroy(this->Caster);
     for (stratus_ray_caster* caster : this->BlockCasters) {
       stratus_ray_caster_destroy(caster);
@@ -47,6 +49,7 @@ public:
 private:
   cli::volumes all() const;
   std::vector<stratus_ray_cast_input> inputs();
+  void trace(const stratus_image& image);
 
   const cli::options& Options;
   cli::context& Core;
@@ -60,6 +63,8 @@ private:
   stratus_camera Camera = {};
   stratus_ray_caster* Caster = nullptr;
   stratus_ray_cast_report Report = {};
+  stratus_path_tracer* Tracer = nullptr; // --mode path
+  stratus_path_report Paths = {};
   int Up = 2;
   uint64_t Steps = 0; // the volume's revision, because a step's values may have the address of the last step's
 };
@@ -80,9 +85,11 @@ void volume_drawing::take(const cli::routed& data)
     this->Blocks.back()->volume.revision = this->Steps;
     this->Blocks.back()->volume.matrix[5 * this->Up] *= o.exaggeration;
   }
-  if (!this->Blocks.empty() && (!o.mask.empty() || o.audit)) {
+  if (!this->Blocks.empty() && (!o.mask.empty() || o.audit || o.path)) {
     throw cli::usage("'" + o.source + "' is a volume of " + std::to_string(1 + this->Blocks.size()) + " blocks, which is drawn without " +
-      (o.audit ? "--audit" : "--mask"));
+      (o.audit     ? "--audit"
+          : o.path ? "--mode path"
+                   : "--mask"));
   }
 }
 
@@ -155,8 +162,26 @@ std::vector<stratus_ray_cast_input> volume_drawing::inputs()
   return inputs;
 }
 
+// Draws light that is scattered.
+void volume_drawing::trace(const stratus_image& image)
+{
+  stratus_ray_cast_options parts = stratus_ray_cast_options_default();
+  this->Parts.set(this->Options, this->Core, this->Input->volume, parts);
+  const stratus_path_options paths = cli::paths_of(this->Options, parts, this->Up);
+  this->View = this->Transfer.view();
+  if (!this->Tracer) {
+    this->Core.check(stratus_path_tracer_create(this->Core, &this->Tracer), "path tracer");
+  }
+  this->Core.check(
+    stratus_path_tracer_render(this->Tracer, &this->Input->volume, &this->View, &this->Camera, &paths, &image, &this->Paths), "render");
+}
+
 void volume_drawing::draw(const stratus_image& image)
 {
+  if (this->Options.path) {
+    this->trace(image);
+    return;
+  }
   const std::vector<stratus_ray_cast_input> inputs = this->inputs();
   std::vector<stratus_ray_cast_report> reports(inputs.size());
   this->Core.check(
@@ -187,7 +212,11 @@ void volume_drawing::print_rows() const
     (this->Blocks.empty() ? "" : std::to_string(1 + this->Blocks.size()) + " blocks, the first of ") + cli::describe(this->Input->volume) +
       ", array '" + this->Input->array_name + "'");
   row("camera", cli::describe(this->Camera));
-  cli::print_cast(this->Options, this->Core, this->Transfer, this->Report);
+  if (this->Options.path) {
+    cli::print_paths(this->Options, this->Core, this->Transfer, this->Paths);
+  } else {
+    cli::print_cast(this->Options, this->Core, this->Transfer, this->Report);
+  }
 }
 
 void volume_drawing::judge() const
