@@ -47,6 +47,8 @@ int64_t stratus_path_cell(const stratus_path_field* field, int axis, int64_t fir
 double stratus_path_value_place(const stratus_path_field* field, int axis, int64_t i);
 /* Finds the value at a place in a block. Returns false if the place is transparent, whatever the transfer function. */
 bool stratus_path_value(const stratus_path_field* field, const int64_t block[3], const double place[3], double* value);
+/* Returns the largest extinction in the box between two places of a cell. */
+double stratus_path_majorant(const stratus_path_field* field, const int64_t cell[3], const double from[3], const double to[3]);
 double stratus_path_extinction(const stratus_path_field* field, double value);
 void stratus_path_color(const stratus_path_field* field, double value, double rgb[3]);
 

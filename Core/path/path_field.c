@@ -13,6 +13,8 @@
 #define OPAQUE_PER_EDGE 256.0
 /* Largest extinction per shortest edge: delta tracking needs as many steps through an edge. */
 #define MOST_PER_EDGE 4096.0
+/* Edges shorter than this part of the longest one count as that part. */
+#define SHORT_EDGE 0x1p-20
 /* Rounding of interpolation beyond the values that it is between, relative to the largest of them. */
 #define HULL_SLACK 1e-12
 
@@ -36,11 +38,11 @@ static void set_axis(stratus_path_field* f, int axis)
   f->blocks[axis] = (f->cells[axis] + f->block_size - 1) / f->block_size;
 }
 
-/* Sets the matrices, and returns the shortest edge of a voxel. */
+/* Sets the matrices, and returns the shortest edge of a voxel, at least SHORT_EDGE of the longest one. */
 static double set_matrices(stratus_path_field* f)
 {
   const stratus_volume* v = f->volume;
-  double local[4][3], inverse[16], shortest = (double)INFINITY; /* local: the axes and the origin, before the matrix */
+  double local[4][3], inverse[16], shortest = (double)INFINITY, longest = 0.0; /* local: the axes and the origin, before the matrix */
   memcpy(local[3], v->origin, sizeof local[3]);
   for (int a = 0; a < 3; ++a) {
     const double unit = v->coordinates[a] ? f->sign[a] : v->spacing[a];
@@ -67,8 +69,9 @@ static double set_matrices(stratus_path_field* f)
       gap = fmin(gap, fabs(v->coordinates[a][i + 1] - v->coordinates[a][i]));
     }
     shortest = stratus_volume_extends(v, a) ? fmin(shortest, edge * gap) : shortest;
+    longest = stratus_volume_extends(v, a) ? fmax(longest, edge * gap) : longest;
   }
-  return isfinite(shortest) ? shortest : 1.0;
+  return longest > 0.0 ? fmax(shortest, SHORT_EDGE * longest) : 1.0;
 }
 
 /* Sets what clip planes and crop regions show. */
@@ -284,6 +287,16 @@ static bool is_finite(const stratus_path_field* f, double value)
   return fabs(value - f->bias) <= (double)FLT_MAX;
 }
 
+static bool are_finite(const stratus_path_field* f, const double values[8])
+{
+  for (int c = 0; c < 8; ++c) {
+    if (!is_finite(f, values[c])) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /* Gives the numbers of the cell's corners. The cell of an axis with one value has that value twice. */
 static void corners_of(const stratus_path_field* f, const int64_t cell[3], size_t at[8])
 {
@@ -312,28 +325,35 @@ static bool is_hidden(const stratus_path_field* f, const int64_t cell[3], const 
   return any;
 }
 
-static bool is_cropped(const stratus_path_field* f, const double place[3])
+static int region_of(const stratus_path_field* f, const double place[3])
 {
   int region = 0;
   for (int a = 2; a >= 0; --a) {
     region = 3 * region + (place[a] < f->crop[a][0] ? 0 : place[a] > f->crop[a][1] ? 2 : 1);
   }
-  return !(f->regions >> region & 1u);
+  return region;
 }
 
-/* Finds the place's cell, its position in it, and whether the cell's second value is nearer. */
-static bool find(const stratus_path_field* f, int axis, int64_t block, double place, int64_t* cell, double* part)
+static bool is_cropped(const stratus_path_field* f, const double place[3])
 {
-  const int64_t first = block * f->block_size, beyond = first + f->block_size;
-  *cell = stratus_path_cell(f, axis, first, (beyond < f->cells[axis] ? beyond : f->cells[axis]) - 1, place);
-  *part = 0.0;
+  return !(f->regions >> region_of(f, place) & 1u);
+}
+
+/* Returns the place's position between the cell's two values, 0..1. */
+static double part_in_cell(const stratus_path_field* f, int axis, int64_t cell, double place)
+{
   if (f->volume->dimensions[axis] == 1) {
-    return false;
+    return 0.0;
   }
-  const double from = stratus_path_value_place(f, axis, *cell), to = stratus_path_value_place(f, axis, *cell + 1);
-  *part = fmin(fmax((place - from) / (to - from), 0.0), 1.0);
+  const double from = stratus_path_value_place(f, axis, cell), to = stratus_path_value_place(f, axis, cell + 1);
+  return fmin(fmax((place - from) / (to - from), 0.0), 1.0);
+}
+
+/* Whether the cell's second value is nearer to the place at this part of the cell. */
+static bool second_is_nearer(const stratus_path_field* f, int axis, int64_t cell, double place, double part)
+{
   const double* x = f->volume->coordinates[axis];
-  return x && f->volume->cell_centered ? place >= f->sign[axis] * x[*cell + 1] : *part >= 0.5;
+  return f->volume->dimensions[axis] > 1 && (x && f->volume->cell_centered ? place >= f->sign[axis] * x[cell + 1] : part >= 0.5);
 }
 
 static double between(double a, double b, double part)
@@ -351,7 +371,10 @@ bool stratus_path_value(const stratus_path_field* f, const int64_t block[3], con
     return false;
   }
   for (int a = 0; a < 3; ++a) {
-    nearest |= find(f, a, block[a], place[a], cell + a, part + a) << a;
+    const int64_t first = block[a] * f->block_size, beyond = first + f->block_size;
+    cell[a] = stratus_path_cell(f, a, first, (beyond < f->cells[a] ? beyond : f->cells[a]) - 1, place[a]);
+    part[a] = part_in_cell(f, a, cell[a], place[a]);
+    nearest |= second_is_nearer(f, a, cell[a], place[a], part[a]) << a;
   }
   corners_of(f, cell, at);
   if ((f->mask && !f->mask[at[nearest]]) || (f->hidden && is_hidden(f, cell, at, nearest))) {
@@ -362,14 +385,49 @@ bool stratus_path_value(const stratus_path_field* f, const int64_t block[3], con
     *value = v[nearest];
     return is_finite(f, *value);
   }
-  for (int c = 0; c < 8; ++c) {
-    if (!is_finite(f, v[c])) {
-      return false;
-    }
+  if (!are_finite(f, v)) {
+    return false;
   }
   *value = between(between(between(v[0], v[1], part[0]), between(v[2], v[3], part[0]), part[1]),
     between(between(v[4], v[5], part[0]), between(v[6], v[7], part[0]), part[1]), part[2]);
   return true;
+}
+
+/* A trilinear function has its extremes over a box at the box's corners. */
+double stratus_path_majorant(const stratus_path_field* f, const int64_t cell[3], const double from[3], const double to[3])
+{
+  double values[8], lo = (double)INFINITY, hi = -(double)INFINITY;
+  size_t at[8];
+  int nearest[2] = { 0, 0 };
+  corners_of(f, cell, at);
+  read_values(f->volume, at, values);
+  if (f->linear && !are_finite(f, values)) {
+    return 0.0;
+  }
+  for (int a = 0; a < 3; ++a) {
+    const double first = part_in_cell(f, a, cell[a], from[a]), second = part_in_cell(f, a, cell[a], to[a]);
+    const bool ends[2] = { second_is_nearer(f, a, cell[a], from[a], first), second_is_nearer(f, a, cell[a], to[a], second) };
+    const int next = 1 << a;
+    nearest[0] |= ends[0] << a;
+    nearest[1] |= ends[1] << a;
+    for (int c = 0; c < 8; ++c) {
+      if (!(c & next)) {
+        const double v[2] = { values[c], values[c | next] };
+        values[c] = f->linear ? between(v[0], v[1], first) : v[ends[0]];
+        values[c | next] = f->linear ? between(v[0], v[1], second) : v[ends[1]];
+      }
+    }
+  }
+  const bool one = nearest[0] == nearest[1]; /* value is nearest to all of the box */
+  if ((f->regions != STRATUS_CROP_ALL && region_of(f, from) == region_of(f, to) && is_cropped(f, from)) ||
+    (f->mask && one && !f->mask[at[nearest[0]]]) || (f->hidden && (one || f->linear) && is_hidden(f, cell, at, nearest[0]))) {
+    return 0.0;
+  }
+  for (int c = 0; c < 8; ++c) {
+    lo = is_finite(f, values[c]) ? fmin(lo, values[c]) : lo;
+    hi = is_finite(f, values[c]) ? fmax(hi, values[c]) : hi;
+  }
+  return largest_extinction(f, lo, hi);
 }
 
 /* ---- the largest extinction of each block */

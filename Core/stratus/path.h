@@ -12,7 +12,8 @@ extern "C" {
 /* The model.
  *
  * - Extinction. A value of opacity A has the extinction -ln(1 - A) / unit_distance per world length. It is at most 4096 per shortest edge
- *   of a voxel. Opacity 1 has 64 / unit_distance or 256 per shortest edge, whichever is more.
+ *   of a voxel. Opacity 1 has 64 / unit_distance or 256 per shortest edge, whichever is more. Edges below a millionth of the longest one
+ *   count as a millionth.
  * - Albedo. A collision scatters the part albedo * C of each colour channel, where C is the transfer function's colour, and absorbs the
  *   rest. Nothing emits light.
  * - Phase function. Henyey & Greenstein 1941: p(c) = (1 - g^2) / (4 pi (1 + g^2 - 2 g c)^1.5), where c is the cosine between the directions
@@ -25,7 +26,7 @@ extern "C" {
  * rays that meet nothing do not show the sky.
  *
  * Free paths: delta tracking (Woodcock et al. 1965). Transmittance: ratio tracking (Novak et al. 2014). Both use the largest extinction of
- * each block. Each estimate is unbiased. */
+ * each block or, where that is high, of parts of its cells. Each estimate is unbiased. */
 typedef struct stratus_path_options {
   int samples; /* paths that a call adds to each pixel, 1..1000000000. Default 64. */
   /* At least 0, finite. A call ends before it has added `samples` if the standard error of the image (see the report) is at most this. The

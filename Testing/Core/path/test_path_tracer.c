@@ -132,12 +132,15 @@ static void alpha_is_that_of_the_double_reference(void** state)
 {
   double sum = 0.0, count = 0.0, bias = 0.0, variance = 0.0;
   const int samples = 64;
-  for (test_seeds s = test_seeds_of(60, 600); test_next(&s);) {
+  for (test_seeds s = test_seeds_of(36, 600); test_next(&s);) {
     picture_case c;
     grid_case grid;
     case_create_random(*state, s.seed, &c);
     if (s.seed % 3 == 0) {
       grid_case_set_random(*state, s.seed, &c, &grid);
+    }
+    if (s.seed % 4 == 1) { /* an optical depth of hundreds a voxel, whose largest extinctions are of parts of cells */
+      c.transfer.unit_distance = 0.01;
     }
     const reference_scene scene = case_scene(&c);
     stratus_path_options options = options_of(&c);
@@ -164,7 +167,7 @@ static void alpha_is_that_of_the_double_reference(void** state)
   }
   print_message("             %.0f pixels: mean square %.4f of the expected one, bias %+.2f standard errors\n", count, sum / count,
     bias / sqrt(variance));
-  assert_true(count > 3000.0);
+  assert_true(count > 2000.0);
   assert_true(fabs(sum / count - 1.0) < PATH_SIGMAS * sqrt(2.5 / count)); /* a square's variance is 2 + (1 - 6 square) / square / samples */
   assert_true(fabs(bias) < PATH_SIGMAS * sqrt(variance));
 }
@@ -281,7 +284,7 @@ static void a_tolerance_ends_the_call(void** state)
   assert_int_equal(stratus_path_tracer_create(*state, &tracer), STRATUS_OK);
   options.samples = 1000000;
   for (int i = 0; i < 2; ++i) {
-    options.tolerance = i ? 0.03 : 0.06;
+    options.tolerance = i ? 0.04 : 0.08;
     assert_int_equal(draw(tracer, &c, &options, images[0], &report), STRATUS_OK);
     print_message("             tolerance %.3f: %d samples, standard error %.4f, %.4f at most, %.2f s\n", options.tolerance,
       (int)report.samples, report.standard_error, report.largest_error, report.seconds);
@@ -308,20 +311,24 @@ static void a_tolerance_ends_the_call(void** state)
   case_destroy(&c);
 }
 
-/* A slab of depth 2 of which only the lower part shows: alpha and single scattering are of a slab as thick as that part. */
+/* A slab of which only the lower part shows: alpha and single scattering are of a slab as thick as that part. dense: the whole slab has a
+ * depth of 40 in one block, which is cut into shorter stretches. */
 static void hidden_parts_neither_absorb_nor_cast_a_shadow(void** state)
 {
   static const char* const names[] = { "clip planes", "crop box", "crop regions", "mask", "hidden cells", "a matrix and clip planes",
-    "crop regions of falling coordinates" };
+    "crop regions of falling coordinates", "hidden values, nearest", "mask, nearest" };
   static const double falling[9] = { 1.0, 0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125, 0.0 };
-  static uint8_t mask[4 * 9], ghosts[8];
-  for (int kind = 0; kind < 7; ++kind) {
+  static uint8_t bytes[4 * 9];
+  for (int run = 0; run < 18; ++run) {
+    const bool dense = run >= 9;
+    const int kind = run % 9;
     path_case c;
     char what[64];
-    double shown = 0.3125, sun = 0.6;
-    path_slab(*state, &c, 2.0, 1.0, 9);
+    double shown = dense ? 0.0625 : 0.3125;
+    const double sigma = dense ? 40.0 : 2.0, sun = 0.6;
+    path_slab(*state, &c, sigma, 1.0, 9);
     stratus_ray_clipping_options* clipping = &c.options.clipping;
-    const double planes[2][4] = { { 0, 0, -2, 0.625 }, { 1, 0, 0, 3 } };
+    const double planes[2][4] = { { 0, 0, -2, 2.0 * shown }, { 1, 0, 0, 3 } };
     for (int side = 0; side < 6; ++side) {
       clipping->crop_bounds[side] = side % 2 ? 2e4 : -2e4;
     }
@@ -337,29 +344,33 @@ static void hidden_parts_neither_absorb_nor_cast_a_shadow(void** state)
       clipping->crop_bounds[5] = 0.5;
       clipping->crop_regions = 1u << 4;
       c.volume.coordinates[2] = kind == 6 ? falling : NULL;
-    } else if (kind == 3) { /* values 0, 1, 2 of the nine layers show, up to half a layer beyond */
-      memset(mask, 0, sizeof mask);
-      memset(mask, 1, 12);
-      c.options.mask.bytes = mask;
-    } else {
-      memset(ghosts, STRATUS_GHOST_HIDDEN_CELL, sizeof ghosts);
-      ghosts[0] = ghosts[1] = 0;
-      c.volume.cell_ghosts = ghosts;
-      shown = 0.25;
+    } else if (kind == 3 || kind == 8) { /* values 0, 1, 2 of the nine layers show, up to half a layer beyond; dense: only value 0 */
+      memset(bytes, 0, sizeof bytes);
+      memset(bytes, 1, dense ? 4 : 12);
+      c.options.mask.bytes = bytes;
+    } else { /* 2 of 8 cells show, or 2 of 9 values of cells; dense: 1 */
+      memset(bytes, STRATUS_GHOST_HIDDEN_CELL, sizeof bytes);
+      memset(bytes, 0, (size_t)((dense ? 1 : 2) * (kind == 7 ? 4 : 1)));
+      c.volume.cell_ghosts = bytes;
+      c.volume.cell_centered = kind == 7;
+      shown = dense ? 0.125 : 0.25;
     }
     if (kind == 5) { /* x and y sheared, z doubled, and the slab as thick again as the planes show */
       const double matrix[16] = { 1, 0.3, 0, 0, 0, -2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1 };
       memcpy(c.volume.matrix, matrix, sizeof matrix);
     }
     path_sun(&c, sun);
+    c.options.interpolation = kind >= 7 ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
+    c.options.block_size = dense ? 1000 : 0;
     c.options.bounces = 1;
-    c.options.samples = path_samples(1500);
+    c.options.seed = (uint64_t)run;
+    c.options.samples = path_samples(400);
     const double rate = 1.0 + 1.0 / sun;
     const path_mean mean = path_draw(*state, &c);
-    snprintf(what, sizeof what, "%s, alpha", names[kind]);
-    path_assert(what, -expm1(-2.0 * shown), mean.rgba[3], mean.error[3], 0.01);
-    snprintf(what, sizeof what, "%s, light", names[kind]);
-    path_assert(what, -expm1(-2.0 * shown * rate) / rate, mean.rgba[0], mean.error[0], 0.01);
+    snprintf(what, sizeof what, "%s%s, alpha", dense ? "dense " : "", names[kind]);
+    path_assert(what, -expm1(-sigma * shown), mean.rgba[3], mean.error[3], 0.02);
+    snprintf(what, sizeof what, "%s%s, light", dense ? "dense " : "", names[kind]);
+    path_assert(what, -expm1(-sigma * shown * rate) / rate, mean.rgba[0], mean.error[0], 0.02);
   }
 }
 
@@ -387,6 +398,48 @@ static void opaque_depth_ends_rays_from_the_camera(void** state)
   const path_mean near = path_draw(*state, &c);
   path_assert("alpha behind the near plane", -expm1(-1.5), near.rgba[3], near.error[3], 0.01);
   path_assert("light behind the near plane", exp(-0.5 / sun) * -expm1(-1.5 * rate) / rate, near.rgba[0], near.error[0], 0.01);
+}
+
+/* An opaque ground under a sheer rise of the opacity, in voxels ten thousand times as wide as high. Rays that pass above it meet nothing,
+ * and rays down collide where it begins. Neither needs more than a few steps in any cell, though a voxel's width has an optical depth of
+ * millions.
+ */
+static void rays_along_an_opaque_surface_are_cheap(void** state)
+{
+  for (int along = 0; along < 2; ++along) {
+    static float depth[PATH_PIXELS], rgba[4 * PATH_PIXELS];
+    path_case c;
+    stratus_path_tracer* tracer = NULL;
+    stratus_path_report report;
+    path_slab(*state, &c, 1.0, 1.0, 5);
+    for (int i = 0; i < 20; ++i) {
+      c.values[i] = 1.0 - i / 4 / 4.0; /* falls from 1 to 0 */
+    }
+    const double step[] = { 0.0, 0.0, 0.6, 0.0, 0.6, 1.0, 1.0, 1.0 };
+    memcpy(c.opacity, step, sizeof step);
+    c.transfer.opacity_count = 4;
+    c.options.samples = 200;
+    c.options.albedo = 0.0;
+    if (along) { /* at height .41, where the opacity begins at .4 */
+      const stratus_camera level = { .eye = { -2e4, 0, 0.41 },
+        .forward = { 1, 0, 0 },
+        .up = { 0, 0, 1e-3 },
+        .right = { 0, -1, 0 },
+        .far_k = (double)INFINITY,
+        .parallel = 1 };
+      c.camera = level;
+    }
+    const stratus_image image = { .width = PATH_SIDE, .height = PATH_SIDE, .rgba = rgba, .depth = depth };
+    assert_int_equal(stratus_path_tracer_create(*state, &tracer), STRATUS_OK);
+    assert_int_equal(stratus_path_tracer_render(tracer, &c.volume, &c.transfer, &c.camera, &c.options, &image, &report), STRATUS_OK);
+    for (int i = 0; i < PATH_PIXELS; ++i) {
+      assert_true(rgba[4 * i + 3] == (along ? 0.0f : 1.0f));
+      assert_true(along || fabsf(depth[i] - 10.1f) < 1e-3f); /* the least of 200, the eye is at 10.5 */
+    }
+    print_message("             %.1f values a path\n", (double)report.lookups / 200 / PATH_PIXELS);
+    assert_true((double)report.lookups < 40.0 * 200 * PATH_PIXELS);
+    stratus_path_tracer_destroy(tracer);
+  }
 }
 
 /* The image's other buffers. */
@@ -516,7 +569,7 @@ int test_path_tracer(void)
     cmocka_unit_test(alpha_is_that_of_the_double_reference), cmocka_unit_test(blocks_change_the_numbers_but_not_the_light),
     cmocka_unit_test(bits_depend_on_the_number_of_samples_only), cmocka_unit_test(a_tolerance_ends_the_call),
     cmocka_unit_test(hidden_parts_neither_absorb_nor_cast_a_shadow), cmocka_unit_test(opaque_depth_ends_rays_from_the_camera),
-    cmocka_unit_test(depth_samples_and_bytes_are_the_image_s), cmocka_unit_test(a_cancelled_call_is_continued),
-    cmocka_unit_test(refusals_name_the_value_and_its_range) };
+    cmocka_unit_test(rays_along_an_opaque_surface_are_cheap), cmocka_unit_test(depth_samples_and_bytes_are_the_image_s),
+    cmocka_unit_test(a_cancelled_call_is_continued), cmocka_unit_test(refusals_name_the_value_and_its_range) };
   return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
 }

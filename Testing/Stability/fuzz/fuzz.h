@@ -190,6 +190,9 @@ void fuzz_mesh_changes(fuzz* f, fuzz_tetrahedra* mesh); /* as fuzz_volume_change
 /* A partition of the mesh, whose result is checked and valid until it is destroyed. NULL: refused. */
 stratus_partition* fuzz_partition(fuzz* f, const stratus_mesh* mesh, stratus_partition_result* result);
 
+/* ---- fuzz_pictures.c */
+void fuzz_clipping(fuzz* f, stratus_ray_clipping_options* clipping, const fuzz_field* field);
+
 /* ---- one file each */
 void fuzz_pictures(fuzz* f);
 void fuzz_structures(fuzz* f);
@@ -199,5 +202,6 @@ void fuzz_octrees(fuzz* f);
 void fuzz_orders(fuzz* f);
 void fuzz_tetra_pictures(fuzz* f);
 void fuzz_contexts(fuzz* f);
+void fuzz_paths(fuzz* f);
 
 #endif

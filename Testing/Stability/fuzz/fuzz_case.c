@@ -23,6 +23,7 @@ const fuzz_kind fuzz_kinds[] = {
   { "octrees", fuzz_octrees },
   { "orders", fuzz_orders },
   { "contexts", fuzz_contexts },
+  { "paths", fuzz_paths },
 };
 const int fuzz_kind_count = (int)(sizeof fuzz_kinds / sizeof *fuzz_kinds);
 

@@ -18,20 +18,19 @@ typedef struct picture_case {
 
 /* ---- options */
 
-static void choose_cuts(fuzz* f, stratus_ray_cast_options* o, const fuzz_field* field)
+void fuzz_clipping(fuzz* f, stratus_ray_clipping_options* o, const fuzz_field* field)
 {
   const stratus_volume* v = &field->view;
-  o->clipping.crop = fuzz_chance(f, 0.2) ? 1 : 0;
+  o->crop = fuzz_chance(f, 0.2) ? 1 : 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double width = v->spacing[axis] * (double)v->dimensions[axis], at = v->origin[axis] + width * fuzz_between(f, -0.3, 0.7);
-    o->clipping.crop_bounds[2 * axis] = fuzz_odd(f) ? fuzz_odd_real(f) : at;
-    o->clipping.crop_bounds[2 * axis + 1] = fuzz_odd(f) ? fuzz_odd_real(f) : at + width * fuzz_between(f, 0.0, 0.8);
+    o->crop_bounds[2 * axis] = fuzz_odd(f) ? fuzz_odd_real(f) : at;
+    o->crop_bounds[2 * axis + 1] = fuzz_odd(f) ? fuzz_odd_real(f) : at + width * fuzz_between(f, 0.0, 0.8);
   }
-  o->clipping.crop_regions =
-    fuzz_chance(f, 0.5) ? STRATUS_CROP_INSIDE : (uint32_t)fuzz_next(f) & (fuzz_odd(f) ? 0xffffffffu : STRATUS_CROP_ALL);
-  o->clipping.clip_plane_count = fuzz_chance(f, 0.7) ? 0 : fuzz_integer(f, 0, STRATUS_CLIP_PLANES_MAX);
+  o->crop_regions = fuzz_chance(f, 0.5) ? STRATUS_CROP_INSIDE : (uint32_t)fuzz_next(f) & (fuzz_odd(f) ? 0xffffffffu : STRATUS_CROP_ALL);
+  o->clip_plane_count = fuzz_chance(f, 0.7) ? 0 : fuzz_integer(f, 0, STRATUS_CLIP_PLANES_MAX);
   for (int p = 0; p < STRATUS_CLIP_PLANES_MAX; ++p) {
-    double* plane = o->clipping.clip_planes[p];
+    double* plane = o->clip_planes[p];
     fuzz_vector(f, -1.0, 1.0, plane);
     plane[3] = 0.0;
     for (int axis = 0; axis < 3; ++axis) { /* through the volume, somewhere */
@@ -103,7 +102,7 @@ static stratus_ray_cast_options choose_options(fuzz* f, const picture_case* c)
   o.sampling.distance = fuzz_chance(f, 0.4) ? 0.0 : fuzz_real(f, 0.1 * field->shortest, 10.0 * field->shortest);
   o.sampling.termination = fuzz_chance(f, 0.5) ? o.sampling.termination : fuzz_real(f, 0.0, 1.0);
   o.skipping.block_size = fuzz_odd(f) ? fuzz_integer(f, -1, 64) : sizes[fuzz_below(f, 6)];
-  choose_cuts(f, &o, field);
+  fuzz_clipping(f, &o.clipping, field);
   o.skipping.audit = fuzz_chance(f, 0.3);
   o.light.normals = (stratus_normals)fuzz_choice(f, 2);
   fuzz_shading(f, field->bounds, field->edge, &o.light.shading);
