@@ -73,7 +73,7 @@ struct options {
   int seed = 0;                          // path
   double albedo = 1.0, anisotropy = 0.0; // path
   std::vector<std::vector<double>> suns; // path: x, y, z and, if given, red, green, blue
-  std::vector<double> sky;               // path: red, green, blue, or those of zenith and horizon
+  std::vector<double> sky;               // path: red, green, blue of the zenith and, if given, of the horizon
   std::vector<double> contours;          // isosurface
   std::vector<double> slice;             // slice: a point of the plane, and its normal
   std::vector<double> average;           // average: empty, or the range of values that count

@@ -21,7 +21,7 @@ static stratus_path_options choose_options(fuzz* f, const path_case* c)
   o.seed = fuzz_next(f);
   o.bounces = fuzz_integer(f, 0, 8);
   o.albedo = fuzz_real(f, 0.0, o.bounces == 0 ? 0.9 : 1.0);
-  o.bounces = o.albedo > 0.95 && (o.bounces == 0 || o.bounces > 1000) ? 9 : o.bounces; /* likewise, in opaque media */
+  o.bounces = o.albedo > 0.95 && (o.bounces == 0 || o.bounces > 1000) ? 9 : o.bounces; /* white, opaque media take as long */
   o.anisotropy = fuzz_real(f, -0.99, 0.99);
   fuzz_shading(f, c->field.bounds, c->field.edge, &shading);
   o.light_count = shading.light_count;
