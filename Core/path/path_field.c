@@ -2,6 +2,7 @@
  * The extinction at a place, in double: trilinear interpolation, the transfer function's own points, hidden parts, and the largest
  * extinction of each block. It shares no code with the ray caster, which is compared with it. */
 #include "path.h"
+#include "vector.h"
 
 #include <float.h>
 #include <string.h>
@@ -61,7 +62,8 @@ static double set_matrices(stratus_path_field* f)
   }
   (void)stratus_matrix_invert_affine(f->to_world, inverse); /* the volume's check has done so, too */
   for (int a = 0; a < 3; ++a) {
-    const double edge = hypot(hypot(f->to_world[a], f->to_world[4 + a]), f->to_world[8 + a]);
+    double side[3] = { f->to_world[a], f->to_world[4 + a], f->to_world[8 + a] };
+    const double edge = stratus_vector_normalize(side); /* whose squares do not overflow */
     memcpy(f->to_place + 3 * a, inverse + 4 * a, 3 * sizeof(double));
     double gap = 1.0;
     for (int64_t i = 0; v->coordinates[a] && i < v->dimensions[a] - (v->cell_centered ? 0 : 1); ++i) {
