@@ -238,8 +238,8 @@ static void arguments_that_are_none(void** state)
   options.termination = 1.5;
   REFUSED(&c.mesh, &c.transfer, &c.camera, &options, &image, "1.5");
   options = c.options;
-  options.mode = (stratus_tetra_mode)6;
-  REFUSED(&c.mesh, &c.transfer, &c.camera, &options, &image, "mode 6");
+  options.mode = (stratus_tetra_mode)(STRATUS_TETRA_QUANTITIES + 1);
+  REFUSED(&c.mesh, &c.transfer, &c.camera, &options, &image, "mode 9");
   options = c.options;
   options.method = (stratus_tetra_method)3;
   REFUSED(&c.mesh, &c.transfer, &c.camera, &options, &image, "method 3");
