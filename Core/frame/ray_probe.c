@@ -51,6 +51,8 @@
 #define LIGHT_SOUGHT 0x1p-6
 #define LIGHT_COMPARED 0x1p-10
 #define LIT_SHARE 0.7
+/* Where the tolerance is missed by light, so many times the finest setting's error is allowed. */
+#define NEARLY 1.1
 #define PATCH (STRATUS_PROBE_WIDTH * STRATUS_PROBE_HEIGHT)
 
 /* Reads of memory: a sample fetches a cell and reads an entry, or two of running sums, which are neighbours in rule local; a cell takes
@@ -556,18 +558,27 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
   for (;;) {
     family* found = NULL;
     int best = 0;
+    double allowed = most;
     TRY(compare(p, &k, for_rules, &best, &found));
+    const bool kept = found != NULL;
+    if (!kept && p->lit && k.fine.rung == finest) { /* light that jumps is not worth the finest setting, which hardly errs less */
+      const double reached = error_of_finest(&k, last);
+      allowed = NEARLY * reached;
+      if (reached > most) {
+        TRY(compare(p, &k, allowed, &best, &found));
+      }
+    }
     if (k.fine.rung == finest || (found && !too_near(p, found, best, &k.fine))) {
       setting s = found ? setting_of(p, found, best) : (setting){ .sampling = k.fine.sampling, .rung = last, .light = LIGHT_FINEST };
       if (found && found->sampling == STRATUS_SAMPLING_LOCAL) {
         TRY(lend_rough(p, found->beyond));
       }
       if (found && p->lit && stratus_ray_visits_cells(found->sampling)) {
-        TRY(search_light(p, most, &s));
+        TRY(search_light(p, allowed, &s));
       }
       take(p, &s, choice);
       *beyond = found ? found->beyond : 0;
-      choice->met = found != NULL;
+      choice->met = kept;
       choice->expected_error = error_of_finest(&k, last);
       if (found) {
         TRY(measure_taken(p, found, &s, &k.fine, &choice->expected_error));
