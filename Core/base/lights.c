@@ -73,6 +73,10 @@ stratus_status stratus_shading_check(stratus_context* context, const stratus_sha
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "shading's %s is %g, must be 0..%g", names[i], factors[i], STRATUS_LIGHT_MAX);
     }
   }
+  if (!(shading->scattering >= 0.0 && shading->scattering <= 1.0) || !(fabs(shading->anisotropy) <= STRATUS_ANISOTROPY_MOST)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "scattering %g must be 0..1, and anisotropy %g -%g..%g", shading->scattering,
+      shading->anisotropy, STRATUS_ANISOTROPY_MOST, STRATUS_ANISOTROPY_MOST);
+  }
   if (shading->light_count < -1 || shading->light_count > STRATUS_LIGHTS_MAX) {
     return stratus_fail(
       context, STRATUS_INVALID_ARGUMENT, "%d lights, must be 0..%d, or -1 for one at the eye", shading->light_count, STRATUS_LIGHTS_MAX);
@@ -164,10 +168,16 @@ static void set_light(const stratus_light* light, const double origin[3], double
 void stratus_lights_set(
   const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit, stratus_light_arguments* a)
 {
+  const double g = shading->anisotropy;
   a->two_sided = !shading->one_sided;
+  a->scattered = (float)shading->scattering;
+  a->phase[0] = (float)(1.0 - g * g);
+  a->phase[1] = (float)(1.0 + g * g);
+  a->phase[2] = (float)(2.0 * g);
   stratus_light lights[STRATUS_LIGHTS_MAX];
   a->count = stratus_lights_in_world(camera, shading, lights);
   for (int i = 0; i < a->count; ++i) {
     set_light(&lights[i], origin, unit, i, a);
+    a->map_at[i] = -1;
   }
 }

@@ -6,6 +6,7 @@
 #include "picture.h"
 #include "ray_caster.h"
 #include "ray_kept.h"
+#include "ray_light.h"
 #include "ray_several_picture.h"
 #include "vector.h"
 #include "volume.h"
@@ -314,7 +315,12 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
   TRY_CLEANUP(b.kept ? stratus_kept_part_create(b.kept, &b.part) : stratus_image_part_create(b.context, image, &b.part));
   TRY_CLEANUP(stratus_allocate(b.context, (size_t)image->width * (size_t)image->height, sizeof(float), &ends));
   b.ends = ends;
-  status = (b.kept ? draw_kept : draw_all)(&b, order, reports);
+  stratus_ray_cast_report light = { .light_ms = 0.0 };
+  status = stratus_ray_light_update_several(inputs, count, true, camera, stratus_ray_caster_render_blocks, &light);
+  if (status == STRATUS_OK) {
+    status = (b.kept ? draw_kept : draw_all)(&b, order, reports);
+  }
+  stratus_ray_light_return(inputs, count);
   if (status != STRATUS_OK) {
     goto cleanup;
   }

@@ -104,6 +104,11 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
     TRY(replace(caster, GRID, frame->grid, frame->grid ? caster->field.grid.bytes : 0));
     d->grid_serial = grid_serial;
   }
+  const uint64_t lights_serial = stratus_light_maps_serial(caster->optics.lights);
+  if (!d->slots[LIGHTS].memory || d->lights_serial != lights_serial) {
+    TRY(replace(caster, LIGHTS, frame->lights, stratus_light_maps_bytes(caster->optics.lights)));
+    d->lights_serial = lights_serial;
+  }
   return STRATUS_OK;
 }
 
@@ -117,6 +122,9 @@ static const char* obstacle(const stratus_ray_caster* caster)
   }
   if (caster->structure.map && caster->structure.map->bytes_size > largest) {
     return "the distance map is larger than the device's largest allocation";
+  }
+  if (stratus_light_maps_bytes(caster->optics.lights) > largest) {
+    return "the maps of light are larger than the device's largest allocation";
   }
   if (caster->integrator.choice.sampling == STRATUS_SAMPLING_LOCAL && caster->structure.rough->bytes_size > largest) {
     return "the map of rough blocks is larger than the device's largest allocation";
@@ -169,7 +177,7 @@ static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_
 static stratus_status draw(
   stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, cl_kernel kernel, bool packets, void* counts, size_t counts_bytes)
 {
-  static const buffer_name others[] = { HIDDEN, MAP, ROUGH, GRID, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
+  static const buffer_name others[] = { HIDDEN, MAP, ROUGH, GRID, LIGHTS, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
   stratus_context* context = caster->context;
   stratus_ray_device* d = caster->device;
   stratus_device_slot* slots = caster->device->slots;

@@ -53,6 +53,8 @@ void stratus_ray_caster_release(stratus_ray_caster* caster)
     stratus_release(caster->context, caster->optics.layers);
     caster->optics.layers = NULL;
     stratus_first_hit_release(caster);
+    stratus_light_state_drop(&caster->light);
+    caster->optics.lights = NULL;
     for (int c = 0; c < STRATUS_RAY_PARTS; ++c) {
       stratus_ray_caster_destroy(caster->parts[c]);
       caster->parts[c] = NULL;

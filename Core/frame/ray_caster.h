@@ -16,8 +16,10 @@
 typedef struct stratus_ray_device stratus_ray_device;
 typedef struct stratus_first_hit stratus_first_hit;
 
-/* Casters within a caster: of up to four independent components, and, last, of the quantities of one. */
-#define STRATUS_RAY_PARTS 5
+/* Casters within a caster: of up to four independent components, of the quantities of one, and of what absorbs light. */
+#define STRATUS_RAY_PARTS 6
+#define STRATUS_RAY_QUANTITIES_PART 4
+#define STRATUS_RAY_LIGHT_PART 5
 
 /* Milliseconds of a frame, and of building, by structure; and the time that a trial wastes. */
 typedef struct stratus_ray_costs {
@@ -52,6 +54,9 @@ struct stratus_ray_caster {
   char tried[256];                        /* the settings that the probe tried; empty: there was no probe */
   stratus_ray_trial trial;
   const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
+  bool on_host;                    /* it never draws on the device */
+  stratus_light_state light;       /* of a picture of this volume alone, or of several of which it is the first */
+  bool light_given;                /* optics.lights are those of several blocks */
   bool together;                   /* it draws in one march with others, which light each sample */
 
   stratus_ray_caster* parts[STRATUS_RAY_PARTS]; /* of independent components, see ray_caster_parts.c; NULL until such a mode is used */

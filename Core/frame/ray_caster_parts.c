@@ -67,7 +67,7 @@ stratus_status stratus_ray_render_kept(stratus_ray_caster* caster, const stratus
     TRY(stratus_ray_part(caster, component, &one));
   }
   if (options->mode == STRATUS_MODE_QUANTITIES) { /* structures of pictures stay as they are */
-    TRY(stratus_ray_part(caster, STRATUS_RAY_PARTS - 1, &one));
+    TRY(stratus_ray_part(caster, STRATUS_RAY_QUANTITIES_PART, &one));
   }
   one->integrator.keeps = keeps;
   const stratus_status status = stratus_ray_render_one(one, &view, transfer + component, camera, options, image, report);

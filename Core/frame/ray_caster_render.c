@@ -9,6 +9,7 @@
 #include "ray_cast_host.h"
 #include "ray_fetched.h"
 #include "ray_frame.h"
+#include "ray_light.h"
 #include "ray_modes_render.h"
 #include "ray_probe.h"
 #include "ray_shading_render.h"
@@ -132,7 +133,7 @@ static stratus_status draw(stratus_ray_caster* caster, const stratus_ray_cast_ar
   const stratus_ray_cast_frame frame = stratus_ray_frame_of(caster, arguments, image, with_map);
   const int type = stratus_ray_fetch_type(&caster->field.traversed);
   const stratus_ray_drawn none = { .count = 0 };
-  if (caster->context->device) {
+  if (caster->context->device && !caster->on_host) {
     bool drawn = false; /* all tiles, those before included */
     const stratus_status status = stratus_ray_cast_device(caster, &frame, type, variant, counts, upload_ms, &drawn);
     if (status != STRATUS_OK) { /* if the host is to draw, the message goes to the log only */
@@ -223,6 +224,9 @@ void stratus_ray_fill_report(
   report->expected_error = caster->integrator.choice.expected_error;
   report->tolerance_met = caster->integrator.choice.met;
   report->probe_builds = caster->probe_builds;
+  report->light_builds = caster->light.builds;
+  report->light_bytes = stratus_light_maps_bytes(caster->optics.lights);
+  report->light_error = stratus_light_maps_error(caster->optics.lights);
 }
 
 static stratus_status render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
@@ -242,6 +246,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   caster->together = false;
   TRY(stratus_ray_update_tables(caster, volume, transfer, options, (size_t)image->width * (size_t)image->height, report));
   TRY(stratus_ray_update_structures(caster, options->skipping.structure, times, &used, why, sizeof why, report));
+  TRY(stratus_ray_light_update(caster, volume, transfer, camera, options, stratus_ray_render_one, report));
   if (caster->integrator.choice.provisional) {
     TRY(stratus_ray_probe(caster, volume, options, report));
   }

@@ -102,6 +102,9 @@ static stratus_ray_choice_inputs choice_inputs(
     in.materials[0].specular_power = shading->specular_power;
     in.one_sided = shading->one_sided != 0;
     in.lights = shading->light_count;
+    in.shadows = shading->shadows != 0;
+    in.scattering = shading->scattering;
+    in.anisotropy = shading->anisotropy;
   }
   for (int c = 0; c < materials && c < 4; ++c) { /* field by field: their padding is anything */
     in.materials[c].shade = options->light.materials[c].shade != 0;

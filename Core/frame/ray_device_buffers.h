@@ -19,6 +19,7 @@ typedef enum buffer_name {
   MAP,
   ROUGH,
   GRID,
+  LIGHTS,
   TABLE,
   LAYERS, /* of several volumes: stratus_ray_optics.layers */
   ARGUMENTS,
@@ -37,7 +38,7 @@ struct stratus_ray_device {
   stratus_device_slot slots[BUFFERS];
   stratus_ray_pages pages;
   bool in_pages; /* the values are in pages, and there is no buffer VALUES */
-  uint64_t data_serial, table_serial, map_serial, rough_serial, grid_serial, layers_of;
+  uint64_t data_serial, table_serial, map_serial, rough_serial, grid_serial, lights_serial, layers_of;
   double layers_step;
   const float* layers; /* what LAYERS holds, of that table and step */
 };

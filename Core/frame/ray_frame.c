@@ -431,6 +431,7 @@ stratus_ray_cast_frame stratus_ray_frame_of(
     .hidden = caster->field.hidden,
     .map = with_map ? caster->structure.map->bytes : NULL,
     .grid = caster->field.grid.table,
+    .lights = stratus_light_maps_words(caster->optics.lights),
     .rough = caster->integrator.choice.sampling == STRATUS_SAMPLING_LOCAL ? caster->structure.rough->bytes : NULL,
     .table = stratus_ray_table_of(&caster->optics, &bytes),
     .opaque_depth = image->opaque_depth,

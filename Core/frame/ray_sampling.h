@@ -15,7 +15,8 @@ typedef struct stratus_ray_choice_inputs {
   int shade, mean_components, together, clips_gradients;
   double gradient_distance, gradient_length;
   stratus_material materials[4]; /* without materials of components, the first is the shading's */
-  int one_sided, lights;
+  int one_sided, lights, shadows;
+  double scattering, anisotropy;
 } stratus_ray_choice_inputs;
 
 /* Make the choice that holds if the user sets rule and step, or if every step gives the same image. Otherwise the choice is provisional. */

@@ -7,6 +7,7 @@
 #include "ray_device_buffers.h"
 #include "ray_frame.h"
 #include "ray_kept.h"
+#include "ray_light.h"
 #include "ray_several_picture.h"
 #include "tiles.h"
 
@@ -92,7 +93,8 @@ static stratus_status draw_on_device(stratus_several* s, const stratus_several_f
 
 static stratus_status draw(stratus_several* s, const stratus_several_frame* frame, stratus_ray_counts* counts)
 {
-  if (s->context->device) {
+  const stratus_ray_caster* first = s->inputs[0].of->caster;
+  if (s->context->device && !(first && first->on_host)) {
     bool drawn = false;
     const stratus_status status = draw_on_device(s, frame, counts, &drawn);
     if (status != STRATUS_OK) { /* if the host is to draw, the message goes to the log only */
@@ -180,6 +182,8 @@ static stratus_status render(stratus_several* s, stratus_ray_cast_arguments* arg
   uint64_t differing = 0;
   int window[4] = { 0, 0, 0, 0 };
   float termination = 1.0f;
+  TRY(stratus_ray_light_update_several(s->given, s->count, false, s->camera, stratus_ray_caster_render_several, &s->inputs[0].report));
+  s->lights = stratus_light_maps_words(s->given->tetra ? s->given->tetra->lights : s->given->caster->optics.lights);
   for (int n = 0; n < s->count; ++n) {
     TRY(stratus_several_update(s, &s->inputs[n]));
   }
@@ -199,6 +203,7 @@ static stratus_status render(stratus_several* s, stratus_ray_cast_arguments* arg
   } else {
     arguments[0].termination = termination;
     frame.picture = frame.volumes[0].frame;
+    frame.picture.lights = s->lights;
     TRY(draw(s, &frame, &counts));
     if (s->inputs[0].options.skipping.audit) {
       TRY(audit(s, &frame, plain, &differing));
@@ -221,7 +226,7 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
   const stratus_image* image, stratus_ray_cast_report* reports)
 {
   _Alignas(64) stratus_ray_cast_arguments arguments[STRATUS_SEVERAL_MAX], plain[STRATUS_SEVERAL_MAX];
-  stratus_several s = { .camera = camera, .image = image, .count = count };
+  stratus_several s = { .given = inputs, .camera = camera, .image = image, .count = count };
   if (!inputs || !stratus_several_context(inputs)) {
     return STRATUS_INVALID_ARGUMENT;
   }
@@ -231,7 +236,11 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
     return stratus_ray_caster_render(inputs[0].caster, inputs[0].volume, inputs[0].transfer, camera, inputs[0].options, image, reports);
   }
   if (stratus_kept_mode(inputs) != STRATUS_MODE_COMPOSITE) {
-    return stratus_several_kept(inputs, count, camera, image, reports);
+    stratus_ray_cast_report light = { .light_ms = 0.0 };
+    TRY(stratus_ray_light_update_several(inputs, count, true, camera, stratus_ray_caster_render_several, &light));
+    const stratus_status status = stratus_several_kept(inputs, count, camera, image, reports);
+    stratus_ray_light_return(inputs, count);
+    return status;
   }
   for (int n = 0; n < count; ++n) {
     stratus_several_input* in = &s.inputs[n];

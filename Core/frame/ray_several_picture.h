@@ -26,6 +26,8 @@ typedef struct stratus_several {
   stratus_context* context;
   const stratus_camera* camera;
   const stratus_image* image;
+  const stratus_ray_cast_input* given;
+  const int32_t* lights; /* the maps of light that all share; NULL: none */
   int count;
   double step;     /* of the lattice */
   char where[160]; /* why the host draws though there is a device; else empty */

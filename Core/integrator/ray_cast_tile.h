@@ -9,7 +9,7 @@ static void RAY_NAME(begin_packet)(const stratus_ray_cast_frame* frame, int x, i
     packet_nothing(k);
     crop->all = m_none();
   } else {
-    RAY_NAME(ray_load)(frame->arguments, frame->opaque_depth, frame->grid, x, y, k, crop);
+    RAY_NAME(ray_load)(frame->arguments, frame->opaque_depth, frame->grid, frame->lights, x, y, k, crop);
   }
 }
 

@@ -45,6 +45,7 @@ void STRATUS_ISA_NAME(stratus_several_tile)(
       .values = of->values,
       .hidden = of->hidden,
       .grid = of->grid,
+      .lights = picture->lights,
       .map = of->map,
       .rough = of->rough,
       .table = part->layers ? (const void*)part->layers : of->table,

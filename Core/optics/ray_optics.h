@@ -3,6 +3,7 @@
 #ifndef STRATUS_RAY_OPTICS_H
 #define STRATUS_RAY_OPTICS_H
 
+#include "light_maps.h"
 #include "ray_shading_table.h"
 #include "ray_transfer_2d_host.h"
 
@@ -23,6 +24,7 @@ struct stratus_ray_optics {
   stratus_ray_made_table spare_table; /* of the other kind, samples or running sums: the probe and coarse pictures change between them */
   stratus_ray_shading_tables shading_tables;
   stratus_ray_transfer_2d transfer_2d;
+  const stratus_light_maps* lights; /* shadows: the frame's; NULL: none */
   /* of several volumes, by midpoint: colour and optical depth of each table entry over a segment; NULL: none */
   float* layers;
   uint64_t layers_of;    /* that table's number */

@@ -64,6 +64,7 @@ typedef enum stratus_normals {
 } stratus_normals;
 
 #define STRATUS_LIGHTS_MAX 8
+#define STRATUS_ANISOTROPY_MOST 0.99
 #define STRATUS_LIGHT_MAX 1e15 /* largest number in a light or a shading, so that products and sums of such numbers fit floats */
 
 typedef struct stratus_light {
@@ -116,6 +117,16 @@ typedef struct stratus_shading {
   stratus_light lights[STRATUS_LIGHTS_MAX];
   /* Composite. 1: only sides that face the light are lit; a side faces against the gradient. 0 (default): N is turned towards the eye. */
   int one_sided;
+  /* Composite and isosurface. 1: the matter that the renderer draws absorbs light on its way from each light to a sample. Clip planes, crop
+   * regions and masks hide matter from light, too. Maps of the light that passes are built again if data, functions or lights change. For
+   * lights that move with the camera they are built again with each camera. Default 0. */
+  int shadows;
+  /* Composite and isosurface: the share of light that the matter scatters, 0..1; the rest is reflected by the gradient as above. A light of
+   * colour l scatters diffuse l p C, where p is the phase function of Henyey and Greenstein (1941) times 4 pi:
+   * (1 - g^2) / (1 + g^2 - 2 g cos)^1.5. cos is between the ways of light before and after. So diffuse C is the single-scattering
+   * albedo, and an irradiance of E is a colour of E / (4 pi). 1 needs no gradients. Default 0. */
+  double scattering;
+  double anisotropy; /* g, -.99...99; above 0 light scatters forward. Default 0: to all sides alike. */
 } stratus_shading;
 
 /* Colour and opacity as a function of two variables. The first is the value. The second is the gradient's magnitude or, in volumes of 2
@@ -291,6 +302,12 @@ typedef struct stratus_ray_cast_report {
   double range_ms, table_ms, occupancy_ms, structure_ms, upload_ms, cast_ms; /* times in this call; 0: the step was not needed */
   /* time in this call of rays drawn to choose the sampling; 0: none */
   double probe_ms;
+  /* Shadows: number of times that maps of light were built since the caster was created; the time in this call; their memory; and the root
+   * mean square error of the image that is expected of them, by comparing maps of two spacings. */
+  uint64_t light_builds;
+  double light_ms;
+  size_t light_bytes;
+  double light_error;
   size_t structure_bytes;
   int window[4];               /* x0, x1, y0, y1: pixels outside [x0, x1) x [y0, y1) show nothing */
   stratus_structure structure; /* the structure used */

@@ -57,9 +57,18 @@ static void drop_mesh(stratus_tetra_caster* caster)
   caster->mesh = NULL;
 }
 
+static void drop_shadows(stratus_tetra_caster* caster)
+{
+  stratus_light_state_drop(&caster->light);
+  caster->lights = NULL;
+  stratus_tetra_caster_destroy(caster->dark);
+  caster->dark = NULL;
+}
+
 void stratus_tetra_caster_release(stratus_tetra_caster* caster)
 {
   if (caster) {
+    drop_shadows(caster);
     drop_mesh(caster);
     stratus_tetra_list_destroy(caster->list);
     caster->list = NULL;
@@ -456,6 +465,27 @@ stratus_status stratus_tetra_caster_enter(stratus_tetra_caster* caster, stratus_
   return stratus_tetra_device_enter(caster->context, &caster->device, &source, frame, &caster->buffers, why_not);
 }
 
+stratus_status stratus_tetra_light_caster(stratus_tetra_caster* caster, stratus_tetra_caster** dark)
+{
+  if (!caster->dark) {
+    TRY(stratus_tetra_caster_create(caster->context, &caster->dark));
+  }
+  *dark = caster->dark;
+  return STRATUS_OK;
+}
+
+/* Builds the maps of light of a picture of this mesh alone where they are stale. */
+static stratus_status update_shadows(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera)
+{
+  stratus_tetra_caster* dark;
+  if (!stratus_tetra_has_shadows(of->mesh, of->options)) {
+    drop_shadows(caster);
+    return STRATUS_OK;
+  }
+  TRY(stratus_tetra_light_caster(caster, &dark));
+  return stratus_tetra_shadow_update(caster, of, camera, stratus_tetra_caster_render);
+}
+
 stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
 {
@@ -472,6 +502,7 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   }
   const stratus_tetra_subject of = { mesh, transfer, options };
   TRY(take(caster, &of, camera, image, &drawn, &mine));
+  TRY(update_shadows(caster, &of, camera));
   if (stratus_tetra_draws_last(drawn, options)) {
     double bias;
     TRY(draw_component(caster, drawn->components - 1, drawn, transfer, camera, options, image, &mine, &bias));

@@ -4,6 +4,7 @@
 #define STRATUS_TETRA_CASTER_H
 
 #include "volume.h"
+#include "light_maps.h"
 #include "tetra_march_frame.h"
 #include "tetra_device.h"
 #include "tetra_project.h"
@@ -124,7 +125,10 @@ struct stratus_tetra_caster {
   float factor_scale[STRATUS_COMPONENTS_MAX]; /* not of labels, whose records have it */
   stratus_tetra_components components;
   uint64_t mesh_builds, value_builds, table_builds, gradient_builds, component_builds;
-  const stratus_tetra_costs* costs; /* costs used instead of measured ones, for tests; NULL: none */
+  const stratus_light_maps* lights;  /* shadows: the picture's maps; NULL: none */
+  stratus_light_state light;         /* of a picture of this mesh alone, or of several inputs of which it is the first */
+  struct stratus_tetra_caster* dark; /* draws what absorbs light; NULL: none */
+  const stratus_tetra_costs* costs;  /* costs used instead of measured ones, for tests; NULL: none */
 };
 
 /* The input of a render. */
@@ -213,6 +217,20 @@ void stratus_tetra_frame_slice(stratus_tetra_frame* frame, const stratus_tetra_o
 void stratus_tetra_frame_contours(
   stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options);
 void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);
+/* tetra_caster.c: the caster that draws what absorbs light. */
+stratus_status stratus_tetra_light_caster(stratus_tetra_caster* caster, stratus_tetra_caster** dark);
+/* tetra_shadow.c. A function as stratus_tetra_caster_render(); and the maps of a picture of this mesh alone, of layers that `dark` draws.
+ */
+typedef stratus_status stratus_tetra_draw(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
+  const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);
+stratus_status stratus_tetra_shadow_update(
+  stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera, stratus_tetra_draw* draw);
+/* Whether a picture with these options has shadows; and a key of what decides where its matter is. */
+bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* options);
+uint64_t stratus_tetra_shadow_key(
+  uint64_t key, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
+/* Makes options of the same matter without light. */
+stratus_tetra_options stratus_tetra_dark_options(const stratus_tetra_options* options);
 /* tetra_light.c: light and gradient opacity. */
 stratus_status stratus_tetra_light_check(
   stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);

@@ -19,6 +19,7 @@ typedef enum stratus_tetra_slot {
   TETRA_SUMS,
   TETRA_COLORS,
   TETRA_FACTORS,
+  TETRA_LIGHTS,
   TETRA_COMPONENT_SUMS,
   TETRA_RUNNING_SUMS, /* among several volumes: the table's own */
   /* of a frame */
@@ -45,7 +46,7 @@ typedef enum stratus_tetra_slot {
 
 typedef struct stratus_tetra_device {
   stratus_device_slot slots[TETRA_SLOTS];
-  uint64_t march_mesh, march_values, project_mesh, project_values, table, running, gradients,
+  uint64_t march_mesh, march_values, project_mesh, project_values, table, running, gradients, lights,
     components; /* build numbers of the slots' contents */
 } stratus_tetra_device;
 

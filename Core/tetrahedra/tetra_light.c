@@ -192,7 +192,8 @@ static void set_bend(stratus_tetra_arguments* a)
 }
 
 /* mask: the components that have gradients; no other is lit, as of dependent ones all but the last. */
-static void set_lights(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options, unsigned mask)
+static void set_lights(
+  stratus_tetra_frame* frame, const stratus_light_maps* maps, const stratus_mesh* mesh, const stratus_tetra_options* options, unsigned mask)
 {
   stratus_tetra_arguments* a = &frame->arguments;
   const stratus_shading* shading = &options->shading;
@@ -223,7 +224,20 @@ static void set_lights(stratus_tetra_frame* frame, const stratus_mesh* mesh, con
     a->light.on |= material.shade && mask >> m & 1 ? 1 << m : 0;
   }
   if (a->light.on) { /* else the lights are unchecked and unused */
+    stratus_light lights[STRATUS_LIGHTS_MAX];
+    double to_world[16] = { [15] = 1.0 };
     stratus_lights_set(c, shading, origin, unit, &a->light);
+    (void)stratus_lights_in_world(c, shading, lights);
+    for (int row = 0; row < 3; ++row) {
+      for (int axis = 0; axis < 3; ++axis) {
+        to_world[4 * row + axis] = frame->basis[axis][row];
+      }
+      to_world[4 * row + 3] = origin[row];
+    }
+    stratus_light_maps_arguments(maps, lights, to_world, unit, 0.0, &a->light);
+    frame->lights = stratus_light_maps_words(maps);
+    frame->lights_bytes = stratus_light_maps_bytes(maps);
+    frame->lights_serial = stratus_light_maps_serial(maps);
     set_bend(a);
   }
 }
@@ -263,5 +277,5 @@ void stratus_tetra_frame_light(stratus_tetra_frame* frame, const stratus_tetra_c
       a->factor_scale[c] = (float)fmin(g->unit[c] * g->spacing * scale, 1e30);
     }
   }
-  set_lights(frame, mesh, options, mask);
+  set_lights(frame, caster->lights, mesh, options, mask);
 }

@@ -49,6 +49,10 @@ static stratus_status send(device_march* m, const stratus_tetra_device_source* s
   if (frame->lit) {
     const size_t bytes = frame->factor_count * sizeof *frame->factors;
     TRY(stratus_slot_send(m->context, m->slots + TETRA_FACTORS, CL_MEM_READ_ONLY, frame->factors, bytes));
+    if (!m->slots[TETRA_LIGHTS].memory || d->lights != frame->lights_serial) {
+      TRY(stratus_slot_keep(m->context, m->slots + TETRA_LIGHTS, frame->lights, frame->lights_bytes));
+      d->lights = frame->lights_serial;
+    }
   }
   TRY(stratus_tetra_device_send(m->context, d, source, frame, frame->places));
   TRY(stratus_slot_send(m->context, m->slots + TETRA_FACES, CL_MEM_READ_ONLY, frame->faces, frame->face_count * sizeof *frame->faces));
@@ -90,14 +94,14 @@ static stratus_status march(device_march* m, size_t entries, uint32_t* sums)
 {
   static const stratus_tetra_slot order[] = { TETRA_ARGUMENTS, TETRA_CELLS, TETRA_CELL_VALUES, TETRA_SUMS, TETRA_COLORS, TETRA_POINTS,
     TETRA_LINES, TETRA_ENDS, TETRA_FACES, TETRA_BIN_BEGIN, TETRA_BINS, TETRA_FIRST, TETRA_ENTRIES, TETRA_FOUND, TETRA_RGBA, TETRA_RGBA8,
-    TETRA_DEPTH, TETRA_SAMPLES, TETRA_COUNTS, TETRA_GRADIENTS, TETRA_FACTORS, TETRA_COMPONENT_PLACES,
-    TETRA_COMPONENT_SUMS }; /* the last four only of a lit frame */
+    TETRA_DEPTH, TETRA_SAMPLES, TETRA_COUNTS, TETRA_GRADIENTS, TETRA_FACTORS, TETRA_COMPONENT_PLACES, TETRA_COMPONENT_SUMS,
+    TETRA_LIGHTS }; /* the last five only of a lit frame */
   const stratus_image* image = &m->frame->image;
   const size_t sums_bytes = m->tiles * 4 * sizeof *sums;
   TRY(reserve_entries(m, entries));
   TRY(stratus_tetra_device_lend_picture(m->context, m->device, image));
   TRY(stratus_slot_send(m->context, m->slots + TETRA_COUNTS, CL_MEM_READ_WRITE, sums, sums_bytes));
-  TRY(launch(m, "tetra_march", m->frame->lit, order, COUNT_OF(order) - (m->frame->lit ? 0 : 4)));
+  TRY(launch(m, "tetra_march", m->frame->lit, order, COUNT_OF(order) - (m->frame->lit ? 0 : 5)));
   TRY(stratus_tetra_device_receive_picture(m->context, m->device, image));
   return stratus_slot_receive(m->context, m->slots + TETRA_COUNTS, sums, sums_bytes);
 }

@@ -56,7 +56,10 @@ typedef struct stratus_tetra_frame {
   bool lit;               /* light and opacity depend on the gradient */
   const float* gradients; /* stratus_tetra_gradients.vectors; NULL unless lit */
   int gradient_sets;      /* of a vector for each point */
-  const float* factors;   /* gradient opacities; NULL: there is none */
+  const int32_t* lights;  /* the maps of what passes from lights (kernels/base/light_map.h); NULL: none */
+  size_t lights_bytes;
+  uint64_t lights_serial;
+  const float* factors; /* gradient opacities; NULL: there is none */
   size_t factor_count;
   const float* components; /* stratus_tetra_components.places; NULL: values have one component, and cells no labels */
   size_t component_floats;

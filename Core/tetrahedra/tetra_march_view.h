@@ -10,7 +10,7 @@
 INLINE stratus_tetra_view tetra_view_of(const stratus_tetra_frame* frame)
 {
   return (stratus_tetra_view){ .scene = { frame->cells, frame->places, frame->march_sums, frame->cell_values, frame->gradients,
-                                 frame->factors, frame->components, frame->media, frame->table->rgba },
+                                 frame->factors, frame->components, frame->media, frame->table->rgba, frame->lights },
     .lines = frame->us,
     .ends = frame->ends,
     .faces = (const int32_t*)frame->faces,

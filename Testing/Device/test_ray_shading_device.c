@@ -63,6 +63,18 @@ static void device_and_host_show_the_same(void** state)
   compare(host, device, &c, &c.transfer, "lit by cells");
   c.options.sampling.rule = STRATUS_SAMPLING_AUTO;
   compare(host, device, &c, &c.transfer, "lit, an automatic rule");
+  c.options.light.shading.shadows = 1;
+  c.options.light.shading.scattering = 0.6;
+  c.options.light.shading.anisotropy = 0.4;
+  c.options.light.shading.light_count = 2;
+  c.options.light.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 1, 0.9, 0.8 } };
+  c.options.light.shading.lights[1] = (stratus_light){ .vector = { 12, 13, 9 }, .color = { 0.1, 0.2, 0.9 }, .positional = 1 };
+  compare(host, device, &c, &c.transfer, "shadows, an automatic rule");
+  c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+  compare(host, device, &c, &c.transfer, "shadows, midpoint");
+  c.options.light.shading.shadows = 0;
+  c.options.light.shading.scattering = 0.0;
+  c.options.light.shading.light_count = -1;
   c.transfer.gradient = steep;
   c.transfer.gradient_count = 2;
   c.options.sampling.rule = STRATUS_SAMPLING_PREINTEGRATED;

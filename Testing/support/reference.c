@@ -103,11 +103,11 @@ static int64_t past_block(const reference_field* f, const ray* r, const double p
 
 /* Returns the opacity of a step, and finds its colour, with shading or several components. parts, c, gradients: one per
  * component. */
-static double look(const reference_scene* scene, const reference_field* parts, const ray* r, double s, const double p[3], reference_cell* c,
-  reference_gradients* gradients, double step, double rgb[3])
+static double look(const reference_scene* scene, const reference_matter* matter, const reference_field* parts, const ray* r, double s,
+  const double p[3], reference_cell* c, reference_gradients* gradients, double step, double rgb[3])
 {
   const reference_field* f = parts;
-  reference_place place = { .gradients = gradients };
+  reference_place place = { .gradients = gradients, .matter = matter };
   double values[REFERENCE_COMPONENTS_MAX], tau = 0.0, glow[3];
   memcpy(place.to_index, f->to_index, sizeof place.to_index);
   memcpy(place.direction, r->direction, sizeof place.direction);
@@ -191,8 +191,10 @@ static double trace_cells(
 }
 
 /* Composites in midpoint steps, with shading or several components. */
-static double trace(const reference_scene* scene, const reference_field* f, const ray* r, double longest_step, float pixel[4])
+static double trace(const reference_scene* scene, const reference_matter* matter, const ray* r, float pixel[4])
 {
+  const reference_field* f = matter->field;
+  const double longest_step = matter->longest;
   const double length = r->end - r->begin;
   const int64_t count = (int64_t)ceil(length / longest_step);
   const double step = length / (double)count;
@@ -223,7 +225,7 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
     }
     ++i;
     double rgb[3];
-    const double kept = look(scene, parts, r, s, p, c, gradients, step, rgb);
+    const double kept = look(scene, matter, parts, r, s, p, c, gradients, step, rgb);
     if (kept > 0.0) {
       for (int a = 0; a < 3; ++a) {
         sum[a] += left * kept * rgb[a];
@@ -237,6 +239,31 @@ static double trace(const reference_scene* scene, const reference_field* f, cons
   }
   pixel[3] = (float)(1.0 - left);
   return first;
+}
+
+double reference_passing(const reference_scene* scene, const reference_matter* matter, const stratus_light* light, const double world[3])
+{
+  reference_scene dark = *scene;
+  stratus_camera camera = { .parallel = 1 };
+  float pixel[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+  for (int a = 0; a < 3; ++a) {
+    camera.eye[a] = world[a];
+    camera.forward[a] = light->vector[a] - (light->positional ? world[a] : 0.0);
+  }
+  camera.far_k = light->positional ? 1.0 : (double)INFINITY;
+  dark.camera = &camera;
+  dark.shading = NULL;
+  dark.materials = NULL;
+  dark.opaque_depth = NULL;
+  const ray r = make_ray(&dark, matter->field, 0.0, 0.0, NULL);
+  if (r.end > r.begin) {
+    if (reference_has_shading(&dark)) {
+      trace(&dark, matter, &r, pixel);
+    } else {
+      trace_cells(&dark, matter->field, matter->breaks, &r, matter->longest, pixel);
+    }
+  }
+  return 1.0 - (double)pixel[3];
 }
 
 int reference_picks(int tile, int x, int y)
@@ -263,6 +290,7 @@ int reference_render(const reference_scene* scene, int width, int height, double
   }
   const bool shading = reference_has_shading(scene);
   const double length = step * f.edge;
+  const reference_matter matter = { &f, &breaks, length };
 #pragma omp parallel for schedule(dynamic, 1)
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -272,7 +300,7 @@ int reference_render(const reference_scene* scene, int width, int height, double
       double first = (double)INFINITY;
       memset(rgba + 4 * at, 0, 4 * sizeof *rgba);
       if (r.end > r.begin && reference_picks(scene->tile, x, y)) {
-        first = shading ? trace(scene, &f, &r, length, rgba + 4 * at) : trace_cells(scene, &f, &breaks, &r, length, rgba + 4 * at);
+        first = shading ? trace(scene, &matter, &r, rgba + 4 * at) : trace_cells(scene, &f, &breaks, &r, length, rgba + 4 * at);
       }
       if (depth) {
         depth[at] = (float)first;

@@ -254,15 +254,29 @@ static double part_of_light(const stratus_light* light, const double way[3])
   return part;
 }
 
-static void add_light(const stratus_material* shading, const stratus_light* light, const reference_place* place, const double normal[3],
-  double diffuse[3], double specular[3])
+/* Henyey and Greenstein's phase function times 4 pi. way: from the place to the light, of length 1. */
+static double phase_of(const stratus_shading* shading, const reference_place* place, const double way[3])
+{
+  const double g = shading->anisotropy, cosine = dot(way, place->direction); /* the light goes along -way, and on along -direction */
+  return (1.0 - g * g) / pow(1.0 + g * g - 2.0 * g * cosine, 1.5);
+}
+
+static void add_light(const reference_scene* scene, const stratus_material* shading, const stratus_light* light,
+  const reference_place* place, const double normal[3], double diffuse[3], double specular[3])
 {
   double to[3], half_way[3];
   for (int a = 0; a < 3; ++a) {
     to[a] = light->vector[a] - (light->positional ? place->world[a] : 0.0);
   }
-  const double part = light->positional ? part_of_light(light, to) : 1.0;
+  double part = light->positional ? part_of_light(light, to) : 1.0;
+  if (scene->shading->shadows) {
+    part *= reference_passing(scene, place->matter, light, place->world);
+  }
   unit(to);
+  for (int a = 0; a < 3; ++a) {
+    diffuse[a] += scene->shading->scattering * part * shading->diffuse * phase_of(scene->shading, place, to) * light->color[a];
+  }
+  part *= 1.0 - scene->shading->scattering;
   for (int a = 0; a < 3; ++a) {
     half_way[a] = to[a] - place->direction[a];
   }
@@ -296,7 +310,7 @@ static void illuminate(
     eye.vector[a] = scene->camera->parallel ? -scene->camera->forward[a] : scene->camera->eye[a];
   }
   for (int i = 0; i < (shading->light_count < 0 ? 1 : shading->light_count); ++i) {
-    add_light(material, shading->light_count < 0 ? &eye : &shading->lights[i], place, normal, diffuse, specular);
+    add_light(scene, material, shading->light_count < 0 ? &eye : &shading->lights[i], place, normal, diffuse, specular);
   }
   for (int a = 0; a < 3; ++a) {
     rgb[a] = rgb[a] * diffuse[a] + specular[a];

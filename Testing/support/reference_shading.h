@@ -17,6 +17,15 @@ typedef struct reference_gradients {
   double corner[8][3];
 } reference_gradients;
 
+struct reference_field;
+
+/* What absorbs light on its way to a sample. */
+typedef struct reference_matter {
+  const struct reference_field* field;
+  const struct reference_breaks* breaks;
+  double longest; /* of a step */
+} reference_matter;
+
 /* The position of a sample, and the direction of its ray. */
 typedef struct reference_place {
   reference_spot spot[3];         /* among the values */
@@ -25,6 +34,7 @@ typedef struct reference_place {
   double direction[3];            /* of the ray, in the world, of length 1 */
   double to_index[3][3];          /* from world vectors to vectors of places (reference_axis.h) */
   reference_gradients* gradients; /* one for each component, which the ray keeps */
+  const reference_matter* matter; /* read if there are shadows */
 } reference_place;
 
 /* Returns 1 if the scene has light, gradient opacity, several components or labels. */
@@ -36,6 +46,9 @@ stratus_volume reference_component(const stratus_volume* volume, int c);
 /* Shades a sample. values: one per component, NAN where it is hidden. *tau: optical depth per unit distance. glow: emitted light per unit
  * distance. */
 void reference_shade(const reference_scene* scene, const reference_place* place, const double* values, double* tau, double glow[3]);
+
+/* reference.c: the part of a light that passes to a place in the world. */
+double reference_passing(const reference_scene* scene, const reference_matter* matter, const stratus_light* light, const double world[3]);
 
 /* reference_transfer_2d.c: colour (not multiplied by opacity) and opacity of a value and a second number. */
 void reference_transfer_2d(const stratus_transfer_2d* of, bool nearest, double value, double second, double rgba[4]);

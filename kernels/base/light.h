@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The light that falls on a place, as VTK's volume mappers compute it: ambient light, diffuse by N L, specular by (N H)^power with H half
- * way between the light and the eye (Blinn 1977). N points against the gradient; where both sides are lit it is turned towards the eye. */
+ * way between the light and the eye (Blinn 1977). N points against the gradient; where both sides are lit it is turned towards the eye.
+ * A share of the light may be scattered by the matter, as Henyey & Greenstein (1941) have it. What passes to the place is in maps. */
 #ifndef STRATUS_LIGHT_H
 #define STRATUS_LIGHT_H
 
 #include "light_arguments.h"
 #include "gather.h"
+#include "light_map.h"
 #include "packet_math.h"
 
 INLINE vfloat v_dot3(const vfloat a[3], const vfloat b[3]) { return v_fma(a[0], b[0], v_fma(a[1], b[1], a[2] * b[2])); }
@@ -123,10 +125,42 @@ INLINE vfloat lamp_reaching(CONSTANT stratus_light_arguments* a, int i, const vf
   return part;
 }
 
+/* The light that scatters from a direction to the eye, 1 if it scatters evenly to all sides. The cosine is between the ways before and
+ * after. */
+INLINE vfloat light_phase(CONSTANT stratus_light_arguments* a, vfloat cosine)
+{
+  const vfloat root = v_inverse_root(v_max(v_set(a->phase[1]) - cosine * v_set(a->phase[2]), v_set(1e-12f)));
+  return v_set(a->phase[0]) * (root * root * root);
+}
+
+/* The way from the places x towards light i on which near matter is passed. */
+INLINE void light_near_way(CONSTANT stratus_light_arguments* a, int i, const vfloat x[3], vfloat way[3])
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    way[axis] = v_set(a->near_way[i][axis]);
+  }
+  if (a->positional[i]) {
+    vfloat place[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      way[axis] = way[axis] - x[axis];
+    }
+    v_transform3(a->place, way, place);
+    const vfloat square = v_clamp(v_dot3(place, place), 1e-30f, 1e37f);
+    const vfloat part = v_min(v_set(a->near_reach) * v_inverse_root(square), v_set(1.0f));
+    for (int axis = 0; axis < 3; ++axis) {
+      way[axis] = way[axis] * part;
+    }
+  }
+}
+
+/* Whether light depends on the gradient. */
+INLINE int light_reflects(CONSTANT stratus_light_arguments* a) { return a->scattered < 1.0f; }
+
 /* Lights component m at the places x where the gradient is g, on rays of direction d. A colour C of opacity A becomes C diffuse + A
- * specular. diffuse includes the ambient light. */
-INLINE void light_at(CONSTANT stratus_light_arguments* a, int m, const vfloat x[3], const vfloat d[3], const vfloat g[3], vfloat diffuse[3],
-  vfloat specular[3])
+ * specular. diffuse includes the ambient light. maps: of the lights; not read if none has one. near: for each light what passes the near
+ * matter; NULL: that is not known, and maps are asked at the places themselves. */
+INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps, const vfloat* near, int m, const vfloat x[3],
+  const vfloat d[3], const vfloat g[3], vfloat diffuse[3], vfloat specular[3])
 {
   CONSTANT float* material = a->material[m];
   const vfloat zero = v_set(0.0f);
@@ -157,7 +191,29 @@ INLINE void light_at(CONSTANT stratus_light_arguments* a, int m, const vfloat x[
     }
     const vfloat way[3] = { light[0], light[1], light[2] };
     v_normalize3(light, 0.0f);
-    const vfloat reaching = a->positional[i] ? lamp_reaching(a, i, way, light) : v_set(1.0f);
+    vfloat reaching = a->positional[i] ? lamp_reaching(a, i, way, light) : v_set(1.0f);
+    if (a->map_at[i] >= 0) {
+      vfloat asked[3] = { x[0], x[1], x[2] };
+      if (near) {
+        vfloat move[3];
+        light_near_way(a, i, x, move);
+        for (int axis = 0; axis < 3; ++axis) {
+          asked[axis] = x[axis] + move[axis];
+        }
+        reaching = reaching * near[i];
+      }
+      reaching = reaching * light_map_passing(a, maps, i, asked);
+    }
+    if (a->scattered > 0.0f) {
+      const vfloat part = light_phase(a, zero - v_dot3(light, eye)) * reaching * v_set(material[1] * a->scattered);
+      for (int c = 0; c < 3; ++c) {
+        diffuse[c] = v_fma(part, v_set(a->color[i][c]), diffuse[c]);
+      }
+      if (a->scattered >= 1.0f) {
+        continue;
+      }
+      reaching = reaching * v_set(1.0f - a->scattered);
+    }
     for (int axis = 0; axis < 3; ++axis) {
       half_way[axis] = light[axis] + eye[axis];
     }

@@ -48,7 +48,7 @@ typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRAT
 #if STRATUS_WIDTH == 1
 /* counts: rays, samples, skipped, lookups of each row of pixels, so that 32 bits hold them. */
 PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGUMENTS, __global const uchar* hidden,
-  __global const uchar* map, __global const uchar* rough, __global const int* grid, __global const void* table,
+  __global const uchar* map, __global const uchar* rough, __global const int* grid, __global const int* lights, __global const void* table,
   __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8, __global float* depth, __global uint* samples,
   __global uint* counts)
 {
@@ -63,7 +63,7 @@ PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGU
   if (!packet_outside(a, x, y)) {
     stratus_crop crop;
     const int pieces = RAY_RARE(RAY_REGIONS, a->crop.regions) ? CROP_PIECES : 1;
-    RAY_NAME(ray_load)(a, opaque_depth, grid, x, y, &k, &crop);
+    RAY_NAME(ray_load)(a, opaque_depth, grid, lights, x, y, &k, &crop);
     for (int piece = 0; piece < pieces; ++piece) {
       if (RAY_RARE(RAY_REGIONS, a->crop.regions)) {
         crop_enter(a, &crop, piece, &k);
@@ -89,7 +89,7 @@ PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGU
 #else
 /* counts: rays, samples, skipped, lookups of each tile. 32 bits hold a tile's, and no other work item adds to them. */
 PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGUMENTS, __global const uchar* hidden,
-  __global const uchar* map, __global const uchar* rough, __global const int* grid, __global const void* table,
+  __global const uchar* map, __global const uchar* rough, __global const int* grid, __global const int* lights, __global const void* table,
   __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8, __global float* depth, __global uint* samples,
   __global uint* counts)
 {
@@ -110,7 +110,7 @@ PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGU
           crop[i].all = m_none();
         } else {
           RAY_NAME(ray_load)
-          (a, opaque_depth, grid, x + i * PACKET_X, y, &k[i],
+          (a, opaque_depth, grid, lights, x + i * PACKET_X, y, &k[i],
             &crop[i]); /* a packet beyond the picture has no live ray and stores nothing */
         }
       }

@@ -65,6 +65,7 @@ typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRAT
     from[n].map = map##n;                                                                                                                  \
     from[n].rough = rough##n;                                                                                                              \
     from[n].grid = grid##n;                                                                                                                \
+    from[n].lights = lights;                                                                                                               \
     from[n].table = table##n;                                                                                                              \
     from[n].besides = besides##n;                                                                                                          \
     from[n].stride = parts[n].stride;                                                                                                      \
@@ -89,6 +90,7 @@ typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRAT
     meshes[n].a = mesh_arguments + n;                                                                                                      \
     meshes[n].places = &parts[n].places;                                                                                                   \
     meshes[n].view.scene.cells = grid##n;                                                                                                  \
+    meshes[n].view.scene.lights = lights;                                                                                                  \
     meshes[n].view.scene.points = (__global const float*)values##n;                                                                        \
     meshes[n].view.scene.sums = meshes[n].view.scene.media = (__global const int*)hidden##n;                                               \
     meshes[n].view.scene.components = (__global const float*)table##n;                                                                     \
@@ -114,8 +116,8 @@ typedef char stratus_arguments_agree[sizeof(stratus_ray_cast_arguments) == STRAT
  * pixels, or of each tile. */
 PACKET_KERNEL void ray_several(__constant stratus_ray_cast_arguments* a, __constant stratus_several_arguments* parts, int count,
   VOLUME_ARGUMENTS(0), VOLUME_ARGUMENTS(1), VOLUME_ARGUMENTS(2), VOLUME_ARGUMENTS(3), VOLUME_ARGUMENTS(4), VOLUME_ARGUMENTS(5),
-  VOLUME_ARGUMENTS(6), VOLUME_ARGUMENTS(7), __global const float* opaque_depth, __global float* rgba, __global uchar* rgba8,
-  __global float* depth, __global uint* samples, __global uint* counts MESHES_ARGUMENTS)
+  VOLUME_ARGUMENTS(6), VOLUME_ARGUMENTS(7), __global const int* lights, __global const float* opaque_depth, __global float* rgba,
+  __global uchar* rgba8, __global float* depth, __global uint* samples, __global uint* counts MESHES_ARGUMENTS)
 {
   const stratus_pixels to = { rgba, rgba8, depth, samples };
   several_source from[SEVERAL_MOST];

@@ -149,16 +149,23 @@ INLINE void lit_close(stratus_packet* k, vmask mask, vfloat red, vfloat green, v
 #endif
 
 /* Lights the first closed bundles, as many as a packet has lanes. */
-OUTLINE void RAY_NAME(lit_shade)(CONSTANT stratus_ray_cast_arguments* a, value_source values, stratus_packet* k)
+OUTLINE void RAY_NAME(lit_shade)(
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, GLOBAL const void* table, stratus_packet* k)
 {
   stratus_lit_places* p = &k->places;
   const int count = p->count < STRATUS_WIDTH ? p->count : STRATUS_WIDTH;
   const vmask mask = vi_lt(vi_lanes(), vi_set(count));
   const vfloat x[3] = { v_load(p->x[0]), v_load(p->x[1]), v_load(p->x[2]) }, d[3] = { v_load(p->d[0]), v_load(p->d[1]), v_load(p->d[2]) };
   const vfloat opacity = v_load(p->opacity);
-  vfloat g[3], diffuse[3], specular[3];
-  RAY_NAME(ray_gradient)(a, values, k->grid, x, mask, g);
-  light_at(&a->light, 0, x, d, g, diffuse, specular);
+  vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) }, diffuse[3], specular[3];
+  if (light_reflects(&a->light)) {
+    RAY_NAME(ray_gradient)(a, values, k->grid, x, mask, g);
+  }
+  vfloat near[8];
+  if (a->light.near_steps > 0) {
+    RAY_NAME(light_near)(a, values, hidden, table, k, x, mask, near);
+  }
+  light_at(&a->light, k->lights, a->light.near_steps > 0 ? near : 0, 0, x, d, g, diffuse, specular);
   for (int c = 0; c < 3; ++c) {
     float light[STRATUS_WIDTH];
     v_store(light, v_fma(v_load(p->color[c]), diffuse[c], opacity * specular[c]));
@@ -180,8 +187,8 @@ OUTLINE void RAY_NAME(lit_shade)(CONSTANT stratus_ray_cast_arguments* a, value_s
 }
 
 /* Puts a stretch that the rays of `mask` have composited into their open bundles. */
-INLINE void RAY_NAME(lit_pass)(CONSTANT stratus_ray_cast_arguments* a, value_source values, stratus_packet* k, const lit_before* before,
-  vmask mask, const lit_stretch* s)
+INLINE void RAY_NAME(lit_pass)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+  GLOBAL const void* table, stratus_packet* k, const lit_before* before, vmask mask, const lit_stretch* s)
 {
   stratus_lit_places* p = &k->places;
   const vfloat zero = v_set(0.0f);
@@ -211,17 +218,18 @@ INLINE void RAY_NAME(lit_pass)(CONSTANT stratus_ray_cast_arguments* a, value_sou
   p->first = v_select(mask, first, p->first);
   p->second = v_select(mask, second, p->second);
   if (p->count >= STRATUS_WIDTH) {
-    RAY_NAME(lit_shade)(a, values, k);
+    RAY_NAME(lit_shade)(a, values, hidden, table, k);
   }
 }
 
 /* Lights what is left, and gives the packet its colours. */
-INLINE void RAY_NAME(lit_end)(CONSTANT stratus_ray_cast_arguments* a, value_source values, stratus_packet* k)
+INLINE void RAY_NAME(lit_end)(
+  CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, GLOBAL const void* table, stratus_packet* k)
 {
   stratus_lit_places* p = &k->places;
   lit_close(k, v_lt(v_set(0.0f), p->weight), k->red, k->green, k->blue);
   while (p->count > 0) {
-    RAY_NAME(lit_shade)(a, values, k);
+    RAY_NAME(lit_shade)(a, values, hidden, table, k);
   }
   k->red = v_load(p->lit[0]);
   k->green = v_load(p->lit[1]);

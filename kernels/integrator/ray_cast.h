@@ -136,6 +136,9 @@ INLINE stratus_sample RAY_NAME(ray_sample)(
 #include "lighting.h"
 #include "component.h"
 #endif
+#if RAY_LIT || STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_SLICE
+#include "light_near.h"
+#endif
 #if STRATUS_RAY_MODE == STRATUS_RAY_SHADING || STRATUS_RAY_MODE == STRATUS_RAY_SLICE
 #include "ray_media.h"
 #include "ray_components.h"
@@ -260,13 +263,14 @@ INLINE void RAY_NAME(ray_finish)(
 #endif
 
 /* Makes the rays of the packet at pixel (x, y) ready for their first segment. `crop` is set only where the frame shows crop regions. */
-INLINE void RAY_NAME(ray_load)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, GLOBAL const int* grid, int x,
-  int y, stratus_packet* k, stratus_crop* crop)
+INLINE void RAY_NAME(ray_load)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, GLOBAL const int* grid,
+  GLOBAL const int* lights, int x, int y, stratus_packet* k, stratus_crop* crop)
 {
   stratus_rays rays;
   const vmask inside = packet_rays(a, opaque_depth, x, y, &rays);
   packet_begin(a, &rays, inside, k);
   k->grid = grid;
+  k->lights = lights;
 #if STRATUS_PREINTEGRATED
   k->fresh = k->live;
 #endif

@@ -133,8 +133,8 @@ INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
 #endif
 
 /* Composite the next piece of the cell paths of the lanes in `mask`. Returns the lanes that have pieces left. */
-INLINE vmask RAY_NAME(cell_composite)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const int* sums,
-  stratus_packet* k, const cell_walk* w, cell_way* way, vmask mask)
+INLINE vmask RAY_NAME(cell_composite)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+  GLOBAL const int* sums, stratus_packet* k, const cell_walk* w, cell_way* way, vmask mask)
 {
   const vfloat length = w->leave - w->s, begin = v_fma(way->from, length, w->s), part = length * way->share;
   cell_piece piece;
@@ -150,9 +150,10 @@ INLINE vmask RAY_NAME(cell_composite)(CONSTANT stratus_ray_cast_arguments* a, va
   way->share = v_select(again, way->share * v_reciprocal(parts), way->share);
   way->left = v_select(again, way->left * parts, way->left);
   mask = m_andnot(mask, again);
-  RAY_NAME(lit_pass)(a, values, k, &before, mask, &stretch);
+  RAY_NAME(lit_pass)(a, values, hidden, sums, k, &before, mask, &stretch);
 #else
   (void)values;
+  (void)hidden;
   const vmask again = m_none();
 #endif
   const vmask left = cell_pass_piece(way, &piece, mask);
@@ -219,7 +220,7 @@ INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, value_s
         waiting = waiting | RAY_NAME(cell_visit)(a, values, hidden, k, &w, done, &ways);
       }
     } else {
-      waiting = RAY_NAME(cell_composite)(a, values, sums, k, &w, &ways, waiting);
+      waiting = RAY_NAME(cell_composite)(a, values, hidden, sums, k, &w, &ways, waiting);
     }
     cell_leave(a, k, m_andnot(done, waiting), &w);
   } while (m_any(k->live));

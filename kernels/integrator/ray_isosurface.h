@@ -49,10 +49,12 @@ OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments* a, valu
     mask = mask & v_finite(ray_hide_by(a, hidden, HIDDEN_BY_MASK, snapped, mask, v_set(0.0f)));
   }
   if (a->light.on) {
-    vfloat g[3];
+    vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
     stratus_lit_sample lighting;
-    RAY_NAME(ray_gradient)(a, FOLLOWED_VALUES(a, values), k->grid, x, mask, g);
-    light_at(&a->light, 0, x, k->d, g, lighting.diffuse, lighting.specular);
+    if (light_reflects(&a->light)) {
+      RAY_NAME(ray_gradient)(a, FOLLOWED_VALUES(a, values), k->grid, x, mask, g);
+    }
+    light_at(&a->light, k->lights, 0, 0, x, k->d, g, lighting.diffuse, lighting.specular);
     light_layer(&lighting, layer);
   }
   for (int c = 0; c < 4; ++c) {

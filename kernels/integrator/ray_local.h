@@ -42,7 +42,7 @@ INLINE void RAY_NAME(local_march)(CONSTANT stratus_ray_cast_arguments* a, value_
     local_composite(a, sums, k, k->live & v_finite(sample.value), sample.value, sample.length, sample.lo);
 #if RAY_LIT
     const lit_stretch stretch = lit_stretch_of(&before, k, sample.lo, sample.weight);
-    RAY_NAME(lit_pass)(a, values, k, &before, k->live, &stretch);
+    RAY_NAME(lit_pass)(a, values, hidden, sums, k, &before, k->live, &stretch);
 #endif
     k->i = k->i + vi_set(1);
     k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));
@@ -60,7 +60,7 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
   lit_begin(a, k);
   if (a->rough.rows == 0) { /* all blocks are rough */
     RAY_NAME(cell_march)(a, values, hidden, map, table, k, 0, 0);
-    RAY_NAME(lit_end)(a, values, k);
+    RAY_NAME(lit_end)(a, values, hidden, table, k);
     return;
   }
 #endif
@@ -102,6 +102,6 @@ INLINE void RAY_NAME(ray_march)(CONSTANT stratus_ray_cast_arguments* a, value_so
   k->end = whole_end;
   k->live = m_none();
 #if RAY_LIT
-  RAY_NAME(lit_end)(a, values, k);
+  RAY_NAME(lit_end)(a, values, hidden, table, k);
 #endif
 }

@@ -136,6 +136,7 @@ INLINE void several_load(
     const vmask inside = packet_rays(a, opaque_depth, x, y, &rays);
     packet_begin(a, &rays, inside, &v->k);
     v->k.grid = from[n].grid;
+    v->k.lights = from[n].lights;
     for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
       const float far = rays.whole[0][lane] < SEVERAL_FARTHEST ? rays.whole[0][lane] : SEVERAL_FARTHEST;
       whole[n][lane] = (several_number_t)far + (several_number_t)rays.whole[1][lane];

@@ -42,7 +42,7 @@ OUTLINE void RAY_NAME(ray_shade)(
   const vmask whole = m_andnot(k->live, k->fresh); /* rays that know the value at the segment's front */
   const vmask shows = segment_shows(a, (GLOBAL const int*)table, k, whole & v_finite(value) & v_finite(k->front), value);
   if (m_any(shows)) {
-    RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), weight, shows, &lighting);
+    RAY_NAME(ray_light_sample)(a, sample, table, 0, k, v_fma(v_set(0.5f), weight, lo), weight, shows, &lighting);
     integrate_lit(a, (GLOBAL const int*)table, k, shows, value, sample->length * lighting.factor, lo, &lighting);
   }
   k->front = value;
@@ -60,7 +60,7 @@ OUTLINE void RAY_NAME(ray_shade)(
     const vmask shows = k->live & v_finite(value) & v_lt(v_set(0.0f), layer[3]);
     if (m_any(shows)) {
       const vfloat depth = RAY_NAME(entry_depth)(a, (GLOBAL const float*)table + 4 * a->table.entries, entry, shows);
-      RAY_NAME(ray_light_sample)(a, sample->values, table, 0, k, v_fma(v_set(0.5f), weight, lo), depth, shows, &lighting);
+      RAY_NAME(ray_light_sample)(a, sample, table, 0, k, v_fma(v_set(0.5f), weight, lo), depth, shows, &lighting);
       scale_layer(a, (GLOBAL const float*)table, entry, shows, sample->length * lighting.factor, layer);
       light_layer(&lighting, layer);
       composite(a, k, shows, layer, lo);

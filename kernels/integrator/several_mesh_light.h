@@ -11,6 +11,7 @@ INLINE void several_stretch_select(vmask mask, const stratus_tetra_stretch* from
 {
   s->tau_scale = from->tau_scale; /* the same for all */
   s->factor_scale = from->factor_scale;
+  s->lights = from->lights;
   s->us = from->us; /* of the ray */
   s->uw = from->uw;
   s->vs = from->vs;
@@ -161,6 +162,7 @@ INLINE void several_mesh_light_load(several_volume* v)
   for (int c = 0; c < TETRA_COMPONENTS; ++c) {
     stratus_tetra_stretch* s = &rays->stretches[c];
     s->us = s->uw = s->vs = s->vw = s->begin = s->rise = s->length = s->tau_scale = s->factor_scale = zero;
+    s->lights = 0;
     s->gradient[0] = s->gradient[1] = s->gradient[2] = s->turn[0] = s->turn[1] = s->turn[2] = zero;
     rays->values.from[c] = rays->values.to[c] = zero;
   }

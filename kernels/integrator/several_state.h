@@ -84,7 +84,7 @@ typedef struct several_source {
   CONSTANT stratus_ray_cast_arguments* a;
   value_source values;
   GLOBAL const uchar *hidden, *map, *rough;
-  GLOBAL const int* grid;
+  GLOBAL const int *grid, *lights;
   /* table: pre-integrated, the running sums; midpoint, for each entry its colour times optical depth, and its optical depth, over one
    * segment. besides: with light or gradient opacity, the tables that these read. */
   GLOBAL const void *table, *besides;

@@ -65,8 +65,10 @@ INLINE void several_light(const several_source* from, const several_volume* v, v
 #endif
   const vfloat s = v_set(0.5f) * (way->lo + way->hi);
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
-  vfloat g[3];
-  several_gradient_at(from, x, mask, g);
+  vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
+  if (light_reflects(&a->light) || a->media.factor_first[0] >= 0) {
+    several_gradient_at(from, x, mask, g);
+  }
   way->lighting.factor = v_set(1.0f);
   if (a->media.factor_first[0] >= 0) {
     way->lighting.factor = gradient_opacity(a, from->besides, vi_set(a->media.factor_first[0]), v_set(a->media.factor_scale[0]), g, mask);
@@ -76,7 +78,7 @@ INLINE void several_light(const several_source* from, const several_volume* v, v
     way->lighting.specular[c] = v_set(0.0f);
   }
   if (a->light.on) {
-    light_at(&a->light, 0, x, k->d, g, way->lighting.diffuse, way->lighting.specular);
+    light_at(&a->light, k->lights, 0, 0, x, k->d, g, way->lighting.diffuse, way->lighting.specular);
   }
 }
 

@@ -92,10 +92,10 @@ OUTLINE vmask RAY_NAME(two_at)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
   between_entries(a, table, column, row, across, up, mask, shown);
   mask = mask & v_lt(zero, shown[3]);
   if (a->light.on && m_any(mask)) {
-    if (!by_gradient) {
+    if (!by_gradient && light_reflects(&a->light)) {
       RAY_NAME(ray_gradient)(a, sample->values, k->grid, x, mask, g);
     }
-    light_at(&a->light, 0, x, k->d, g, lighting->diffuse, lighting->specular);
+    light_at(&a->light, k->lights, 0, 0, x, k->d, g, lighting->diffuse, lighting->specular);
   }
   return mask;
 }

@@ -77,7 +77,7 @@ OUTLINE vmask RAY_NAME(labels_at)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL
     if (a->media.label_factors) {
       factors = v_gather_ints(ints + a->media.label_first, (record + vi_set(2)) << vi_set(2), shows);
     }
-    RAY_NAME(ray_light_by)(a, sample->values, table, 0, k, s, depth, factors, of[3], shows, &shown->lighting);
+    RAY_NAME(ray_light_by)(a, sample, table, 0, k, s, depth, factors, of[3], shows, &shown->lighting);
   }
   return shows;
 }

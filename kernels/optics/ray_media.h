@@ -5,7 +5,7 @@
 /* How light and the gradient of component c change samples at s on their rays, in the lanes of `mask`. depth: the samples' optical depth
  * over a whole sample; read only if media.factor_reach is not 0. factor_first, factor_scale: of each lane's gradient opacity; factor_first
  * is negative if a lane has none. */
-OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const void* table, int c,
+OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, const stratus_sample* sample, GLOBAL const void* table, int c,
   const stratus_packet* k, vfloat s, vfloat depth, vint factor_first, vfloat factor_scale, vmask mask, stratus_lit_sample* lighting)
 {
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) }, one = v_set(1.0f);
@@ -13,8 +13,8 @@ OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, valu
   const int lit = a->light.on >> c & 1;
   vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
   lighting->factor = one;
-  if (lit || m_any(thins)) {
-    RAY_NAME(ray_gradient)(a, COMPONENT_VALUES(a, values, c), k->grid, x, mask, g);
+  if ((lit && light_reflects(&a->light)) || m_any(thins)) {
+    RAY_NAME(ray_gradient)(a, COMPONENT_VALUES(a, sample->values, c), k->grid, x, mask, g);
   }
   if (m_any(thins)) {
     const vfloat factor = gradient_opacity(a, table, factor_first, factor_scale, g, thins);
@@ -22,7 +22,11 @@ OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, valu
       v_select(thins, a->media.factor_reach > 0.0f ? factor_of_way(factor, depth * v_set(a->media.factor_reach)) : factor, one);
   }
   if (lit) {
-    light_at(&a->light, c, x, k->d, g, lighting->diffuse, lighting->specular);
+    vfloat near[8];
+    if (a->light.near_steps > 0) {
+      RAY_NAME(light_near)(a, sample->values, sample->hidden, table, k, x, mask, near);
+    }
+    light_at(&a->light, k->lights, a->light.near_steps > 0 ? near : 0, c, x, k->d, g, lighting->diffuse, lighting->specular);
   } else {
     for (int i = 0; i < 3; ++i) {
       lighting->diffuse[i] = one;
@@ -32,11 +36,11 @@ OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, valu
 }
 
 /* The same, where all lanes have the gradient opacity of component c. */
-INLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const void* table, int c,
-  const stratus_packet* k, vfloat s, vfloat depth, vmask mask, stratus_lit_sample* lighting)
+INLINE void RAY_NAME(ray_light_sample)(CONSTANT stratus_ray_cast_arguments* a, const stratus_sample* sample, GLOBAL const void* table,
+  int c, const stratus_packet* k, vfloat s, vfloat depth, vmask mask, stratus_lit_sample* lighting)
 {
   RAY_NAME(ray_light_by)
-  (a, values, table, c, k, s, depth, vi_set(a->media.factor_first[c]), v_set(a->media.factor_scale[c]), mask, lighting);
+  (a, sample, table, c, k, s, depth, vi_set(a->media.factor_first[c]), v_set(a->media.factor_scale[c]), mask, lighting);
 }
 
 #if !STRATUS_PREINTEGRATED
@@ -48,7 +52,7 @@ OUTLINE void RAY_NAME(ray_add_medium)(CONSTANT stratus_ray_cast_arguments* a, GL
   const vmask shows = mask & v_lt(v_set(0.0f), layer[3]);
   stratus_lit_sample lighting;
   if (m_any(shows)) {
-    RAY_NAME(ray_light_sample)(a, sample->values, table, c, k, v_fma(v_set(0.5f), sample->weight, sample->lo), layer[3], shows, &lighting);
+    RAY_NAME(ray_light_sample)(a, sample, table, c, k, v_fma(v_set(0.5f), sample->weight, sample->lo), layer[3], shows, &lighting);
     light_layer(&lighting, layer);
     const vfloat share = lighting.factor * v_set(a->media.weight[c]), depth = v_min(layer[3] * share, v_set(1e18f));
     for (int i = 0; i < 4; ++i) {

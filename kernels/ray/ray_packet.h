@@ -37,10 +37,11 @@ typedef struct stratus_packet {
   vint run;     /* segments before it need not ask the structure */
   vint octant;  /* offset of the map of the ray's octant */
   vint samples, skipped, lookups;
-  vmask live, hits;       /* hits: rays that meet the bounds */
-  vmask fresh;            /* the value at the segment's front is still to be sampled */
-  GLOBAL const int* grid; /* the tables of a grid whose spacing changes */
-  vfloat surface[2];      /* slices: where the rays meet the surface, the nearer first, in samples; LARGEST_FLOAT where they do not */
+  vmask live, hits;         /* hits: rays that meet the bounds */
+  vmask fresh;              /* the value at the segment's front is still to be sampled */
+  GLOBAL const int* grid;   /* the tables of a grid whose spacing changes */
+  GLOBAL const int* lights; /* the maps of what passes from lights */
+  vfloat surface[2];        /* slices: where the rays meet the surface, the nearer first, in samples; LARGEST_FLOAT where they do not */
 #if RAY_LIT
   stratus_lit_places places;
 #endif
@@ -89,7 +90,7 @@ INLINE void packet_nothing(stratus_packet* k)
   k->red = k->green = k->blue = k->front = v_set(0.0f);
   k->depth = v_set(LARGEST_FLOAT);
   k->live = k->hits = k->fresh = m_none();
-  k->grid = 0;
+  k->grid = k->lights = 0;
 }
 
 /* Sets up the rays of the packet at pixel (x, y). Returns those whose pixel is in the picture. */

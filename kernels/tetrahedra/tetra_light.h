@@ -23,6 +23,7 @@ typedef struct stratus_tetra_stretch {
   vfloat length;               /* in the world */
   vfloat tau_scale;            /* the optical depth of a unit of the sums over a unit of length */
   vfloat factor_scale;         /* from gradients to steps of the gradient opacity */
+  GLOBAL const int* lights;    /* the scene's */
 } stratus_tetra_stretch;
 
 INLINE void stretch_gradient(const stratus_tetra_stretch* s, vfloat part, vfloat g[3])
@@ -61,7 +62,7 @@ INLINE void tetra_light_at(CONSTANT stratus_tetra_arguments* a, GLOBAL const flo
     }
   }
   if (a->light.on >> c & 1) {
-    light_at(&a->light, c, x, d, g, lit->diffuse, lit->specular);
+    light_at(&a->light, s->lights, 0, c, x, d, g, lit->diffuse, lit->specular);
   }
 }
 
@@ -87,6 +88,18 @@ INLINE vfloat tetra_light_pieces(
     const vfloat square = v_max(v_set(2.0f) * (one - (a->light.two_sided ? v_abs(along) : along)), zero);
     const vfloat angle = v_root(v_max(square, v_set(1e-20f)));
     q = v_fma(depth * angle, v_set(a->bend[0]), most * square * v_set(0.5f * a->bend[1]));
+  }
+  for (int i = 0; (a->light.on >> c & 1) && i < a->light.count; ++i) {
+    if (a->light.map_at[i] >= 0) { /* what passes to the stretch changes along it */
+      vfloat p[3];
+      for (int at = 0; at < 3; ++at) {
+        const vfloat z = v_fma(v_set(0.5f * (float)at), s->rise, s->begin);
+        const vfloat x[3] = { v_fma(s->us, z, s->uw), v_fma(s->vs, z, s->vw), z };
+        p[at] = light_map_passing(&a->light, s->lights, i, x);
+      }
+      const vfloat bend = v_abs(v_fma(v_set(-0.5f), p[0] + p[2], p[1]));
+      q = q + v_fma(depth, v_abs(p[2] - p[0]), v_set(8.0f) * most * bend);
+    }
   }
   if (a->thins >> c & 1) {
     vfloat f[3];

@@ -65,15 +65,16 @@ PACKET_KERNEL void tetra_march(
   __global uint* found, __global float* rgba, __global uchar* rgba8, __global float* depth, __global uint* samples, __global uint* counts
 #if TETRA_LIT
   ,
-  __global const float* gradients, __global const float* factors, __global const float* components, __global const int* media
+  __global const float* gradients, __global const float* factors, __global const float* components, __global const int* media,
+  __global const int* lights
 #endif
 )
 {
 #if !TETRA_LIT
   __global const float *gradients = 0, *factors = 0, *components = 0;
-  __global const int* media = 0;
+  __global const int *media = 0, *lights = 0;
 #endif
-  const stratus_tetra_view view = { .scene = { cells, points, sums, cell_values, gradients, factors, components, media, colors },
+  const stratus_tetra_view view = { .scene = { cells, points, sums, cell_values, gradients, factors, components, media, colors, lights },
     .lines = lines,
     .ends = ends,
     .faces = faces,

@@ -1,0 +1,650 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Builds maps of light: the matter is drawn layer by layer as the light sees it, and what passes a layer is 1 less its opacity. So whatever
+ * can be drawn can cast shadows, and within a layer the picture's own integration holds. Only between nodes is anything interpolated. */
+#include "light_maps.h"
+
+#include "matrix.h"
+#include "tiles.h"
+#include "vector.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+/* Nodes along the longest side of the first map, of the last, and the words of a map at most: 64 MiB. */
+#define NODES_FIRST 32
+#define NODES_LAST 256
+/* Rays may pass near matter on so many lengths, each the map's spacing or NEAR_STEPS_LEAST steps if that is more, and in so many steps at
+ * most. Less than a spacing is no help, since the nodes about a place reach as far. */
+#define NEARS 4
+static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
+#define NEAR_STEPS_LEAST 2
+#define NEAR_STEPS_MOST 16
+#define FAINT 1e-4f /* what a node adds to a picture is at least this */
+#define LINES 32    /* so many rows, columns and layers of a map are compared with a coarser one */
+#define WORDS_MOST ((size_t)1 << 24)
+/* A position whose light meets the matter at a greater slope than this, or is in it, has a cube of maps. */
+#define SLOPE_MOST 2.0
+/* The share of the tolerance that maps may use up; errors of the picture's sampling add to it by their squares. */
+#define SHARE 0.5
+/* How an error falls if the spacing is halved: at most to this part, at least to that, where it was not seen. */
+#define FALL_BEST 0.25
+#define FALL_WORST 0.7
+#define FALL_UNKNOWN 0.5
+#define FAR 1e4   /* so many extents of the matter away, a position is a direction */
+#define FLAT 1e-6 /* a side of the map is at least this part of the longest */
+
+/* Where a map's nodes are. Coordinates are those of the light: across, up, and along its way. Of a position the first two are slopes. */
+typedef struct frame {
+  double basis[3][3], origin[3];
+  double lo[3], hi[3];
+  bool perspective;
+} frame;
+
+typedef struct map {
+  stratus_light light;
+  frame frame;
+  int faces, size[3]; /* faces: 0 of a direction */
+  size_t at;          /* in words */
+} map;
+
+struct stratus_light_maps {
+  stratus_context* context;
+  map of[STRATUS_LIGHTS_MAX];
+  int count;
+  int32_t* words;
+  size_t words_count;
+  uint64_t serial;
+  double near, error; /* near: the length on which rays pass near matter, in near_steps */
+  int near_steps;
+};
+
+static size_t map_words(const map* m)
+{
+  return (size_t)(m->faces > 0 ? m->faces : 1) * (size_t)m->size[0] * (size_t)m->size[1] * (size_t)m->size[2];
+}
+
+/* ---- where a map is */
+
+static void corner_of(const double bounds[6], int corner, double point[3])
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    point[axis] = bounds[2 * axis + (corner >> axis & 1)];
+  }
+}
+
+/* Sets the map's frame, and its sides' lengths in the world. */
+static void place_map(const stratus_light* light, const double bounds[6], map* m, double sides[3])
+{
+  frame* f = &m->frame;
+  double way[3], middle[3];
+  double distance = 0.0, extent = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    middle[axis] = 0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]);
+    way[axis] = light->positional ? middle[axis] - light->vector[axis] : -light->vector[axis];
+    distance = fmax(distance, fabs(way[axis]));
+    extent = fmax(extent, bounds[2 * axis + 1] - bounds[2 * axis]);
+  }
+  m->light = *light;
+  f->perspective = light->positional && distance < FAR * extent;
+  m->faces = f->perspective;
+  memcpy(f->origin, f->perspective ? light->vector : middle, sizeof f->origin);
+  if (stratus_vector_normalize(way) == 0.0) {
+    way[2] = 1.0;
+  }
+  const int least = fabs(way[0]) <= fabs(way[1]) && fabs(way[0]) <= fabs(way[2]) ? 0 : fabs(way[1]) <= fabs(way[2]) ? 1 : 2;
+  double other[3] = { 0.0, 0.0, 0.0 };
+  other[least] = 1.0;
+  memcpy(f->basis[2], way, sizeof way);
+  stratus_vector_cross(way, other, f->basis[0]);
+  (void)stratus_vector_normalize(f->basis[0]);
+  stratus_vector_cross(way, f->basis[0], f->basis[1]);
+  double depth_lo = INFINITY, depth_hi = -INFINITY, largest = 0.0;
+  bool wide = false;
+  for (int corner = 0; corner < 8; ++corner) {
+    double point[3], q[3];
+    corner_of(bounds, corner, point);
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] -= f->origin[axis];
+      largest = fmax(largest, fabs(point[axis]));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      q[axis] = stratus_vector_dot(f->basis[axis], point);
+    }
+    wide = wide || !(fmax(fabs(q[0]), fabs(q[1])) < SLOPE_MOST * q[2]);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = f->perspective && axis < 2 ? q[axis] / fmax(q[2], 1e-300) : q[axis];
+      f->lo[axis] = corner ? fmin(f->lo[axis], x) : x;
+      f->hi[axis] = corner ? fmax(f->hi[axis], x) : x;
+    }
+    depth_lo = fmin(depth_lo, q[2]);
+    depth_hi = fmax(depth_hi, q[2]);
+  }
+  if (f->perspective && wide) {
+    m->faces = 6;
+    memset(f->basis, 0, sizeof f->basis);
+    for (int axis = 0; axis < 3; ++axis) {
+      f->basis[axis][axis] = 1.0;
+      f->lo[axis] = axis < 2 ? -1.0 : 0.0;
+      f->hi[axis] = axis < 2 ? 1.0 : largest;
+      sides[axis] = axis < 2 ? 2.0 * largest : largest;
+    }
+    return;
+  }
+  const double scale = f->perspective ? 0.5 * (depth_lo + depth_hi) : 1.0;
+  double longest = 1e-300;
+  for (int axis = 0; axis < 3; ++axis) {
+    sides[axis] = (f->hi[axis] - f->lo[axis]) * (axis < 2 ? scale : 1.0);
+    longest = fmax(longest, sides[axis]);
+  }
+  for (int axis = 0; axis < 3; ++axis) { /* of flat matter, too, nodes are apart */
+    const double more = 0.5 * fmax(FLAT * longest - sides[axis], 0.0) / (axis < 2 ? scale : 1.0);
+    f->lo[axis] -= f->perspective && axis == 2 ? 0.0 : more;
+    f->hi[axis] += more;
+  }
+}
+
+/* Sets the numbers of nodes of a map whose longest side has about `nodes`. Returns whether its words are few enough. */
+static bool size_map(map* m, const double sides[3], int nodes)
+{
+  const double spacing = fmax(fmax(sides[0], sides[1]), sides[2]) / nodes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int steps = (int)fmin(ceil(sides[axis] / spacing - 1e-9), nodes);
+    m->size[axis] = axis < 2 ? (steps < 1 ? 2 : steps + 1) : (steps < 1 ? 1 : steps);
+  }
+  return map_words(m) <= WORDS_MOST;
+}
+
+/* ---- drawing a map */
+
+/* The camera of a face of a map that looks from the light, whose pixels are nodes. Returns whether the face may see any matter. */
+static bool face_camera(const map* m, int face, const double bounds[6], stratus_camera* camera)
+{
+  const frame* f = &m->frame;
+  double basis[3][3], middle[2], half[2];
+  memcpy(basis, f->basis, sizeof basis);
+  if (m->faces == 6) { /* across and up are the two axes that follow the one that is looked along */
+    const int along = face / 2;
+    memset(basis, 0, sizeof basis);
+    basis[0][(along + 1) % 3] = basis[1][(along + 2) % 3] = 1.0;
+    basis[2][along] = face & 1 ? -1.0 : 1.0;
+    const double end = bounds[2 * along + (face & 1 ? 0 : 1)] - f->origin[along];
+    if (!(basis[2][along] * end > 0.0)) {
+      return false;
+    }
+  }
+  *camera = (stratus_camera){ .parallel = !f->perspective };
+  for (int i = 0; i < 2; ++i) { /* the first and the last node are at the ends, and pixels' centres are nodes */
+    const double n = m->size[i];
+    middle[i] = 0.5 * (f->lo[i] + f->hi[i]);
+    half[i] = 0.5 * (f->hi[i] - f->lo[i]) * n / (n - 1.0);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double aside = middle[0] * basis[0][axis] + middle[1] * basis[1][axis];
+    camera->eye[axis] = f->origin[axis] + (f->perspective ? 0.0 : aside);
+    camera->forward[axis] = basis[2][axis] + (f->perspective ? aside : 0.0);
+    camera->right[axis] = half[0] * basis[0][axis];
+    camera->up[axis] = half[1] * basis[1][axis];
+  }
+  return true;
+}
+
+/* The part that passes to a place of a face, in steps of its nodes and layers. */
+static float passing(const map* m, const int32_t* words, int face, const double place[3])
+{
+  int cell[3];
+  float part[3], up[2];
+  for (int axis = 0; axis < 3; ++axis) {
+    const int last = axis < 2 ? m->size[axis] - 2 : m->size[2] - 1;
+    cell[axis] = (int)fmax(fmin(place[axis], last), 0.0);
+    part[axis] = (float)fmax(fmin(place[axis] - cell[axis], 1.0), 0.0);
+  }
+  const size_t layers = (size_t)m->size[2], across = layers * (size_t)m->size[0];
+  const int32_t* at = words + (size_t)face * across * (size_t)m->size[1] + (size_t)cell[1] * across + (size_t)cell[0] * layers + cell[2];
+  for (int row = 0; row < 2; ++row) {
+    float column[2];
+    for (int i = 0; i < 2; ++i) {
+      const uint32_t word = (uint32_t)at[(size_t)row * across + (size_t)i * layers];
+      column[i] = (float)(word & 0xffff) * (1.0f - part[2]) + (float)(word >> 16) * part[2];
+    }
+    up[row] = column[0] * (1.0f - part[0]) + column[1] * part[0];
+  }
+  return (up[0] * (1.0f - part[1]) + up[1] * part[1]) / 65535.0f;
+}
+
+/* A map that is being drawn, and what pictures by it and by a coarser one differ by, if rays pass near matter on each of near_lengths
+ * before. */
+typedef struct drawing {
+  stratus_context* context;
+  const stratus_light_matter* matter;
+  map* map;
+  uint16_t*
+    planes; /* of a face: what passes to each node at the layers' near sides, one layer after the other, and at the last's far side */
+  const map* coarse; /* NULL: none */
+  const int32_t* coarse_words;
+  float *rgba, *passed, *along;               /* along: of the view along the light's way, each node's differences so far */
+  double near_layers, squares[NEARS], pixels; /* near_layers: of the finer map, in a near length of the coarser */
+} drawing;
+
+/* The part that passes to a depth, in layers, of a node. */
+static float passed_to(const drawing* d, size_t node, double depth)
+{
+  const size_t nodes = (size_t)d->map->size[0] * (size_t)d->map->size[1], layer = (size_t)depth;
+  const float part = (float)(depth - (double)layer);
+  return ((float)d->planes[layer * nodes + node] * (1.0f - part) + (float)d->planes[(layer + 1) * nodes + node] * part) / 65535.0f;
+}
+
+/* Adds the differences of the coarser map in the middle of a layer, each times `part`. */
+static void add_difference(const drawing* d, int face, int x, int y, int layer, float part, float sum[NEARS])
+{
+  const int *n = d->map->size, *c = d->coarse->size;
+  const size_t node = (size_t)y * (size_t)n[0] + (size_t)x;
+  const float here = d->passed[node] * (1.0f - 0.5f * d->rgba[4 * node + 3]);
+  double place[3] = { (double)x / (n[0] - 1) * (c[0] - 1), (double)y / (n[1] - 1) * (c[1] - 1), 0.0 };
+  for (int m = 0; m < (d->matter->step > 0.0 ? NEARS : 1); ++m) {
+    const double depth = layer + 0.5 - near_lengths[m] * d->near_layers;
+    const float there = m == 0 || depth >= layer ? here : depth > 0.0 ? passed_to(d, node, depth) : 0.0f;
+    place[2] = depth / n[2] * c[2];
+    if (there > 0.0f) { /* else there is no matter between, and all of it is passed */
+      sum[m] += part * here / there * (there - passing(d->coarse, d->coarse_words, face, place));
+    }
+  }
+}
+
+/* Looks at the layer along one of its rows or columns, from both ends. Nodes are as far apart as layers are deep, so that their opacities
+ * are the same in all directions. */
+static void look_along(drawing* d, int face, int layer, int line, bool column)
+{
+  const int *n = d->map->size, count = n[column];
+  float left[2] = { 1.0f, 1.0f }, sum[2][NEARS] = { { 0.0f } };
+  for (int i = 0; i < count; ++i) {
+    for (int back = 0; back < 2; ++back) {
+      const int at = back ? count - 1 - i : i, x = column ? line : at, y = column ? at : line;
+      const float opacity = fminf(fmaxf(d->rgba[4 * ((size_t)y * (size_t)n[0] + (size_t)x) + 3], 0.0f), 1.0f), part = left[back] * opacity;
+      if (part > FAINT) {
+        add_difference(d, face, x, y, layer, part, sum[back]);
+      }
+      left[back] -= part;
+    }
+  }
+  for (int back = 0; back < 2; ++back) {
+    for (int m = 0; m < NEARS; ++m) {
+      d->squares[m] += (double)sum[back][m] * (double)sum[back][m];
+    }
+    d->pixels += left[back] < 1.0f;
+  }
+}
+
+/* Adds what pictures of a layer differ by, as they are seen from its four sides and from the light: of some rows, columns and nodes. */
+static void compare_layer(drawing* d, int face, int layer)
+{
+  const int *n = d->map->size, stride = (n[0] > n[1] ? n[0] : n[1]) / LINES + 1;
+  for (int column = 0; column < 2 && layer % stride == 0; ++column) {
+    for (int line = 0; line < n[1 - column]; line += stride) {
+      look_along(d, face, layer, line, column);
+    }
+  }
+  for (int y = 0; y < n[1]; y += stride) {
+    for (int x = 0; x < n[0]; x += stride) {
+      const size_t node = (size_t)y * (size_t)n[0] + (size_t)x;
+      float* along = d->along + NEARS * node;
+      const float part = d->passed[node] * fminf(fmaxf(d->rgba[4 * node + 3], 0.0f), 1.0f);
+      if (part > FAINT) {
+        add_difference(d, face, x, y, layer, part, along);
+      }
+      for (int m = 0; m < NEARS && layer + 1 == n[2]; ++m) {
+        d->squares[m] += (double)along[m] * (double)along[m];
+      }
+      d->pixels += layer + 1 == n[2] && d->passed[node] < 1.0f;
+    }
+  }
+}
+
+/* Words of a face, a row of nodes after the other. */
+typedef struct face_words {
+  const uint16_t* planes;
+  const int* size;
+  int32_t* words;
+} face_words;
+
+#define BLOCK 32 /* nodes of a row that are turned together: as many as are in a line of the cache */
+
+static void fill_row(const void* data, int y, uint64_t counts[STRATUS_TILE_COUNTS])
+{
+  const face_words* f = data;
+  const size_t width = (size_t)f->size[0], nodes = width * (size_t)f->size[1], layers = (size_t)f->size[2], row = (size_t)y * width;
+  (void)counts;
+  for (size_t from = 0; from < width; from += BLOCK) {
+    const size_t beyond = from + BLOCK < width ? from + BLOCK : width;
+    for (size_t layer = 0; layer < layers; ++layer) {
+      const uint16_t *near = f->planes + layer * nodes + row, *far = near + nodes;
+      for (size_t x = from; x < beyond; ++x) {
+        f->words[(row + x) * layers + layer] = (int32_t)((uint32_t)near[x] | (uint32_t)far[x] << 16);
+      }
+    }
+  }
+}
+
+static stratus_status draw_face(drawing* d, int face, int32_t* words)
+{
+  const map* m = d->map;
+  const int *n = m->size, layers = n[2];
+  const size_t nodes = (size_t)n[0] * (size_t)n[1];
+  const double near = m->frame.lo[2], layer_depth = (m->frame.hi[2] - near) / layers;
+  stratus_camera camera;
+  const stratus_image image = { .width = n[0], .height = n[1], .rgba = d->rgba };
+  const bool sees = face_camera(m, face, d->matter->bounds, &camera);
+  memset(d->along, 0, NEARS * nodes * sizeof(float));
+  for (size_t i = 0; i < nodes; ++i) {
+    d->passed[i] = 1.0f;
+    d->planes[i] = 65535;
+  }
+  for (int layer = 0; layer < layers; ++layer) {
+    uint16_t* plane = d->planes + (size_t)(layer + 1) * nodes;
+    if (!sees) {
+      memset(plane, 255, nodes * sizeof *plane);
+      continue;
+    }
+    camera.near_k = near + layer * layer_depth;
+    camera.far_k = near + (layer + 1) * layer_depth;
+    TRY(d->matter->draw(d->matter->of, &camera, &image));
+    if (d->coarse) {
+      compare_layer(d, face, layer);
+    }
+    for (size_t i = 0; i < nodes; ++i) {
+      d->passed[i] *= 1.0f - fminf(fmaxf(d->rgba[4 * i + 3], 0.0f), 1.0f);
+      plane[i] = (uint16_t)(d->passed[i] * 65535.0f + 0.5f);
+    }
+  }
+  uint64_t counts[STRATUS_TILE_COUNTS];
+  const face_words all = { d->planes, n, words + (size_t)face * nodes * (size_t)layers };
+  return stratus_each_tile(d->context, "light", n[1], fill_row, &all, counts);
+}
+
+/* Draws a map anew. words: receives its memory. differences: of the coarser one. */
+static stratus_status draw_map(drawing* d, int32_t** words, double differences[NEARS])
+{
+  const size_t nodes = (size_t)d->map->size[0] * (size_t)d->map->size[1];
+  void *memory = NULL, *picture = NULL, *planes = NULL;
+  stratus_status status;
+  TRY_CLEANUP(stratus_allocate(d->context, nodes, (5 + NEARS) * sizeof(float), &picture));
+  TRY_CLEANUP(stratus_allocate(d->context, nodes, ((size_t)d->map->size[2] + 1) * sizeof(uint16_t), &planes));
+  TRY_CLEANUP(stratus_allocate(d->context, map_words(d->map), sizeof(int32_t), &memory));
+  d->rgba = picture;
+  d->passed = d->rgba + 4 * nodes;
+  d->along = d->passed + nodes;
+  d->planes = planes;
+  memset(d->squares, 0, sizeof d->squares);
+  d->pixels = 0.0;
+  for (int face = 0; face < (d->map->faces > 0 ? d->map->faces : 1); ++face) {
+    TRY_CLEANUP(draw_face(d, face, memory));
+  }
+  for (int m = 0; m < NEARS; ++m) {
+    differences[m] = d->pixels > 0.0 ? sqrt(d->squares[m] / d->pixels) : 0.0;
+  }
+  *words = memory;
+  memory = NULL;
+cleanup:
+  stratus_release(d->context, picture);
+  stratus_release(d->context, planes);
+  stratus_release(d->context, memory);
+  return status;
+}
+
+static double near_length(const stratus_light_matter* matter, const map* m, double side)
+{
+  return fmax(side / m->size[2], NEAR_STEPS_LEAST * matter->step);
+}
+
+/* Draws maps of a light, each finer than the one before, until the error that is expected of one keeps the tolerance: of the map alone, or
+ * of it where near matter is passed by rays. The difference of two maps is the coarser one's error less the finer one's, and errors fall
+ * from map to map as the differences do. *near: the length on which near matter is passed. */
+static stratus_status build_map(stratus_context* context, const stratus_light_matter* matter, const stratus_light* light, map* m,
+  int32_t** words, double* near, double* error)
+{
+  double sides[3], last[NEARS] = { 0.0 };
+  const double most = SHARE * matter->tolerance;
+  map maps[2];
+  int32_t* of[2] = { NULL, NULL };
+  int now = 0;
+  bool kept = false;
+  stratus_status status = STRATUS_OK;
+  place_map(light, matter->bounds, &maps[0], sides);
+  *near = *error = 0.0;
+  for (int nodes = NODES_FIRST; nodes <= NODES_LAST && !kept; nodes *= 2) {
+    drawing d = { .context = context, .matter = matter, .map = &maps[now] };
+    double differences[NEARS], finest = INFINITY;
+    if (nodes > NODES_FIRST) {
+      maps[now] = maps[1 - now];
+      d.coarse = &maps[1 - now];
+      d.coarse_words = of[1 - now];
+    }
+    if (!size_map(&maps[now], sides, nodes)) {
+      break;
+    }
+    d.near_layers = d.coarse ? near_length(matter, d.coarse, sides[2]) * maps[now].size[2] / sides[2] : 0.0;
+    TRY_CLEANUP(draw_map(&d, &of[now], differences));
+    const int nears = matter->step > 0.0 ? NEARS : 1;
+    for (int finer = 0; d.coarse && finer < 2 && !kept; ++finer) {
+      for (int i = 0; i < nears && !kept; ++i) {
+        const double fall = last[i] > 0.0 ? fmin(fmax(differences[i] / last[i], FALL_BEST), FALL_WORST) : FALL_UNKNOWN;
+        const double coarse = differences[i] / (1.0 - fall), expected = finer ? coarse * fall : coarse;
+        const double length = near_lengths[i] * near_length(matter, &maps[finer ? now : 1 - now], sides[2]);
+        if (i > 0 && length > NEAR_STEPS_MOST * matter->step) {
+          break;
+        }
+        kept = expected <= most;
+        if (kept || (finer && expected < finest)) {
+          finest = *error = expected;
+          *near = length;
+          now = kept && !finer ? 1 - now : now;
+        }
+      }
+    }
+    memcpy(last, differences, sizeof last);
+    if (kept) {
+      break;
+    }
+    stratus_release(context, of[1 - now]);
+    of[1 - now] = NULL;
+    now = 1 - now;
+  }
+  now = kept ? now : 1 - now; /* the last that was drawn */
+  *m = maps[now];
+  *words = of[now];
+  of[now] = NULL;
+cleanup:
+  stratus_release(context, of[0]);
+  stratus_release(context, of[1]);
+  return status;
+}
+
+/* ---- all maps */
+
+stratus_status stratus_light_maps_build(
+  stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_maps** maps)
+{
+  static atomic_uint_fast64_t serials;
+  int32_t* words[STRATUS_LIGHTS_MAX] = { NULL };
+  void *memory = NULL, *all = NULL;
+  stratus_light_maps* made = NULL;
+  stratus_status status;
+  TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *made, &memory));
+  made = memory;
+  made->context = context;
+  made->count = count;
+  for (int i = 0; i < count; ++i) {
+    double near, error;
+    TRY_CLEANUP(build_map(context, matter, &lights[i], &made->of[i], &words[i], &near, &error));
+    made->of[i].at = made->words_count;
+    made->words_count += map_words(&made->of[i]);
+    made->near = fmax(made->near, near);
+    made->error = fmax(made->error, error);
+    TRY_CLEANUP(stratus_progress(context, "light", (i + 1.0) / count));
+  }
+  TRY_CLEANUP(stratus_allocate(context, made->words_count, sizeof(int32_t), &all));
+  made->words = all;
+  for (int i = 0; i < count; ++i) {
+    memcpy(made->words + made->of[i].at, words[i], map_words(&made->of[i]) * sizeof(int32_t));
+  }
+  made->near_steps = made->near > 0.0 ? (int)ceil(made->near / matter->step) : 0;
+  made->serial = 1 + atomic_fetch_add(&serials, 1);
+  stratus_light_maps_destroy(*maps);
+  *maps = made;
+  memory = NULL;
+cleanup:
+  for (int i = 0; i < count; ++i) {
+    stratus_release(context, words[i]);
+  }
+  stratus_release(context, memory);
+  return status;
+}
+
+void stratus_light_maps_destroy(stratus_light_maps* maps)
+{
+  if (maps) {
+    stratus_release(maps->context, maps->words);
+    stratus_release(maps->context, maps);
+  }
+}
+
+uint64_t stratus_light_key(uint64_t key, const void* bytes, size_t count)
+{
+  key = key ? key : UINT64_C(0xcbf29ce484222325); /* FNV-1a (Fowler, Noll & Vo) */
+  for (size_t i = 0; i < count; ++i) {
+    key = (key ^ ((const unsigned char*)bytes)[i]) * UINT64_C(0x100000001b3);
+  }
+  return key;
+}
+
+uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* transfers, int count)
+{
+  for (int i = 0; i < count; ++i) {
+    const stratus_transfer* t = transfers + i;
+    const double numbers[3] = { t->unit_distance, t->weight, t->clamp };
+    key = stratus_light_key(key, numbers, sizeof numbers);
+    key = stratus_light_key(key, t->opacity, 2 * t->opacity_count * sizeof *t->opacity);
+    key = stratus_light_key(key, t->gradient, 2 * t->gradient_count * sizeof *t->gradient);
+  }
+  return key;
+}
+
+stratus_status stratus_light_state_update(stratus_context* context, const stratus_light_matter* matter, uint64_t key,
+  const stratus_light* lights, int count, stratus_light_state* state)
+{
+  if (state->key != key || !stratus_light_maps_serve(state->maps, lights, count)) {
+    TRY(stratus_light_maps_build(context, matter, lights, count, &state->maps));
+    state->key = key;
+    ++state->builds;
+  }
+  return STRATUS_OK;
+}
+
+void stratus_light_state_drop(stratus_light_state* state)
+{
+  stratus_light_maps_destroy(state->maps);
+  state->maps = NULL;
+}
+
+static bool same_way(const stratus_light* a, const stratus_light* b)
+{
+  return a->positional == b->positional && memcmp(a->vector, b->vector, sizeof a->vector) == 0;
+}
+
+bool stratus_light_maps_serve(const stratus_light_maps* maps, const stratus_light* lights, int count)
+{
+  bool serve = maps && maps->count == count;
+  for (int i = 0; serve && i < count; ++i) {
+    serve = same_way(&maps->of[i].light, &lights[i]);
+  }
+  return serve;
+}
+
+/* Sets how near matter is passed on the way to light i. */
+static void near_arguments(
+  const stratus_light_maps* maps, int i, const double to_places[16], double unit, double sample_distance, stratus_light_arguments* a)
+{
+  const stratus_light* light = &maps->of[i].light;
+  double way[3], world[3];
+  memcpy(way, light->vector, sizeof way);
+  (void)stratus_vector_normalize(way);
+  for (int axis = 0; axis < 3; ++axis) {
+    world[axis] = a->positional[i] ? light->vector[axis] : way[axis] * maps->near;
+  }
+  for (int row = 0; row < 3; ++row) {
+    double sum = a->positional[i] ? to_places[4 * row + 3] : 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      sum += to_places[4 * row + axis] * world[axis];
+    }
+    a->near_way[i][row] = (float)sum;
+  }
+  a->near_steps = maps->near_steps;
+  a->near_length = (float)(maps->near / maps->near_steps / sample_distance);
+  a->near_reach = (float)(maps->near / unit);
+}
+
+void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_light* lights, const double to_world[16], double unit,
+  double sample_distance, stratus_light_arguments* a)
+{
+  double to_places[16];
+  const bool near = maps && maps->near_steps > 0 && sample_distance > 0.0 && stratus_matrix_invert_affine(to_world, to_places);
+  a->near_steps = 0;
+  for (int i = 0; i < a->count; ++i) {
+    const map* m = maps && i < maps->count ? &maps->of[i] : NULL;
+    a->map_at[i] = -1;
+    if (!m || !same_way(&m->light, &lights[i])) { /* a light that moves with a probe's rays has no map there */
+      continue;
+    }
+    if (near) {
+      near_arguments(maps, i, to_places, unit, sample_distance, a);
+    }
+    const frame* f = &m->frame;
+    double scale[3], shift[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      scale[axis] = (axis < 2 ? m->size[axis] - 1 : m->size[2]) / (f->hi[axis] - f->lo[axis]);
+      shift[axis] = -f->lo[axis] * scale[axis];
+    }
+    a->map_at[i] = (int)m->at;
+    a->map_faces[i] = m->faces;
+    for (int row = 0; row < 3; ++row) {
+      double from[4] = { 0.0, 0.0, 0.0, 0.0 };
+      for (int axis = 0; axis < 3; ++axis) {
+        for (int column = 0; column < 4; ++column) {
+          from[column] += f->basis[row][axis] * to_world[4 * axis + column];
+        }
+        from[3] -= f->basis[row][axis] * f->origin[axis];
+      }
+      for (int column = 0; column < 4; ++column) {
+        const double whole = m->faces > 0 ? from[column] : from[column] * scale[row] + (column == 3 ? shift[row] : 0.0);
+        a->map_from[i][4 * row + column] = (float)whole;
+      }
+      a->map_size[i][row] = m->size[row];
+      a->map_scale[i][2 * row] = (float)scale[row];
+      a->map_scale[i][2 * row + 1] = (float)shift[row];
+    }
+  }
+}
+
+const int32_t* stratus_light_maps_words(const stratus_light_maps* maps)
+{
+  return maps ? maps->words : NULL;
+}
+
+size_t stratus_light_maps_bytes(const stratus_light_maps* maps)
+{
+  return maps ? maps->words_count * sizeof(int32_t) : 0;
+}
+
+uint64_t stratus_light_maps_serial(const stratus_light_maps* maps)
+{
+  return maps ? maps->serial : 0;
+}
+
+double stratus_light_maps_error(const stratus_light_maps* maps)
+{
+  return maps ? maps->error : 0.0;
+}
+
+int stratus_light_maps_near(const stratus_light_maps* maps)
+{
+  return maps ? maps->near_steps : 0;
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Maps of what passes from lights to the places in a scene, in the layout of kernels/base/light_map.h. */
+#ifndef STRATUS_LIGHT_MAPS_H
+#define STRATUS_LIGHT_MAPS_H
+
+#include "base.h"
+#include "light_arguments.h"
+#include "stratus/ray_cast.h"
+
+typedef struct stratus_light_maps stratus_light_maps;
+
+/* What absorbs light. */
+typedef struct stratus_light_matter {
+  /* draws the matter alone, without light; of the image only the opacity is read */
+  stratus_status (*draw)(void* of, const stratus_camera* camera, const stratus_image* image);
+  void* of;
+  double bounds[6]; /* world coordinates: xmin xmax ymin ymax zmin zmax */
+  /* steps at which a renderer can pass the matter next to a place by itself; 0: it cannot */
+  double step;
+  double tolerance; /* of the part of light that passes, root mean square over what absorbs; 0: as fine as maps can be */
+} stratus_light_matter;
+
+/* Build the maps of all lights, given in the world. The maps' spacing is the coarsest of 1/32, 1/64, 1/128 and 1/256 of the matter's extent
+ * whose expected error keeps the tolerance, if need be with near matter passed by rays. *maps: NULL or maps to replace; after a failure it
+ * is as before. */
+stratus_status stratus_light_maps_build(
+  stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_maps** maps);
+void stratus_light_maps_destroy(stratus_light_maps* maps);
+
+/* Whether the maps are of exactly these lights' ways; their colours do not matter. */
+bool stratus_light_maps_serve(const stratus_light_maps* maps, const stratus_light* lights, int count);
+
+/* The maps of a scene that is drawn again and again. */
+typedef struct stratus_light_state {
+  stratus_light_maps* maps; /* NULL: none */
+  uint64_t key;             /* of the matter that they were built of */
+  uint64_t builds;
+} stratus_light_state;
+
+/* Builds the maps anew if `key`, which says what the matter is, or a light's way has changed. */
+stratus_status stratus_light_state_update(stratus_context* context, const stratus_light_matter* matter, uint64_t key,
+  const stratus_light* lights, int count, stratus_light_state* state);
+void stratus_light_state_drop(stratus_light_state* state);
+/* A key that follows from another and from bytes. The first is 0. */
+uint64_t stratus_light_key(uint64_t key, const void* bytes, size_t count);
+/* The same of transfer functions, their points included. */
+uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* transfers, int count);
+
+/* Sets the maps of the lights that have one, and none for the others. maps: NULL: there is none. lights: in the world, as many as the
+ * arguments have. to_world: 4x4, from the places that rays have to the world. unit: of the arguments' `place`, in the world.
+ * sample_distance: by which near_length is counted; 0: the rays do not pass near matter by themselves. */
+void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_light* lights, const double to_world[16], double unit,
+  double sample_distance, stratus_light_arguments* a);
+
+/* The words of all maps, NULL without maps; their bytes; a number that no other maps of this process have, 0 without; the largest expected
+ * error; and the steps on which near matter is to be passed. */
+const int32_t* stratus_light_maps_words(const stratus_light_maps* maps);
+size_t stratus_light_maps_bytes(const stratus_light_maps* maps);
+uint64_t stratus_light_maps_serial(const stratus_light_maps* maps);
+double stratus_light_maps_error(const stratus_light_maps* maps);
+int stratus_light_maps_near(const stratus_light_maps* maps);
+
+#endif

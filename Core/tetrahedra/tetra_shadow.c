@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Shadows of a mesh: maps of what passes from each light, of layers that a caster of its own draws without light. */
+#include "lights.h"
+#include "tetra_caster.h"
+
+#include "matrix.h"
+
+#include <string.h>
+
+typedef struct matter {
+  stratus_tetra_draw* draw;
+  stratus_tetra_caster* dark;
+  const stratus_mesh* mesh;
+  const stratus_transfer* transfers;
+  stratus_tetra_options options;
+} matter;
+
+bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* o)
+{
+  bool shade = o->shade != 0;
+  for (int c = 0; o->materials && !o->dependent && c < mesh->components; ++c) {
+    shade = shade || o->materials[c].shade;
+  }
+  return shade && o->shading.shadows && (o->mode == STRATUS_TETRA_COMPOSITE || o->mode == STRATUS_TETRA_ISOSURFACE);
+}
+
+stratus_tetra_options stratus_tetra_dark_options(const stratus_tetra_options* options)
+{
+  stratus_tetra_options dark = *options;
+  dark.shade = 0;
+  dark.materials = NULL;
+  dark.method = STRATUS_TETRA_METHOD_MARCH;
+  return dark;
+}
+
+uint64_t stratus_tetra_shadow_key(uint64_t key, const stratus_mesh* m, const stratus_transfer* transfers, const stratus_tetra_options* o)
+{
+  const void* data[4] = { m->points, m->vertices, m->values, m->blocks };
+  const int64_t counts[4] = { (int64_t)m->revision, m->point_count, m->cell_count, m->components };
+  const double numbers[6] = { o->mode, o->tolerance, o->gradient_distance, o->clip_plane_count, o->crop, o->crop_regions };
+  const int functions = o->label_count > 0 ? o->label_count + 1 : m->components > 1 && !o->dependent ? m->components : 1;
+  key = stratus_light_key(key, data, sizeof data);
+  key = stratus_light_key(key, counts, sizeof counts);
+  key = stratus_light_key(key, numbers, sizeof numbers);
+  key = stratus_light_key(key, o->clip_planes, (size_t)o->clip_plane_count * sizeof o->clip_planes[0]);
+  key = stratus_light_key(key, o->crop_bounds, o->crop ? sizeof o->crop_bounds : 0);
+  key = stratus_light_key(key, o->contours, (size_t)o->contour_count * sizeof o->contours[0]);
+  key = stratus_light_key(key, m->matrix, sizeof m->matrix);
+  return stratus_light_key_of_transfers(key, transfers, functions);
+}
+
+static stratus_status draw_matter(void* of, const stratus_camera* camera, const stratus_image* image)
+{
+  const matter* m = of;
+  return m->draw(m->dark, m->mesh, m->transfers, camera, &m->options, image, NULL);
+}
+
+stratus_status stratus_tetra_shadow_update(
+  stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera, stratus_tetra_draw* draw)
+{
+  stratus_light lights[STRATUS_LIGHTS_MAX];
+  matter m = {
+    .draw = draw, .dark = caster->dark, .mesh = of->mesh, .transfers = of->transfer, .options = stratus_tetra_dark_options(of->options)
+  };
+  stratus_light_matter all = { .draw = draw_matter, .of = &m, .tolerance = of->options->tolerance };
+  const int count = stratus_lights_in_world(camera, &of->options->shading, lights);
+  for (int corner = 0; corner < 8; ++corner) { /* caster->mesh is up to date */
+    double local[3], point[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      local[axis] = corner >> axis & 1 ? caster->mesh->hi[axis] : caster->mesh->lo[axis];
+    }
+    stratus_matrix_point(of->mesh->matrix, local, point);
+    for (int axis = 0; axis < 3; ++axis) {
+      all.bounds[2 * axis] = corner ? fmin(all.bounds[2 * axis], point[axis]) : point[axis];
+      all.bounds[2 * axis + 1] = corner ? fmax(all.bounds[2 * axis + 1], point[axis]) : point[axis];
+    }
+  }
+  TRY(stratus_light_state_update(
+    caster->context, &all, stratus_tetra_shadow_key(0, of->mesh, of->transfer, of->options), lights, count, &caster->light));
+  caster->lights = caster->light.maps;
+  return STRATUS_OK;
+}

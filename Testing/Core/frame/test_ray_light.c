@@ -1,0 +1,461 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Shadows and scattering, compared with the double reference, in which a ray goes from each sample to each light. */
+#include "picture_case.h"
+
+#include "base.h"
+#include "testing.h"
+
+static picture drawn;
+static picture other;
+static float reference[4 * CASE_PIXELS];
+
+/* The reference draws one pixel of each tile of so many: each of its samples has rays of its own. */
+#define TILE (few_run() ? 9 : 5)
+/* Limit in dB: maps keep half of the tolerance, 1e-3, and samples are a quarter of a voxel apart. */
+#define LEAST_DB 56.0
+
+/* A case that is lit by scattered light alone, from one side. */
+static void make_case(stratus_context* context, picture_case* c, stratus_type type)
+{
+  case_create(context, c, type, 30, 26, 28, 5);
+  c->options.light.shade = 1;
+  stratus_shading* s = &c->options.light.shading;
+  s->ambient = 0.0;
+  s->diffuse = 1.0;
+  s->specular = 0.0;
+  s->shadows = 1;
+  s->scattering = 1.0;
+  s->light_count = 1;
+  s->lights[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 1, 0.9, 0.8 } };
+}
+
+static double compare(const char* what, stratus_context* context, const picture_case* c, double wanted)
+{
+  reference_scene scene = case_scene(c);
+  double reference_db = 0.0;
+  int picked = 0;
+  scene.shading = &c->options.light.shading;
+  scene.tile = TILE;
+  case_render(context, c, &drawn);
+  assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 54.0, reference, NULL, &reference_db), 0);
+  for (int i = 0; i < CASE_PIXELS; ++i) {
+    const int shown = reference_picks(TILE, i % CASE_WIDTH, i / CASE_WIDTH);
+    for (int k = 0; k < 4; ++k) {
+      other.rgba[4 * i + k] = shown ? drawn.rgba[4 * i + k] : 0.0f;
+    }
+    picked += other.rgba[4 * i + 3] > 0.0f;
+  }
+  const double db = reference_psnr(other.rgba, reference, CASE_PIXELS);
+  print_message("             %s: %.1f dB, reference %.0f dB, %d pixels, light %.2g by %zu bytes\n", what, db, reference_db, picked,
+    drawn.report.light_error, drawn.report.light_bytes);
+  assert_true(picked > (few_run() ? 3 : 10));
+  assert_true(db >= wanted);
+  return db;
+}
+
+static void matter_shadows_itself_as_the_reference_says(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  make_case(context, &c, STRATUS_FLOAT32);
+  stratus_shading* s = &c.options.light.shading;
+  compare("scattered evenly", context, &c, LEAST_DB);
+  s->anisotropy = 0.7;
+  if (!few_run()) {
+    compare("scattered forward", context, &c, LEAST_DB);
+  }
+  s->anisotropy = -0.4;
+  s->light_count = 2;
+  s->lights[1] = (stratus_light){ .vector = { 60, 50, -40 }, .color = { 0.3, 0.5, 1.5 }, .positional = 1 };
+  compare("a direction and a position", context, &c, LEAST_DB);
+  s->lights[1].vector[0] = 16.0;
+  s->lights[1].vector[1] = 11.0;
+  s->lights[1].vector[2] = 13.0;
+  compare("a lamp in the volume", context, &c, 50.0);
+  s->scattering = 0.0;
+  s->ambient = 0.1;
+  s->specular = 0.3;
+  s->lights[1].vector[2] = 60.0;
+  compare("reflected", context, &c, LEAST_DB);
+  s->scattering = 0.4;
+  if (!few_run()) {
+    compare("both", context, &c, LEAST_DB);
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* A dense ball above a dense plate, in a bone-like function: matter that hides itself within a voxel. */
+static void make_ball(stratus_context* context, picture_case* c)
+{
+  static double opacity[8] = { 0.0, 0.0, 0.4, 0.0, 0.6, 0.9, 1.0, 0.97 };
+  static double color[4] = { 0.0, 1.0, 0.9, 0.7 };
+  make_case(context, c, STRATUS_FLOAT32);
+  float* values = c->values;
+  for (int z = 0; z < 28; ++z) {
+    for (int y = 0; y < 26; ++y) {
+      for (int x = 0; x < 30; ++x) {
+        const double ball = 8.0 - sqrt((x - 15) * (x - 15) + (y - 13) * (y - 13) + (z - 18) * (z - 18)), plate = 5.0 - z;
+        values[(z * 26 + y) * 30 + x] = (float)fmin(fmax(0.5 + 0.25 * fmax(ball, plate), 0.0), 1.0);
+      }
+    }
+  }
+  c->transfer.opacity = opacity;
+  c->transfer.opacity_count = 4;
+  c->transfer.color = color;
+  c->transfer.color_count = 1;
+  c->options.sampling.rule = STRATUS_SAMPLING_AUTO;
+  c->options.sampling.distance = 0.0;
+  c->options.sampling.termination = 0.0;
+}
+
+/* Matter that is opaque over a voxel: rays pass the near part of it by themselves, and the expected error holds. */
+static void dense_matter_shadows_itself_and_what_is_behind(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  make_ball(context, &c);
+  for (int lamp = 0; lamp < 2; ++lamp) {
+    if (lamp) {
+      c.options.light.shading.lights[0] = (stratus_light){ .vector = { 50, 10, 60 }, .color = { 1, 1, 1 }, .positional = 1 };
+    }
+    for (int rule = STRATUS_SAMPLING_AUTO; rule <= STRATUS_SAMPLING_PREINTEGRATED; rule += few_run() ? 2 : 1) {
+      c.options.sampling.rule = (stratus_sampling)rule;
+      compare(stratus_sampling_name((stratus_sampling)rule), context, &c, 44.0);
+      assert_true(drawn.report.light_error < 0.01);
+    }
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* What clip planes, crop boxes and masks hide casts no shadow, near and far. */
+static void hidden_matter_casts_no_shadow(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  make_ball(context, &c);
+  c.options.light.shading.lights[0] = (stratus_light){ .vector = { 0.2, 0.1, 1 }, .color = { 1, 1, 1 } };
+  c.options.clipping.clip_plane_count = 1;
+  const double plane[4] = { -0.3, 0.2, -1.0, 14.0 };
+  memcpy(c.options.clipping.clip_planes[0], plane, sizeof plane);
+  compare("clipped", context, &c, 44.0);
+  c.options.clipping.clip_plane_count = 0;
+  c.options.clipping.crop = 1;
+  const double crop[6] = { 3.5, 25.0, 4.0, 22.0, 2.0, 16.5 };
+  memcpy(c.options.clipping.crop_bounds, crop, sizeof crop);
+  compare("cropped", context, &c, 44.0);
+  c.options.clipping.crop = 0;
+
+  /* the values above the plate, hidden by a mask, are as if there were none */
+  static uint8_t mask[30 * 26 * 28];
+  float* values = c.values;
+  for (int i = 0; i < 30 * 26 * 28; ++i) {
+    mask[i] = i / (30 * 26) < 9;
+  }
+  c.options.mask.bytes = mask;
+  case_render(context, &c, &drawn);
+  c.options.mask.bytes = NULL;
+  for (int i = 9 * 30 * 26; i < 30 * 26 * 28; ++i) {
+    values[i] = 0.0f;
+  }
+  case_render(context, &c, &other);
+  assert_true(reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS) > 40.0);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* Maps are built when data, function, matter or a light's way change, and by nothing else. */
+static void maps_are_built_when_they_are_stale(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  stratus_ray_caster* caster = NULL;
+  picture_case c;
+  make_case(context, &c, STRATUS_FLOAT32);
+  c.options.sampling.tolerance = 0.02; /* of which coarse maps are enough */
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  case_render_with(context, caster, &c, &drawn);
+  assert_int_equal(drawn.report.light_builds, 1);
+  assert_true(drawn.report.light_bytes > 0 && drawn.report.light_ms > 0.0);
+  case_camera(context, &c, 3, 0);
+  c.options.light.shading.lights[0].color[0] = 0.3;
+  c.options.light.shading.anisotropy = 0.5;
+  case_render_with(context, caster, &c, &drawn);
+  assert_int_equal(drawn.report.light_builds, 1);
+  c.options.light.shading.lights[0].vector[0] += 0.5;
+  case_render_with(context, caster, &c, &drawn);
+  assert_int_equal(drawn.report.light_builds, 2);
+  c.opacity[5] *= 0.5;
+  case_render_with(context, caster, &c, &drawn);
+  assert_int_equal(drawn.report.light_builds, 3);
+  case_render(context, &c, &other);
+  assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+  ++c.volume.revision;
+  case_render_with(context, caster, &c, &drawn);
+  assert_int_equal(drawn.report.light_builds, 4);
+  c.options.clipping.clip_plane_count = 1;
+  c.options.clipping.clip_planes[0][0] = 1.0;
+  case_render_with(context, caster, &c, &drawn);
+  assert_int_equal(drawn.report.light_builds, 5);
+  c.options.light.shading.lights[0].follows_camera = 1; /* then the camera moves it */
+  case_render_with(context, caster, &c, &drawn);
+  case_camera(context, &c, 4, 0);
+  case_render_with(context, caster, &c, &drawn);
+  assert_int_equal(drawn.report.light_builds, 7);
+  c.options.light.shading.shadows = 0;
+  case_render_with(context, caster, &c, &drawn);
+  assert_int_equal(drawn.report.light_bytes, 0);
+  stratus_ray_caster_destroy(caster);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* Structures, instruction sets and threads change no bit. */
+static void pictures_with_shadows_are_the_same_however_they_are_made(void** state)
+{
+  (void)state;
+  picture_case c;
+  stratus_context* context = case_context("host", 1);
+  make_ball(context, &c);
+  c.options.sampling.tolerance = 0.02; /* of which coarse maps are enough */
+  c.options.light.shading.light_count = 2;
+  c.options.light.shading.lights[1] = (stratus_light){ .vector = { 15, 13, 9 }, .color = { 0, 0, 1 }, .positional = 1 };
+  case_render(context, &c, &drawn);
+  stratus_context_destroy(context);
+  for (int isa = 0; isa < 3; ++isa) {
+    context = case_context("host", 2);
+    context->isa = isa;
+    c.options.skipping.structure = isa ? STRATUS_STRUCTURE_NONE : STRATUS_STRUCTURE_DISTANCE;
+    c.options.skipping.audit = 1;
+    case_render(context, &c, &other);
+    assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    assert_int_equal(other.report.differing_pixels, 0);
+    stratus_context_destroy(context);
+  }
+  case_destroy(&c);
+}
+
+/* Returns a part of a case's volume, layers first..last along z, as a volume with its own values. */
+static stratus_volume part_of(const picture_case* c, int64_t first, int64_t last)
+{
+  stratus_volume part = c->volume;
+  const int64_t* n = c->volume.dimensions;
+  part.values = (const float*)c->values + first * n[0] * n[1];
+  part.dimensions[2] = last - first + 1;
+  part.origin[2] += c->volume.spacing[2] * (double)first;
+  return part;
+}
+
+/* A volume that was cut in two draws as the whole does: as blocks, and as two of several volumes. What is in one shadows the other. */
+static void matter_shadows_other_volumes(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  make_ball(context, &c);
+  c.options.light.shading.lights[0] = (stratus_light){ .vector = { 0.2, 0.1, 1 }, .color = { 1, 1, 1 } };
+  case_render(context, &c, &drawn);
+  const stratus_volume parts[2] = { part_of(&c, 0, 8), part_of(&c, 8, 27) };
+  stratus_ray_caster* casters[2] = { NULL, NULL };
+  stratus_ray_cast_input inputs[2];
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba };
+  for (int n = 0; n < 2; ++n) {
+    assert_int_equal(stratus_ray_caster_create(context, &casters[n]), STRATUS_OK);
+    inputs[n] = (stratus_ray_cast_input){ .caster = casters[n], .volume = &parts[n], .transfer = &c.transfer, .options = &c.options };
+  }
+  assert_int_equal(stratus_ray_caster_render_blocks(inputs, 2, &c.camera, &image, NULL), STRATUS_OK);
+  const double blocks = reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS);
+  assert_int_equal(stratus_ray_caster_render_several(inputs, 2, &c.camera, &image, NULL), STRATUS_OK);
+  const double several = reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS);
+  print_message("             blocks: %.1f dB, several: %.1f dB from the whole\n", blocks, several);
+  assert_true(blocks > 34.0 && several > 34.0);
+  for (int n = 0; n < 2; ++n) {
+    stratus_ray_caster_destroy(casters[n]);
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* Tetrahedra between the same values draw almost as the image does, alone and as one of several. */
+static void meshes_have_shadows(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  make_case(context, &c, STRATUS_FLOAT32);
+  c.options.sampling.tolerance = 0.004;
+  const int64_t* n = c.volume.dimensions;
+  double* points = malloc((size_t)(n[0] * n[1] * n[2]) * 3 * sizeof *points);
+  assert_non_null(points);
+  for (int64_t i = 0; i < n[0] * n[1] * n[2]; ++i) {
+    points[3 * i] = (double)(i % n[0]);
+    points[3 * i + 1] = (double)(i / n[0] % n[1]);
+    points[3 * i + 2] = (double)(i / n[0] / n[1]);
+  }
+  stratus_mesh mesh = stratus_mesh_default();
+  mesh.points = points;
+  mesh.point_count = n[0] * n[1] * n[2];
+  mesh.values = c.values;
+  mesh.type = STRATUS_FLOAT32;
+  mesh.cell_count = (n[0] - 1) * (n[1] - 1) * (n[2] - 1);
+  for (int a = 0; a < 3; ++a) {
+    mesh.lattice[a] = (int32_t)n[a];
+  }
+  stratus_tetra_options options = stratus_tetra_options_default();
+  options.shade = 1;
+  options.tolerance = 0.004;
+  options.shading = c.options.light.shading;
+  stratus_tetra_caster* caster = NULL;
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba };
+  assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
+  case_render(context, &c, &drawn);
+  assert_int_equal(stratus_tetra_caster_render(caster, &mesh, &c.transfer, &c.camera, &options, &image, NULL), STRATUS_OK);
+  const double alone = reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS);
+  stratus_ray_caster* empty = NULL;
+  picture_case none;
+  case_create(context, &none, STRATUS_FLOAT32, 2, 2, 2, 5);
+  memset(none.opacity, 0, sizeof none.opacity);
+  for (int i = 0; i < 4; ++i) {
+    none.opacity[2 * i] = i;
+  }
+  assert_int_equal(stratus_ray_caster_create(context, &empty), STRATUS_OK);
+  const stratus_ray_cast_input inputs[2] = { { .caster = empty, .volume = &none.volume, .transfer = &none.transfer },
+    { .tetra = caster, .mesh = &mesh, .transfer = &c.transfer, .tetra_options = &options } };
+  assert_int_equal(stratus_ray_caster_render_several(inputs, 2, &c.camera, &image, NULL), STRATUS_OK);
+  const double several = reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS);
+  print_message("             a mesh: %.1f dB, of several: %.1f dB from the image\n", alone, several);
+  assert_true(alone > 40.0 && several > 40.0);
+  stratus_ray_caster_destroy(empty);
+  stratus_tetra_caster_destroy(caster);
+  free(points);
+  case_destroy(&none);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* Numbers at their ends: spacings, anisotropy, albedo, light that grazes a plate, and values that are not finite. */
+static void extremes_of_light(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  make_ball(context, &c);
+  c.options.sampling.tolerance = 0.01; /* of which coarse maps are enough */
+  case_render(context, &c, &drawn);
+  for (int i = 0; i < 2; ++i) {
+    picture_case scaled = c;
+    const double scale = i ? 1e6 : 1e-6;
+    for (int a = 0; a < 3; ++a) {
+      scaled.volume.spacing[a] *= scale;
+      scaled.camera.eye[a] *= scale;
+    }
+    scaled.transfer.unit_distance *= scale;
+    case_render(context, &scaled, &other);
+    print_message("             spacing %g: %.1f dB\n", scale, reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS));
+    assert_true(reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS) > 70.0);
+  }
+  c.options.sampling.tolerance = 0.001;
+  stratus_shading* s = &c.options.light.shading;
+  s->lights[0] = (stratus_light){ .vector = { 1, 0.1, 0.02 }, .color = { 1, 1, 1 } };
+  compare("grazing light", context, &c, 44.0);
+  s->diffuse = 0.0;
+  case_render(context, &c, &other);
+  for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
+    assert_true(other.rgba[i] == (i % 4 < 3 ? 0.0f : other.rgba[i]));
+  }
+  s->diffuse = 1.0;
+  float* values = c.values;
+  for (int i = 0; i < 30 * 26 * 28; i += 977) {
+    values[i] = i % 2 ? NAN : INFINITY;
+  }
+  for (int i = few_run(); i < 2; ++i) {
+    s->anisotropy = i ? -0.99 : 0.99;
+    compare("most anisotropic, with values that are not finite", context, &c, 44.0);
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* Scattered light agrees with the path tracer where that scatters once. */
+static void scattering_is_that_of_paths(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  stratus_path_tracer* tracer = NULL;
+  stratus_path_report report;
+  static float paths[4 * CASE_PIXELS];
+  make_case(context, &c, STRATUS_FLOAT32);
+  stratus_shading* s = &c.options.light.shading;
+  s->anisotropy = 0.6;
+  s->diffuse = 0.8;
+  case_render(context, &c, &drawn);
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = paths };
+  stratus_path_options options = stratus_path_options_default();
+  options.samples = few_run() ? 64 : 256;
+  options.bounces = 1;
+  options.albedo = 0.8;
+  options.anisotropy = 0.6;
+  options.light_count = 1;
+  options.lights[0] = s->lights[0];
+  assert_int_equal(stratus_path_tracer_create(context, &tracer), STRATUS_OK);
+  assert_int_equal(stratus_path_tracer_render(tracer, &c.volume, &c.transfer, &c.camera, &options, &image, &report), STRATUS_OK);
+  double squares = 0.0, count = 0.0, largest = 0.0;
+  reference_error(drawn.rgba, paths, CASE_PIXELS, &squares, &count, &largest);
+  const double error = sqrt(squares / count);
+  print_message("             %.5f from the paths, whose standard error is %.5f\n", error, report.standard_error);
+  assert_true(error < 1.3 * report.standard_error + 1e-3 && report.standard_error < 0.03);
+  stratus_path_tracer_destroy(tracer);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+static void bad_scattering_is_refused(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 1);
+  stratus_ray_caster* caster = NULL;
+  picture_case c;
+  make_case(context, &c, STRATUS_FLOAT32);
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
+  static const double bad[][2] = { { -0.1, 0.0 }, { 1.1, 0.0 }, { 0.5, 0.995 }, { 0.5, -1.0 }, { NAN, 0.0 }, { 0.5, NAN } };
+  assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
+    c.options.light.shading.scattering = bad[i][0];
+    c.options.light.shading.anisotropy = bad[i][1];
+    assert_int_equal(
+      stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
+    assert_non_null(strstr(stratus_context_message(context), "scattering"));
+  }
+  stratus_ray_caster_destroy(caster);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+int test_ray_light(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(matter_shadows_itself_as_the_reference_says),
+    cmocka_unit_test(dense_matter_shadows_itself_and_what_is_behind),
+    cmocka_unit_test(hidden_matter_casts_no_shadow),
+    cmocka_unit_test(extremes_of_light),
+    cmocka_unit_test(scattering_is_that_of_paths),
+    cmocka_unit_test(bad_scattering_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int test_ray_light_maps(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(maps_are_built_when_they_are_stale),
+    cmocka_unit_test(pictures_with_shadows_are_the_same_however_they_are_made),
+    cmocka_unit_test(matter_shadows_other_volumes),
+    cmocka_unit_test(meshes_have_shadows),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

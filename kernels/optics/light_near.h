@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * What passes from a light through the matter next to a place. A map of light has nodes some voxels apart, between which dense matter
+ * hides itself: so a ray goes from the place towards the light, a few steps that are as long as voxels, and the map is asked where it ends.
+ * Included by ray_cast.h once for each STRATUS_TYPE. */
+
+/* The optical depth of a step of near_length sample distances between two values. */
+INLINE vfloat RAY_NAME(near_depth)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, vfloat first, vfloat last, vmask mask)
+{
+#if STRATUS_PREINTEGRATED || RAY_LIT
+  GLOBAL const int* sums = (GLOBAL const int*)table;
+  const vint from = table_entry(&a->table, sums, first), to = table_entry(&a->table, sums, last);
+  const vint low = vi_min(from, to), beyond = vi_max(from, to) + vi_set(1);
+  const vfloat tau = tau_between(sums, low, beyond, mask), width = v_max(width_between(&a->table, sums, low, beyond, mask), v_set(1.0f));
+  vfloat part = v_set(a->light.near_length * a->table.tau_scale);
+  if (RAY_RARE(RAY_CUT, a->table.cut)) { /* values beyond the table are transparent */
+    vfloat before, within;
+    part_within(&a->table, v_clamp(v_fma(first, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f),
+      v_clamp(v_fma(last, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f), &before, &within);
+    part = part * within;
+  }
+  vfloat depth = tau * part * v_reciprocal(width);
+  if (RAY_RARE(RAY_OPAQUE, a->table.has_opaque)) {
+    vint entry;
+    const vmask opaque = opaque_on_the_way(&a->table, sums + 4 * (a->table.entries + 1), from, to, mask, &entry);
+    depth = v_select(opaque, v_set(80.0f), depth);
+  }
+#else
+  const vint entry = table_entry(&a->table, table, v_set(0.5f) * (first + last));
+  vfloat depths[4];
+  gather_four((GLOBAL const float*)table + 4 * a->table.entries, entry, mask, depths);
+  const vfloat depth = v_set(a->light.near_length) * depths[0];
+#endif
+  return v_select(mask, v_min(depth, v_set(80.0f)), v_set(0.0f));
+}
+
+/* Cuts the part *from..*to of the way from x to the planes within which matter is seen. */
+INLINE void RAY_NAME(near_bounds)(CONSTANT stratus_ray_cast_arguments* a, const vfloat x[3], const vfloat way[3], vfloat* from, vfloat* to)
+{
+  const vfloat zero = v_set(0.0f), hair = v_set(1e-20f);
+  for (int axis = 0; axis < 3; ++axis) {
+    const vfloat d = v_select(v_lt(way[axis], zero), v_min(way[axis], zero - hair), v_max(way[axis], hair)), inverse = v_reciprocal(d);
+    const vfloat low = (v_set(a->crop.box[0][axis].hi) - x[axis]) * inverse, high = (v_set(a->crop.box[1][axis].hi) - x[axis]) * inverse;
+    *from = v_max(*from, v_min(low, high));
+    *to = v_min(*to, v_max(low, high));
+  }
+  for (int plane = 0; plane < RAY_RARE(RAY_CLIP, a->crop.clip_count); ++plane) {
+    CONSTANT stratus_pair* n = a->crop.clip[plane];
+    const vfloat normal[3] = { v_set(n[0].hi), v_set(n[1].hi), v_set(n[2].hi) };
+    const vfloat height = v_dot3(normal, x) + v_set(n[3].hi), slope = v_dot3(normal, way);
+    const vfloat crossing = zero - height * v_reciprocal(v_select(v_lt(slope, zero), v_min(slope, zero - hair), v_max(slope, hair)));
+    *from = v_select(v_le(zero, slope), v_max(*from, crossing), *from);
+    *to = v_select(v_lt(slope, zero), v_min(*to, crossing), *to);
+  }
+}
+
+/* For each light that has a map, the part that passes the matter next to the places x. */
+OUTLINE void RAY_NAME(light_near)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+  GLOBAL const void* table, const stratus_packet* k, const vfloat x[3], vmask mask, vfloat near[8])
+{
+  const vfloat share = v_set(1.0f / (float)a->light.near_steps), zero = v_set(0.0f), one = v_set(1.0f);
+  for (int i = 0; i < a->light.count; ++i) {
+    near[i] = one;
+    if (a->light.map_at[i] < 0) {
+      continue;
+    }
+    vfloat way[3], from = zero, to = one, depth = zero, front;
+    light_near_way(&a->light, i, x, way);
+    RAY_NAME(near_bounds)(a, x, way, &from, &to);
+    const vmask any = mask & v_lt(from, to);
+    const vfloat part = v_select(any, to - from, zero);
+    from = v_select(any, from, zero);
+    for (int n = 0; n <= a->light.near_steps; ++n) {
+      const vfloat s = v_fma(v_set((float)n) * share, part, from);
+      const vfloat y[3] = { v_fma(s, way[0], x[0]), v_fma(s, way[1], x[1]), v_fma(s, way[2], x[2]) };
+      const vfloat value = RAY_NAME(ray_value)(a, values, hidden, k->grid, y, any);
+      if (n > 0) {
+        const vmask valid = any & v_finite(front) & v_finite(value);
+        depth = depth + part * RAY_NAME(near_depth)(a, table, v_select(valid, front, zero), v_select(valid, value, zero), valid);
+      }
+      front = value;
+    }
+    near[i] = one - v_absorbed(v_min(depth, v_set(80.0f)));
+  }
+}
