@@ -18,6 +18,31 @@ stratus_slice slice_of(const options& o, int up)
   return slice;
 }
 
+void set_suns(const options& o, stratus_light lights[STRATUS_LIGHTS_MAX])
+{
+  for (size_t i = 0; i < o.suns.size(); ++i) {
+    std::copy_n(o.suns[i].begin(), 3, lights[i].vector);
+    std::fill_n(lights[i].color, 3, 1.0);
+    std::copy(o.suns[i].begin() + 3, o.suns[i].end(), lights[i].color);
+  }
+}
+
+void set_light(const options& o, int& shade, stratus_shading& shading)
+{
+  shade = o.shade || o.scatter;
+  shading.shadows = o.shadows || o.scatter;
+  if (!o.suns.empty()) {
+    shading.light_count = static_cast<int>(o.suns.size());
+    set_suns(o, shading.lights);
+  }
+  if (o.scatter) {
+    shading.ambient = shading.specular = 0.0;
+    shading.diffuse = o.albedo;
+    shading.scattering = 1.0;
+    shading.anisotropy = o.anisotropy;
+  }
+}
+
 stratus_ray_cast_options casting_of(const options& o, int up)
 {
   stratus_ray_cast_options cast = stratus_ray_cast_options_default();
@@ -35,7 +60,7 @@ stratus_ray_cast_options casting_of(const options& o, int up)
   cast.sampling.distance = o.sample_distance;
   cast.sampling.cell_error = o.cell_error;
   cast.sampling.tolerance = o.tolerance;
-  cast.light.shade = o.shade;
+  set_light(o, cast.light.shade, cast.light.shading);
   cast.skipping.audit = o.audit;
   return cast;
 }

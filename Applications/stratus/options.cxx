@@ -73,7 +73,10 @@ Data and appearance
   --color-bar             draw the colours of values, with the variable's name and unit
   --caption TEXT          draw a line of text at the top; {time} is the step's time
   --nearest               nearest instead of linear interpolation
-  --shade                 light from the eye, with the field's gradient as normal (composite, isosurface)
+  --shade                 light from the eye, or from each --sun, with the field's gradient as normal (composite, isosurface)
+  --scatter               light from the eye, or from each --sun, that the matter scatters once (composite, isosurface); --albedo and
+                          --anisotropy say how. With shadows
+  --shadows               with --shade: matter absorbs light on its way from each sun
   --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)
 
 Camera
@@ -117,7 +120,8 @@ Rendering
   --threshold T           the transmittance for --quantity transmittance_depth, above 0 and below 1 (default 0.5)
   --audit                 draw again without skipping and count the pixels that differ; any is a failure
 
-Scattered light: --mode path traces random paths until their number or their error is reached; images and rectilinear grids
+Scattered light: --mode path traces random paths until their number or their error is reached; images and rectilinear grids.
+--sun, --albedo and --anisotropy are for --scatter, too, and --sun for --shade
   --samples N             paths of each pixel (default 256, or as many as --tolerance needs)
   --tolerance E           end when the standard error of the image, root mean square of RGBA over the lit pixels, is at most E
   --sun X,Y,Z[,R,G,B]     direction to a sun, and its colour (default 1,1,1); repeat it for up to 8 (default: light from the eye, or no
@@ -384,7 +388,6 @@ template <int options::*Number, int Least> void keep_path_number(options& o, con
 void set_sun(options& o, const std::string& word, const std::string& value)
 {
   o.suns.push_back(numbers(value, word, 3, 6));
-  o.of_path = word;
   if (o.suns.back().size() % 3 != 0) {
     throw usage(word + ": '" + value + "' is neither X,Y,Z nor X,Y,Z,R,G,B");
   }
@@ -402,10 +405,10 @@ void set_sky(options& o, const std::string& word, const std::string& value)
   }
 }
 
-template <double options::*Number> void keep_path_part(options& o, const std::string& word, const std::string& value)
+template <double options::*Number> void keep_scattering(options& o, const std::string& word, const std::string& value)
 {
   o.*Number = number(value, word); // the core knows the range
-  o.of_path = word;
+  o.of_scattering = word;
 }
 
 void set_tolerance(options& o, const std::string& word, const std::string& value)
@@ -465,8 +468,8 @@ constexpr struct {
   { "--samples", keep_path_number<&options::samples, 1> },
   { "--sun", set_sun },
   { "--sky", set_sky },
-  { "--albedo", keep_path_part<&options::albedo> },
-  { "--anisotropy", keep_path_part<&options::anisotropy> },
+  { "--albedo", keep_scattering<&options::albedo> },
+  { "--anisotropy", keep_scattering<&options::anisotropy> },
   { "--bounces", keep_path_number<&options::bounces, 0> },
   { "--seed", keep_path_number<&options::seed, 0> },
   { "--lower", keep_bound<&options::lower> },
@@ -488,6 +491,8 @@ constexpr struct {
   { "--axes", &options::axes },
   { "--color-bar", &options::color_bar },
   { "--shade", &options::shade },
+  { "--scatter", &options::scatter },
+  { "--shadows", &options::shadows },
   { "--parallel", &options::parallel },
   { "--audit", &options::audit },
   { "--report", &options::report },
@@ -545,9 +550,20 @@ void check_path(const options& o)
     if (!o.of_path.empty()) {
       throw usage(o.of_path + " is for --mode path");
     }
+    if (!o.of_scattering.empty() && !o.scatter) {
+      throw usage(o.of_scattering + " is for --scatter and --mode path");
+    }
+    if (!o.suns.empty() && !o.scatter && !o.shade) {
+      throw usage("--sun is for --shade, --scatter and --mode path");
+    }
+    if (o.shadows && !o.shade) {
+      throw usage("--shadows is for --shade; --scatter has them");
+    }
     return;
   }
   const char* other = o.shade               ? "--shade"
+    : o.scatter                             ? "--scatter"
+    : o.shadows                             ? "--shadows"
     : o.sampling != STRATUS_SAMPLING_AUTO   ? "--sampling"
     : o.sample_distance > 0.0               ? "--sample-distance"
     : o.cell_error > 0.0                    ? "--cell-error"

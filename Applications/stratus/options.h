@@ -52,7 +52,7 @@ struct options {
   std::string caption; // {time} is the step's
   bool parallel = false;
   bool nearest = false;
-  bool shade = false;
+  bool shade = false, scatter = false, shadows = false;
   bool audit = false;
   bool report = false;                      // render, tree, sort: prints the stages of building
   bool shows_samples = false;               // render: draws the samples that each pixel took
@@ -67,7 +67,7 @@ struct options {
   stratus_tetra_method tetra_method = STRATUS_TETRA_METHOD_AUTO; // render: method for unstructured grids
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
   bool path = false;                     // --mode path; `mode` is then composite
-  std::string of_path;                   // one of the options for it that were given
+  std::string of_path, of_scattering;    // one of the options for it that were given
   int samples = 0;                       // path: of each pixel; 0: as many as the tolerance needs
   int bounces = 0;                       // path: 0: no limit
   int seed = 0;                          // path

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paths.h"
 
+#include "casting.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,11 +21,7 @@ stratus_path_options paths_of(const options& o, const stratus_ray_cast_options& 
   paths.albedo = o.albedo;
   paths.anisotropy = o.anisotropy;
   paths.light_count = o.suns.empty() && o.sky.empty() ? -1 : static_cast<int>(o.suns.size());
-  for (size_t i = 0; i < o.suns.size(); ++i) {
-    std::copy_n(o.suns[i].begin(), 3, paths.lights[i].vector);
-    std::fill_n(paths.lights[i].color, 3, 1.0);
-    std::copy(o.suns[i].begin() + 3, o.suns[i].end(), paths.lights[i].color);
-  }
+  set_suns(o, paths.lights);
   if (!o.sky.empty()) {
     std::copy_n(o.sky.begin(), 3, paths.sky_zenith);
     std::copy_n(o.sky.end() - 3, 3, paths.sky_horizon);

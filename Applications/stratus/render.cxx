@@ -23,7 +23,7 @@ using cli::row;
 // Converts a step's data to the grids that the options need.
 cli::routed route_for(vtkDataObject* data, const cli::options& o)
 {
-  const bool hits = o.mode == STRATUS_MODE_FIRST_HIT, lit = hits ? o.normals == STRATUS_NORMALS_GRADIENT : o.shade;
+  const bool hits = o.mode == STRATUS_MODE_FIRST_HIT, lit = hits ? o.normals == STRATUS_NORMALS_GRADIENT : o.shade || o.scatter;
   return cli::route(data, o.source, o.array, o.nearest || hits, lit);
 }
 

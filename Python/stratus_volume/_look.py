@@ -10,7 +10,7 @@ from ._core import address, choice, library
 from ._picture import Rendering
 from ._values import functions, is_number, number, numbers, pairs, scaled_point
 
-_SHADING = ("ambient", "diffuse", "specular", "specular_power")
+_SHADING = ("ambient", "diffuse", "specular", "specular_power", "scattering", "anisotropy")
 
 
 class Transfer:
@@ -33,14 +33,32 @@ class Transfer:
 
 
 def set_shading(options, shade):
-    """shade: False, True, or a dict of ambient, diffuse, specular and specular_power."""
+    """shade: False, True, or a dict of ambient, diffuse, specular, specular_power, scattering, anisotropy, shadows and suns."""
     options.shade = int(bool(shade) or isinstance(shade, dict))
     if isinstance(shade, dict):
-        unknown = set(shade) - set(_SHADING)
+        known = _SHADING + ("shadows", "suns")
+        unknown = set(shade) - set(known)
         if unknown:
-            raise ValueError(f"shade has {sorted(unknown)}, it may have {', '.join(_SHADING)}")
-        for name, value in shade.items():
-            setattr(options.shading, name, number(value, f"shade's {name}"))
+            raise ValueError(f"shade has {sorted(unknown)}, it may have {', '.join(known)}")
+        for name in set(shade) & set(_SHADING):
+            setattr(options.shading, name, number(shade[name], f"shade's {name}"))
+        options.shading.shadows = int(bool(shade.get("shadows", False)))
+        if "suns" in shade:
+            _set_suns(options.shading, shade["suns"])
+
+
+def _set_suns(shading, suns):
+    try:
+        rows = [suns] if is_number(suns[0]) else list(suns)
+    except (TypeError, IndexError, KeyError):
+        raise TypeError(f"shade's suns are {suns!r}, they must be one direction or several, each with a colour or without") from None
+    if len(rows) > len(shading.lights):
+        raise ValueError(f"shade has {len(rows)} suns, it may have {len(shading.lights)}")
+    shading.light_count = len(rows)
+    for n, row in enumerate(rows):
+        sun = numbers(row, 6 if len(row) == 6 else 3, "a sun of shade")
+        light = shading.lights[n]
+        light.vector[:], light.color[:] = sun[:3], sun[3:] or [1.0, 1.0, 1.0]
 
 
 def set_planes(options, clip_planes, most):

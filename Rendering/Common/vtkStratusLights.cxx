@@ -6,6 +6,7 @@
 #include "vtkLightCollection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkRenderer.h"
+#include "vtkVersion.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -80,6 +81,20 @@ bool vtkStratusSetShading(vtkRenderer* renderer, vtkVolumeProperty* property, st
     SetLight(light, renderer->GetActiveCamera(), shading.lights[shading.light_count++]);
   }
   return true;
+}
+
+void vtkStratusSetScattering(vtkVolumeProperty* property, bool shadows, double blending, double anisotropy, stratus_shading& shading)
+{
+  shading.shadows = shadows || blending > 0.0 ? 1 : 0;
+  shading.scattering = 0.5 * blending;
+  shading.anisotropy = anisotropy;
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)
+  if (anisotropy == 0.0) {
+    shading.anisotropy = std::clamp<double>(property->GetScatteringAnisotropy(), -STRATUS_ANISOTROPY_MOST, STRATUS_ANISOTROPY_MOST);
+  }
+#else
+  (void)property;
+#endif
 }
 
 bool vtkStratusSetMaterials(vtkVolumeProperty* property, int count, stratus_material* materials, bool& alike)

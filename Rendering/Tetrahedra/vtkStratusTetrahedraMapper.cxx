@@ -260,6 +260,9 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RenderMode: " << (this->RenderMode == FIRST_HIT_MODE ? "FirstHit" : "Composite") << "\n";
   os << indent << "Normals: " << (this->Normals == GRADIENT_NORMALS ? "Gradient" : "Faces") << "\n";
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
+  os << indent << "Shadows: " << this->Shadows << "\n";
+  os << indent << "VolumetricScatteringBlending: " << this->VolumetricScatteringBlending << "\n";
+  os << indent << "ScatteringAnisotropy: " << this->ScatteringAnisotropy << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "ComponentMixing: " << this->ComponentMixing << "\n";
   os << indent << "GradientOpacityDistance: " << this->GradientOpacityDistance << "\n";

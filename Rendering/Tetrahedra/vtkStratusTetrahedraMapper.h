@@ -94,6 +94,36 @@ public:
 
   //@{
   /**
+   * Set/Get whether matter absorbs light on its way from each light, where shading is on, in composite and isosurface. What clip planes,
+   * cropping and masks hide casts no shadow. Maps of what passes are built again if data, functions or lights change; for lights that move
+   * with the camera, such as VTK's headlight, also with the camera. Default off; a VolumetricScatteringBlending above 0 counts as on.
+   */
+  vtkSetMacro(Shadows, vtkTypeBool);
+  vtkGetMacro(Shadows, vtkTypeBool);
+  vtkBooleanMacro(Shadows, vtkTypeBool);
+  //@}
+
+  //@{
+  /**
+   * Set/Get how much of the light is scattered by the matter, 0..2; the rest is reflected at the gradient, as without scattering. 0
+   * (default): none, 2: all. This is the property of vtkGPUVolumeRayCastMapper, except that a half of the value is the share everywhere,
+   * whatever the gradient. Scattered light is the material's diffuse part times the phase function.
+   */
+  vtkSetClampMacro(VolumetricScatteringBlending, double, 0.0, 2.0);
+  vtkGetMacro(VolumetricScatteringBlending, double);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the anisotropy of scattered light, -.99 to .99: Henyey and Greenstein's g. Above 0, light is scattered forward; clouds have
+   * .85. Default 0: evenly, or as ScatteringAnisotropy of the volume's property says, which VTK has from 9.2 on.
+   */
+  vtkSetClampMacro(ScatteringAnisotropy, double, -0.99, 0.99);
+  vtkGetMacro(ScatteringAnisotropy, double);
+  //@}
+
+  //@{
+  /**
    * Set/Get the alpha beyond which a ray ends, 0..1. Default 0: by ImageErrorTolerance, 0.9999 at the default one. Not used in maximum
    * intensity.
    */
@@ -389,6 +419,8 @@ protected:
   int RenderMode = COMPOSITE_MODE;
   int Normals = FACE_NORMALS;
   double ImageErrorTolerance = 0.001;
+  vtkTypeBool Shadows = 0;
+  double VolumetricScatteringBlending = 0.0, ScatteringAnisotropy = 0.0;
   double Termination = 0.0;
   double GradientOpacityDistance = 0.0;
   int ComponentMixing = ADD_COMPONENTS;

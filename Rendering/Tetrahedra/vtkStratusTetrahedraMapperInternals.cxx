@@ -108,6 +108,8 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
   }
   options.materials = alike ? nullptr : this->Materials.data();
   options.shade = property->GetShade();
+  vtkStratusSetScattering(
+    property, this->Mapper->Shadows != 0, this->Mapper->VolumetricScatteringBlending, this->Mapper->ScatteringAnisotropy, options.shading);
   return !lit || vtkStratusSetShading(renderer, property, options.shading, error);
 }
 

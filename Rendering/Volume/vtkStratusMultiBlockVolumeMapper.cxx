@@ -317,6 +317,9 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   to->SetSampling(settings->GetSampling());
   to->SetCellError(settings->GetCellError());
   to->SetLightSpread(settings->GetLightSpread());
+  to->SetShadows(settings->GetShadows());
+  to->SetVolumetricScatteringBlending(settings->GetVolumetricScatteringBlending());
+  to->SetScatteringAnisotropy(settings->GetScatteringAnisotropy());
   to->SetGradientOpacityDistance(settings->GetGradientOpacityDistance());
   to->SetComponentMixing(settings->GetComponentMixing());
   to->SetVectorMode(settings->GetVectorMode());

@@ -245,6 +245,9 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Sampling: " << this->GetSamplingAsString() << "\n";
   os << indent << "CellError: " << this->CellError << "\n";
   os << indent << "LightSpread: " << this->LightSpread << "\n";
+  os << indent << "Shadows: " << this->Shadows << "\n";
+  os << indent << "VolumetricScatteringBlending: " << this->VolumetricScatteringBlending << "\n";
+  os << indent << "ScatteringAnisotropy: " << this->ScatteringAnisotropy << "\n";
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "BlockSize: " << this->BlockSize << "\n";

@@ -458,6 +458,47 @@ void Lamps()
   CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
 }
 
+double Brightness(const std::vector<float>& picture)
+{
+  double sum = 0.0;
+  for (size_t i = 0; i < picture.size(); ++i) {
+    sum += i % 4 < 3 ? static_cast<double>(picture[i]) : 0.0;
+  }
+  return sum / static_cast<double>(picture.size());
+}
+
+// The core's test compares shadows with a reference; here the settings reach it.
+void Shadows()
+{
+  Scene scene(96, 80);
+  scene.Volume->GetProperty()->ShadeOn();
+  scene.Renderer->RemoveAllLights();
+  vtkNew<vtkLight> sun;
+  sun->SetLightTypeToSceneLight();
+  sun->SetPosition(3.0, 1.0, 2.0);
+  sun->SetFocalPoint(0.0, 0.0, 0.0);
+  scene.Renderer->AddLight(sun);
+  const std::vector<float> bright = scene.Picture();
+  scene.Mapper->ShadowsOn();
+  const std::vector<float> shadowed = scene.Picture();
+  CHECK(Brightness(shadowed) < 0.98 * Brightness(bright), "shadows leave %g of %g", Brightness(shadowed), Brightness(bright));
+  for (size_t i = 3; i < bright.size(); i += 4) {
+    CHECK(std::abs(bright[i] - shadowed[i]) < 0.02F, "shadows change the opacity of pixel %zu", i / 4);
+  }
+  scene.Mapper->SetVolumetricScatteringBlending(3.0);
+  CHECK(scene.Mapper->GetVolumetricScatteringBlending() == 2.0, "blending %g", scene.Mapper->GetVolumetricScatteringBlending());
+  const std::vector<float> scattered = scene.Picture();
+  scene.Mapper->ShadowsOff(); // scattered light has them
+  CHECK(scattered != shadowed && scene.Picture() == scattered, "scattered light");
+  scene.Mapper->SetScatteringAnisotropy(0.8);
+  CHECK(scene.Picture() != scattered, "the anisotropy changes nothing");
+  scene.Mapper->SetScatteringAnisotropy(-2.0);
+  CHECK(scene.Mapper->GetScatteringAnisotropy() == -0.99, "anisotropy %g", scene.Mapper->GetScatteringAnisotropy());
+  scene.Mapper->SetScatteringAnisotropy(0.0);
+  scene.Mapper->SetVolumetricScatteringBlending(0.0);
+  CHECK(scene.Picture() == bright && scene.Errors->Count == 0, "without them: %s", scene.Errors->Text.c_str());
+}
+
 void Refusals()
 {
   Scene scene;
@@ -483,6 +524,7 @@ int main()
   LabelsOfNone();
   Materials();
   Lamps();
+  Shadows();
   Refusals();
   std::printf("%d failures\n", Failures);
   return Failures ? 1 : 0;
