@@ -26,10 +26,10 @@ static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
 #define SLOPE_MOST 2.0
 /* The share of the tolerance that maps may use up; errors of the picture's sampling add to it by their squares. */
 #define SHARE 0.5
-/* How an error falls if the spacing is halved: at most to this part, at least to that, where it was not seen. */
-#define FALL_BEST 0.25
-#define FALL_WORST 0.7
-#define FALL_UNKNOWN 0.5
+/* The part to which an error falls if the spacing is halved: of the second order where the light that passes is smooth, of the first where
+ * it jumps, since as much smaller a part of the picture errs. */
+#define FALL_SMOOTH 0.25
+#define FALL_JUMPS 0.5
 #define FAR 1e4   /* so many extents of the matter away, a position is a direction */
 #define FLAT 1e-6 /* a side of the map is at least this part of the longest */
 
@@ -426,7 +426,7 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
     const int nears = matter->step > 0.0 ? NEARS : 1;
     for (int finer = 0; d.coarse && finer < 2 && !kept; ++finer) {
       for (int i = 0; i < nears && !kept; ++i) {
-        const double fall = last[i] > 0.0 ? fmin(fmax(differences[i] / last[i], FALL_BEST), FALL_WORST) : FALL_UNKNOWN;
+        const double fall = last[i] > 0.0 ? fmin(fmax(differences[i] / last[i], FALL_SMOOTH), FALL_JUMPS) : FALL_JUMPS;
         const double coarse = differences[i] / (1.0 - fall), expected = finer ? coarse * fall : coarse;
         const double length = near_lengths[i] * near_length(matter, &maps[finer ? now : 1 - now], sides[2]);
         if (i > 0 && length > NEAR_STEPS_MOST * matter->step) {
