@@ -63,7 +63,7 @@ OUTLINE void RAY_NAME(light_near)(CONSTANT stratus_ray_cast_arguments* a, value_
     if (a->light.map_at[i] < 0) {
       continue;
     }
-    vfloat way[3], from = zero, to = one, depth = zero, front;
+    vfloat way[3], from = zero, to = one, depth = zero, front = zero;
     light_near_way(&a->light, i, x, way);
     RAY_NAME(near_bounds)(a, x, way, &from, &to);
     const vmask any = mask & v_lt(from, to);
