@@ -272,6 +272,9 @@ static void find_margin(const stratus_ray_caster* caster, stratus_ray_variant va
   const bool segments = variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED;
   margin[0] = lit ? 2 : 0; /* central differences, at a place that may be rounded into the next cell */
   margin[1] = lit ? 3 : 0;
+  const int near = (stratus_light_maps_near(caster->optics.lights) + 1) / 2; /* towards the light, steps are half a voxel at most */
+  margin[0] += near;
+  margin[1] += near;
   if (segments) { /* a segment that shows anything may end in a transparent block, whose value there counts */
     const int segment = (int)ceil(stratus_ray_voxels_a_sample(caster)) + 1;
     margin[0] += segment;

@@ -263,7 +263,9 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
     in->options.sampling.jitter_seed = s.inputs[0].options.sampling.jitter_seed;
   }
   TRY(stratus_image_check(s.context, image));
-  TRY(render(&s, arguments, plain));
+  const stratus_status status = render(&s, arguments, plain);
+  stratus_ray_light_return(inputs, count); /* the maps are the first input's, which may go before the others */
+  TRY(status);
   for (int n = 0; reports && n < count; ++n) {
     reports[n] = s.inputs[n].report;
   }

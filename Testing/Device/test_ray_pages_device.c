@@ -32,6 +32,7 @@ typedef struct page_case {
   int divisor; /* the largest allocation is the volume's bytes over this */
   int shade, components, centered, ghosts, label_count;
   int gradients; /* 1: the volume has its own */
+  int shadows;   /* 1: light from one side, which matter absorbs */
 } page_case;
 
 /* clang-format off */
@@ -65,6 +66,7 @@ static const page_case cases[] = {
   { "isosurface", STRATUS_FLOAT32, STRATUS_MODE_ISOSURFACE, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 3 },
   { "two components, lit by gradients of their own", STRATUS_FLOAT32, COMPOSITE, MIDPOINT, LINEAR, DISTANCE, .8, .divisor = 1, .shade = 1,
     .components = 2, .gradients = 1 },
+  { "shadows", STRATUS_UINT8, COMPOSITE, CELLS, LINEAR, DISTANCE, 0, .divisor = 1, .shade = 1, .shadows = 1 },
 };
 /* clang-format on */
 
@@ -95,6 +97,12 @@ static void make_case(const page_case* p, uint32_t seed, picture_case* c)
   c->options.sampling.cell_error = p->sampling == CELLS ? 0.01 : 0.0;
   c->options.light.shade = p->shade;
   c->options.light.shading.specular = 0.3;
+  c->options.light.shading.shadows = p->shadows;
+  if (p->shadows) {
+    c->options.sampling.tolerance = 0.2; /* maps of light that fit the allocation */
+    c->options.light.shading.light_count = 1;
+    c->options.light.shading.lights[0] = (stratus_light){ .vector = { 0.3, -0.5, 1.0 }, .color = { 1.0, 1.0, 1.0 } };
+  }
   c->options.optics.contour_count = 1;
   c->options.optics.contours[0] = base + 0.65 * scale;
   c->options.optics.average_range[0] = base + shown * scale;
