@@ -72,6 +72,8 @@ static stratus_status key_of_volume(stratus_ray_caster* dark, const stratus_volu
   *key = stratus_light_key(*key, clip->clip_planes, (size_t)clip->clip_plane_count * sizeof clip->clip_planes[0]);
   *key = stratus_light_key(*key, clip->crop_bounds, clip->crop ? sizeof clip->crop_bounds : 0);
   *key = stratus_light_key(*key, to_world, sizeof to_world);
+  /* tables of another function are made only when the sampling is chosen, so that their serial does not tell of it yet */
+  *key = stratus_light_key_of_transfers(*key, transfer, dark->optics.transfer_count);
   return STRATUS_OK;
 }
 
@@ -112,7 +114,7 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
   stratus_light_matter matter = { .draw = draw_volume, .of = &m, .tolerance = options->sampling.tolerance };
   const bool regions = options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE;
   if (stratus_volume_components(volume) == 1 && options->mode == STRATUS_MODE_COMPOSITE && options->mask.label_count == 0 &&
-    !options->optics.transfer_2d && !regions) {
+    !options->optics.transfer_2d && transfer->gradient_count == 0 && !regions) { /* near rays know no gradient opacity */
     matter.step = stratus_ray_voxel_length(volume) / NEAR_STEPS_A_VOXEL;
   }
   TRY(dark_caster(caster, &m.caster));

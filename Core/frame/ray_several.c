@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Draws several volumes in one march: each caster keeps tables, structure and choice of its own volume, and all share the lattice. */
 #include "instruction_set.h"
+#include "lights.h"
+#include "camera.h"
 #include "device.h"
 #include "picture.h"
 #include "ray_cast_rest.h"
@@ -222,6 +224,41 @@ static stratus_status render(stratus_several* s, stratus_ray_cast_arguments* arg
   return STRATUS_OK;
 }
 
+static bool asks_for_shadows(const stratus_ray_cast_input* inputs, int count)
+{
+  bool asks = false;
+  for (int n = 0; n < count; ++n) {
+    asks = asks ||
+      (inputs[n].tetra ? inputs[n].tetra_options && inputs[n].tetra_options->shading.shadows
+                       : inputs[n].options && inputs[n].options->light.shading.shadows);
+  }
+  return asks;
+}
+
+/* Checks what maps of light are made of, before stratus_several_kept() checks its own input. */
+static stratus_status check_before_light(
+  stratus_context* context, const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera, const stratus_image* image)
+{
+  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
+  TRY(stratus_image_check(context, image));
+  TRY(stratus_camera_check(context, camera, image));
+  for (int n = 0; n < count; ++n) {
+    const stratus_ray_cast_input* in = &inputs[n];
+    if (in->tetra) {
+      TRY(stratus_mesh_check(context, in->mesh));
+      TRY(stratus_transfer_check(context, in->transfer));
+      TRY(
+        in->tetra_options && in->tetra_options->shading.shadows ? stratus_shading_check(context, &in->tetra_options->shading) : STRATUS_OK);
+    } else {
+      const stratus_ray_cast_options* options = in->options ? in->options : &defaults;
+      TRY(stratus_ray_update_transfer_2d(in->caster, in->volume, options));
+      TRY(stratus_ray_check_input(
+        context, in->volume, options->optics.transfer_2d ? &in->caster->optics.transfer_2d.shown : in->transfer, options));
+    }
+  }
+  return STRATUS_OK;
+}
+
 stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
   const stratus_image* image, stratus_ray_cast_report* reports)
 {
@@ -237,7 +274,10 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
   }
   if (stratus_kept_mode(inputs) != STRATUS_MODE_COMPOSITE) {
     stratus_ray_cast_report light = { .light_ms = 0.0 };
-    TRY(stratus_ray_light_update_several(inputs, count, true, camera, stratus_ray_caster_render_several, &light));
+    if (asks_for_shadows(inputs, count)) {
+      TRY(check_before_light(s.context, inputs, count, camera, image));
+      TRY(stratus_ray_light_update_several(inputs, count, true, camera, stratus_ray_caster_render_several, &light));
+    }
     const stratus_status status = stratus_several_kept(inputs, count, camera, image, reports);
     stratus_ray_light_return(inputs, count);
     return status;

@@ -176,7 +176,9 @@ static void maps_are_built_when_they_are_stale(void** state)
   stratus_ray_caster* caster = NULL;
   picture_case c;
   make_case(context, &c, STRATUS_FLOAT32);
-  c.options.sampling.tolerance = 0.02; /* of which coarse maps are enough */
+  c.options.sampling.tolerance = 0.02;             /* of which coarse maps are enough */
+  c.options.sampling.rule = STRATUS_SAMPLING_AUTO; /* whose tables are made after the choice */
+  c.options.sampling.distance = 0.0;
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   case_render_with(context, caster, &c, &drawn);
   assert_int_equal(drawn.report.light_builds, 1);
@@ -431,6 +433,21 @@ static void bad_scattering_is_refused(void** state)
       stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
     assert_non_null(strstr(stratus_context_message(context), "scattering"));
   }
+  c.options.light.shading.scattering = c.options.light.shading.anisotropy = 0.0; /* and of several, before maps are made */
+  c.options.light.shading.light_count = 20;
+  c.options.mode = STRATUS_MODE_ISOSURFACE;
+  c.options.optics.contour_count = 1;
+  c.options.optics.contours[0] = c.opacity[4];
+  stratus_ray_caster* second = NULL;
+  assert_int_equal(stratus_ray_caster_create(context, &second), STRATUS_OK);
+  stratus_ray_cast_input inputs[2] = { { .caster = caster, .volume = &c.volume, .transfer = &c.transfer, .options = &c.options },
+    { .caster = second, .volume = &c.volume, .transfer = &c.transfer, .options = &c.options } };
+  assert_int_equal(stratus_ray_caster_render_several(inputs, 2, &c.camera, &image, NULL), STRATUS_INVALID_ARGUMENT);
+  c.options.light.shading.light_count = 1;
+  assert_int_equal(stratus_ray_caster_render_several(inputs, 2, NULL, &image, NULL), STRATUS_INVALID_ARGUMENT);
+  inputs[1].volume = NULL;
+  assert_int_equal(stratus_ray_caster_render_several(inputs, 2, &c.camera, &image, NULL), STRATUS_INVALID_ARGUMENT);
+  stratus_ray_caster_destroy(second);
   stratus_ray_caster_destroy(caster);
   case_destroy(&c);
   stratus_context_destroy(context);
