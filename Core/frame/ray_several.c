@@ -245,7 +245,7 @@ static stratus_status check_before_light(
   for (int n = 0; n < count; ++n) {
     const stratus_ray_cast_input* in = &inputs[n];
     if (in->tetra) {
-      TRY(stratus_mesh_check(context, in->mesh));
+      TRY(stratus_tetra_shadow_check(context, in->mesh));
       TRY(stratus_transfer_check(context, in->transfer));
       TRY(
         in->tetra_options && in->tetra_options->shading.shadows ? stratus_shading_check(context, &in->tetra_options->shading) : STRATUS_OK);

@@ -225,6 +225,8 @@ typedef stratus_status stratus_tetra_draw(stratus_tetra_caster* caster, const st
   const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);
 stratus_status stratus_tetra_shadow_update(
   stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera, stratus_tetra_draw* draw);
+/* Checks a mesh of several inputs before maps are made of it. */
+stratus_status stratus_tetra_shadow_check(stratus_context* context, const stratus_mesh* mesh);
 /* Whether a picture with these options has shadows; and a key of what decides where its matter is. */
 bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* options);
 uint64_t stratus_tetra_shadow_key(

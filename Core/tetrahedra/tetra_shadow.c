@@ -15,6 +15,11 @@ typedef struct matter {
   stratus_tetra_options options;
 } matter;
 
+stratus_status stratus_tetra_shadow_check(stratus_context* context, const stratus_mesh* mesh)
+{
+  return stratus_mesh_check(context, mesh);
+}
+
 bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* o)
 {
   bool shade = o->shade != 0;
