@@ -71,8 +71,8 @@ struct options {
   int samples = 0;                       // path: of each pixel; 0: as many as the tolerance needs
   int bounces = 0;                       // path: 0: no limit
   int seed = 0;                          // path
-  double albedo = 1.0, anisotropy = 0.0; // path
-  std::vector<std::vector<double>> suns; // path: x, y, z and, if given, red, green, blue
+  double albedo = 1.0, anisotropy = 0.0; // path, scatter
+  std::vector<std::vector<double>> suns; // x, y, z and, if given, red, green, blue
   std::vector<double> sky;               // path: red, green, blue of the zenith and, if given, of the horizon
   std::vector<double> contours;          // isosurface
   std::vector<double> slice;             // slice: a point of the plane, and its normal

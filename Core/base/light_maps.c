@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Builds maps of light: the matter is drawn layer by layer as the light sees it, and what passes a layer is 1 less its opacity. So whatever
- * can be drawn can cast shadows, and within a layer the picture's own integration holds. Only between nodes is anything interpolated. */
+ * Builds maps of light: the matter is drawn layer by layer as the light sees it, and the light that passes a layer is 1 less its opacity.
+ * So whatever can be drawn can cast shadows, and within a layer the picture's own integration holds. Only between nodes is anything
+ * interpolated. */
 #include "light_maps.h"
 
 #include "matrix.h"
@@ -19,7 +20,7 @@
 static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
 #define NEAR_STEPS_LEAST 2
 #define NEAR_STEPS_MOST 16
-#define FAINT 1e-4f /* what a node adds to a picture is at least this */
+#define FAINT 1e-4f /* nodes that add less than this to a picture are not compared */
 #define LINES 32    /* so many rows, columns and layers of a map are compared with a coarser one */
 #define WORDS_MOST ((size_t)1 << 24)
 /* A position whose light meets the matter at a greater slope than this, or is in it, has a cube of maps. */
@@ -65,13 +66,6 @@ static size_t map_words(const map* m)
 
 /* ---- where a map is */
 
-static void corner_of(const double bounds[6], int corner, double point[3])
-{
-  for (int axis = 0; axis < 3; ++axis) {
-    point[axis] = bounds[2 * axis + (corner >> axis & 1)];
-  }
-}
-
 /* Sets the map's frame, and its sides' lengths in the world. */
 static void place_map(const stratus_light* light, const double bounds[6], map* m, double sides[3])
 {
@@ -102,9 +96,8 @@ static void place_map(const stratus_light* light, const double bounds[6], map* m
   bool wide = false;
   for (int corner = 0; corner < 8; ++corner) {
     double point[3], q[3];
-    corner_of(bounds, corner, point);
     for (int axis = 0; axis < 3; ++axis) {
-      point[axis] -= f->origin[axis];
+      point[axis] = bounds[2 * axis + (corner >> axis & 1)] - f->origin[axis];
       largest = fmax(largest, fabs(point[axis]));
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -211,19 +204,25 @@ static float passing(const map* m, const int32_t* words, int face, const double 
   return (up[0] * (1.0f - part[1]) + up[1] * part[1]) / 65535.0f;
 }
 
-/* A map that is being drawn, and what pictures by it and by a coarser one differ by, if rays pass near matter on each of near_lengths
- * before. */
+/* A map that is being drawn, and the differences between pictures by it and by a coarser one, if rays pass near matter on each of
+ * near_lengths before. */
 typedef struct drawing {
   stratus_context* context;
   const stratus_light_matter* matter;
   map* map;
-  uint16_t*
-    planes; /* of a face: what passes to each node at the layers' near sides, one layer after the other, and at the last's far side */
+  /* of a face: the light that passes to each node at the layers' near sides, one layer after the other, and at the last's far side */
+  uint16_t* planes;
   const map* coarse; /* NULL: none */
   const int32_t* coarse_words;
   float *rgba, *passed, *along;               /* along: of the view along the light's way, each node's differences so far */
   double near_layers, squares[NEARS], pixels; /* near_layers: of the finer map, in a near length of the coarser */
 } drawing;
+
+/* The opacity at a node of the layer that was drawn last. */
+static float opacity_at(const drawing* d, size_t node)
+{
+  return fminf(fmaxf(d->rgba[4 * node + 3], 0.0f), 1.0f);
+}
 
 /* The part that passes to a depth, in layers, of a node. */
 static float passed_to(const drawing* d, size_t node, double depth)
@@ -238,7 +237,7 @@ static void add_difference(const drawing* d, int face, int x, int y, int layer, 
 {
   const int *n = d->map->size, *c = d->coarse->size;
   const size_t node = (size_t)y * (size_t)n[0] + (size_t)x;
-  const float here = d->passed[node] * (1.0f - 0.5f * d->rgba[4 * node + 3]);
+  const float here = d->passed[node] * (1.0f - 0.5f * opacity_at(d, node));
   double place[3] = { (double)x / (n[0] - 1) * (c[0] - 1), (double)y / (n[1] - 1) * (c[1] - 1), 0.0 };
   for (int m = 0; m < (d->matter->step > 0.0 ? NEARS : 1); ++m) {
     const double depth = layer + 0.5 - near_lengths[m] * d->near_layers;
@@ -259,7 +258,7 @@ static void look_along(drawing* d, int face, int layer, int line, bool column)
   for (int i = 0; i < count; ++i) {
     for (int back = 0; back < 2; ++back) {
       const int at = back ? count - 1 - i : i, x = column ? line : at, y = column ? at : line;
-      const float opacity = fminf(fmaxf(d->rgba[4 * ((size_t)y * (size_t)n[0] + (size_t)x) + 3], 0.0f), 1.0f), part = left[back] * opacity;
+      const float opacity = opacity_at(d, (size_t)y * (size_t)n[0] + (size_t)x), part = left[back] * opacity;
       if (part > FAINT) {
         add_difference(d, face, x, y, layer, part, sum[back]);
       }
@@ -274,7 +273,8 @@ static void look_along(drawing* d, int face, int layer, int line, bool column)
   }
 }
 
-/* Adds what pictures of a layer differ by, as they are seen from its four sides and from the light: of some rows, columns and nodes. */
+/* Adds the differences between pictures of a layer, as they are seen from its four sides and from the light: of some rows, columns and
+ * nodes. */
 static void compare_layer(drawing* d, int face, int layer)
 {
   const int *n = d->map->size, stride = (n[0] > n[1] ? n[0] : n[1]) / LINES + 1;
@@ -287,7 +287,7 @@ static void compare_layer(drawing* d, int face, int layer)
     for (int x = 0; x < n[0]; x += stride) {
       const size_t node = (size_t)y * (size_t)n[0] + (size_t)x;
       float* along = d->along + NEARS * node;
-      const float part = d->passed[node] * fminf(fmaxf(d->rgba[4 * node + 3], 0.0f), 1.0f);
+      const float part = d->passed[node] * opacity_at(d, node);
       if (part > FAINT) {
         add_difference(d, face, x, y, layer, part, along);
       }
@@ -351,7 +351,7 @@ static stratus_status draw_face(drawing* d, int face, int32_t* words)
       compare_layer(d, face, layer);
     }
     for (size_t i = 0; i < nodes; ++i) {
-      d->passed[i] *= 1.0f - fminf(fmaxf(d->rgba[4 * i + 3], 0.0f), 1.0f);
+      d->passed[i] *= 1.0f - opacity_at(d, i);
       plane[i] = (uint16_t)(d->passed[i] * 65535.0f + 0.5f);
     }
   }
@@ -410,7 +410,7 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
   stratus_status status = STRATUS_OK;
   place_map(light, matter->bounds, &maps[0], sides);
   *near = *error = 0.0;
-  for (int nodes = NODES_FIRST; nodes <= NODES_LAST && !kept; nodes *= 2) {
+  for (int nodes = NODES_FIRST; nodes <= NODES_LAST; nodes *= 2) {
     drawing d = { .context = context, .matter = matter, .map = &maps[now] };
     double differences[NEARS], finest = INFINITY;
     if (nodes > NODES_FIRST) {
@@ -528,17 +528,6 @@ uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* tr
   return key;
 }
 
-stratus_status stratus_light_state_update(stratus_context* context, const stratus_light_matter* matter, uint64_t key,
-  const stratus_light* lights, int count, stratus_light_state* state)
-{
-  if (state->key != key || !stratus_light_maps_serve(state->maps, lights, count)) {
-    TRY(stratus_light_maps_build(context, matter, lights, count, &state->maps));
-    state->key = key;
-    ++state->builds;
-  }
-  return STRATUS_OK;
-}
-
 void stratus_light_state_drop(stratus_light_state* state)
 {
   stratus_light_maps_destroy(state->maps);
@@ -550,13 +539,22 @@ static bool same_way(const stratus_light* a, const stratus_light* b)
   return a->positional == b->positional && memcmp(a->vector, b->vector, sizeof a->vector) == 0;
 }
 
-bool stratus_light_maps_serve(const stratus_light_maps* maps, const stratus_light* lights, int count)
+bool stratus_light_state_is_stale(const stratus_light_state* state, uint64_t key, const stratus_light* lights, int count)
 {
-  bool serve = maps && maps->count == count;
-  for (int i = 0; serve && i < count; ++i) {
-    serve = same_way(&maps->of[i].light, &lights[i]);
+  bool serves = state->key == key && state->maps && state->maps->count == count;
+  for (int i = 0; serves && i < count; ++i) {
+    serves = same_way(&state->maps->of[i].light, &lights[i]);
   }
-  return serve;
+  return !serves;
+}
+
+stratus_status stratus_light_state_build(
+  stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_state* state)
+{
+  TRY(stratus_light_maps_build(context, matter, lights, count, &state->maps));
+  state->key = 0;
+  ++state->builds;
+  return STRATUS_OK;
 }
 
 /* Sets how near matter is passed on the way to light i. */

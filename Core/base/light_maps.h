@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Maps of what passes from lights to the places in a scene, in the layout of kernels/base/light_map.h. */
+ * Maps of the light that passes to the places in a scene, in the layout of kernels/base/light_map.h. */
 #ifndef STRATUS_LIGHT_MAPS_H
 #define STRATUS_LIGHT_MAPS_H
 
@@ -9,15 +9,15 @@
 
 typedef struct stratus_light_maps stratus_light_maps;
 
-/* What absorbs light. */
+/* The matter that absorbs light. */
 typedef struct stratus_light_matter {
-  /* draws the matter alone, without light; of the image only the opacity is read */
+  /* draws the matter without light; only the opacity of the image is read */
   stratus_status (*draw)(void* of, const stratus_camera* camera, const stratus_image* image);
   void* of;
   double bounds[6]; /* world coordinates: xmin xmax ymin ymax zmin zmax */
   /* steps at which a renderer can pass the matter next to a place by itself; 0: it cannot */
   double step;
-  double tolerance; /* of the part of light that passes, root mean square over what absorbs; 0: as fine as maps can be */
+  double tolerance; /* of the part of light that passes, root mean square over the matter; 0: as fine as maps can be */
 } stratus_light_matter;
 
 /* Build the maps of all lights, given in the world. The maps' spacing is the coarsest of 1/32, 1/64, 1/128 and 1/256 of the matter's extent
@@ -27,9 +27,6 @@ stratus_status stratus_light_maps_build(
   stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_maps** maps);
 void stratus_light_maps_destroy(stratus_light_maps* maps);
 
-/* Whether the maps are of exactly these lights' ways; their colours do not matter. */
-bool stratus_light_maps_serve(const stratus_light_maps* maps, const stratus_light* lights, int count);
-
 /* The maps of a scene that is drawn again and again. */
 typedef struct stratus_light_state {
   stratus_light_maps* maps; /* NULL: none */
@@ -37,9 +34,11 @@ typedef struct stratus_light_state {
   uint64_t builds;
 } stratus_light_state;
 
-/* Builds the maps anew if `key`, which says what the matter is, or a light's way has changed. */
-stratus_status stratus_light_state_update(stratus_context* context, const stratus_light_matter* matter, uint64_t key,
-  const stratus_light* lights, int count, stratus_light_state* state);
+/* Whether there are no maps of matter with this key and of exactly these lights' ways; their colours do not matter. */
+bool stratus_light_state_is_stale(const stratus_light_state* state, uint64_t key, const stratus_light* lights, int count);
+/* Builds the maps anew. The key is then 0, until the caller sets it. */
+stratus_status stratus_light_state_build(
+  stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_state* state);
 void stratus_light_state_drop(stratus_light_state* state);
 /* A key that follows from another and from bytes. The first is 0. */
 uint64_t stratus_light_key(uint64_t key, const void* bytes, size_t count);

@@ -165,8 +165,8 @@ static void set_light(const stratus_light* light, const double origin[3], double
   }
 }
 
-void stratus_lights_set(
-  const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit, stratus_light_arguments* a)
+void stratus_lights_set(const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit,
+  stratus_light lights[STRATUS_LIGHTS_MAX], stratus_light_arguments* a)
 {
   const double g = shading->anisotropy;
   a->two_sided = !shading->one_sided;
@@ -174,10 +174,17 @@ void stratus_lights_set(
   a->phase[0] = (float)(1.0 - g * g);
   a->phase[1] = (float)(1.0 + g * g);
   a->phase[2] = (float)(2.0 * g);
-  stratus_light lights[STRATUS_LIGHTS_MAX];
   a->count = stratus_lights_in_world(camera, shading, lights);
   for (int i = 0; i < a->count; ++i) {
     set_light(&lights[i], origin, unit, i, a);
     a->map_at[i] = -1;
   }
+}
+
+bool stratus_lights_cast_shadows(const stratus_shading* shading, bool shade, const stratus_material* materials, int count)
+{
+  for (int c = 0; materials && c < count; ++c) {
+    shade = shade || materials[c].shade;
+  }
+  return shade && shading->shadows;
 }

@@ -13,9 +13,12 @@ stratus_status stratus_shading_check(stratus_context* context, const stratus_sha
 /* Gives the lights in world coordinates; where a shading has none of its own, one at the eye, a direction where rays are parallel. Returns
  * their number. */
 int stratus_lights_in_world(const stratus_camera* camera, const stratus_shading* shading, stratus_light lights[STRATUS_LIGHTS_MAX]);
-/* Sets count, sides and lights of the arguments. Places are relative to `origin` in the world, in units of `unit`. */
-void stratus_lights_set(
-  const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit, stratus_light_arguments* a);
+/* Sets count, sides and lights of the arguments, without maps. Places are relative to `origin` in the world, in units of `unit`. lights:
+ * receives the lights in world coordinates. */
+void stratus_lights_set(const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit,
+  stratus_light lights[STRATUS_LIGHTS_MAX], stratus_light_arguments* a);
+/* Whether a picture has shadows: its shading has them on, and matter is lit. materials: of `count` components; NULL: none of their own. */
+bool stratus_lights_cast_shadows(const stratus_shading* shading, bool shade, const stratus_material* materials, int count);
 
 /* The lights of first hits, which are solids. */
 typedef struct stratus_lamps {

@@ -72,3 +72,18 @@ bool stratus_matrix_invert_affine(const double matrix[16], double inverse[16])
   memcpy(inverse, result, sizeof result);
   return true;
 }
+
+void stratus_matrix_box(const double matrix[16], const double lo[3], const double hi[3], double bounds[6])
+{
+  for (int corner = 0; corner < 8; ++corner) {
+    double local[3], point[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      local[axis] = corner >> axis & 1 ? hi[axis] : lo[axis];
+    }
+    stratus_matrix_point(matrix, local, point);
+    for (int axis = 0; axis < 3; ++axis) {
+      bounds[2 * axis] = corner ? fmin(bounds[2 * axis], point[axis]) : point[axis];
+      bounds[2 * axis + 1] = corner ? fmax(bounds[2 * axis + 1], point[axis]) : point[axis];
+    }
+  }
+}

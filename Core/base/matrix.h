@@ -10,5 +10,7 @@ bool stratus_matrix_invert_affine(const double matrix[16], double inverse[16]);
 void stratus_matrix_point(const double matrix[16], const double point[3], double result[3]);
 /* Transforms a direction, without the matrix's translation. */
 void stratus_matrix_vector(const double matrix[16], const double vector[3], double result[3]);
+/* The bounds, xmin xmax ymin ymax zmin zmax, of the box lo..hi after the transformation. */
+void stratus_matrix_box(const double matrix[16], const double lo[3], const double hi[3], double bounds[6]);
 
 #endif

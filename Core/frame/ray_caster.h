@@ -16,7 +16,7 @@
 typedef struct stratus_ray_device stratus_ray_device;
 typedef struct stratus_first_hit stratus_first_hit;
 
-/* Casters within a caster: of up to four independent components, of the quantities of one, and of what absorbs light. */
+/* Casters within a caster: of up to four independent components, of the quantities of one, and of the matter that absorbs light. */
 #define STRATUS_RAY_PARTS 6
 #define STRATUS_RAY_QUANTITIES_PART 4
 #define STRATUS_RAY_LIGHT_PART 5
@@ -55,8 +55,8 @@ struct stratus_ray_caster {
   stratus_ray_trial trial;
   const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
   bool on_host;                    /* it never draws on the device */
-  stratus_light_state light;       /* of a picture of this volume alone, or of several of which it is the first */
-  bool light_given;                /* optics.lights are those of several blocks */
+  stratus_light_state light;       /* of a picture of this one volume, or of several inputs of which it is the first */
+  bool light_given;                /* optics.lights belongs to a picture of several inputs */
   bool together;                   /* it draws in one march with others, which light each sample */
 
   stratus_ray_caster* parts[STRATUS_RAY_PARTS]; /* of independent components, see ray_caster_parts.c; NULL until such a mode is used */

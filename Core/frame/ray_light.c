@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Shadows of volumes and meshes. Each caster has one of its own that draws the same matter without light, layer by layer as the lights see
- * it; volumes on the host, so that host and device have the same maps. */
+ * it. Volumes are drawn on the host, so that host and device have the same maps. */
 #include "ray_light.h"
 
 #include "lights.h"
@@ -16,11 +16,10 @@
 
 static bool has_shadows(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
-  bool shade = options->light.shade != 0;
-  for (int c = 0; options->light.materials && !options->optics.dependent && c < stratus_volume_components(volume); ++c) {
-    shade = shade || options->light.materials[c].shade;
-  }
-  return shade && options->light.shading.shadows && (options->mode == STRATUS_MODE_COMPOSITE || options->mode == STRATUS_MODE_ISOSURFACE);
+  const bool lit = options->mode == STRATUS_MODE_COMPOSITE || options->mode == STRATUS_MODE_ISOSURFACE;
+  return lit &&
+    stratus_lights_cast_shadows(&options->light.shading, options->light.shade != 0,
+      options->optics.dependent ? NULL : options->light.materials, stratus_volume_components(volume));
 }
 
 static bool input_has_shadows(const stratus_ray_cast_input* in)
@@ -72,7 +71,7 @@ static stratus_status key_of_volume(stratus_ray_caster* dark, const stratus_volu
   *key = stratus_light_key(*key, clip->clip_planes, (size_t)clip->clip_plane_count * sizeof clip->clip_planes[0]);
   *key = stratus_light_key(*key, clip->crop_bounds, clip->crop ? sizeof clip->crop_bounds : 0);
   *key = stratus_light_key(*key, to_world, sizeof to_world);
-  /* tables of another function are made only when the sampling is chosen, so that their serial does not tell of it yet */
+  /* tables of another function are made when the sampling is chosen, and their serial is the old one until then */
   *key = stratus_light_key_of_transfers(*key, transfer, dark->optics.transfer_count);
   return STRATUS_OK;
 }
@@ -119,12 +118,11 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
   }
   TRY(dark_caster(caster, &m.caster));
   TRY(key_of_volume(m.caster, volume, transfer, &m.options, &key));
-  TRY(stratus_volume_bounds(caster->context, volume, matter.bounds));
   const int count = stratus_lights_in_world(camera, &options->light.shading, lights);
-  const uint64_t builds = caster->light.builds;
-  TRY(stratus_light_state_update(caster->context, &matter, key, lights, count, &caster->light));
-  if (caster->light.builds != builds) { /* the drawing may have chosen the sampling, and with it made tables */
-    caster->light.key = 0;
+  if (stratus_light_state_is_stale(&caster->light, key, lights, count)) {
+    TRY(stratus_volume_bounds(caster->context, volume, matter.bounds));
+    TRY(stratus_light_state_build(caster->context, &matter, lights, count, &caster->light));
+    /* the drawing may have chosen the sampling, and with it made tables */
     TRY(key_of_volume(m.caster, volume, transfer, &m.options, &caster->light.key));
   }
   caster->optics.lights = caster->light.maps;
@@ -240,9 +238,9 @@ static stratus_status update_several(several* m, const stratus_ray_cast_input* i
   uint64_t key;
   const int count = stratus_lights_in_world(camera, shading, lights);
   TRY(darken(m, inputs, &key));
-  if (state->key != key || !stratus_light_maps_serve(state->maps, lights, count)) {
+  if (stratus_light_state_is_stale(state, key, lights, count)) {
     TRY(bounds_of(m, matter.bounds));
-    TRY(stratus_light_state_update(m->context, &matter, key, lights, count, state));
+    TRY(stratus_light_state_build(m->context, &matter, lights, count, state));
     TRY(darken(m, inputs, &state->key)); /* the drawing may have chosen the sampling, and with it made tables */
   }
   report->light_ms = stratus_now_ms() - start;

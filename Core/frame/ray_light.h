@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Shadows: the maps of what passes from each light through the volumes and meshes of a picture. */
+ * Shadows: the maps of the light that passes through the volumes and meshes of a picture. */
 #ifndef STRATUS_RAY_LIGHT_H
 #define STRATUS_RAY_LIGHT_H
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Draws several volumes in one march: each caster keeps tables, structure and choice of its own volume, and all share the lattice. */
 #include "instruction_set.h"
-#include "lights.h"
 #include "camera.h"
 #include "device.h"
 #include "picture.h"
@@ -245,10 +244,7 @@ static stratus_status check_before_light(
   for (int n = 0; n < count; ++n) {
     const stratus_ray_cast_input* in = &inputs[n];
     if (in->tetra) {
-      TRY(stratus_tetra_shadow_check(context, in->mesh));
-      TRY(stratus_transfer_check(context, in->transfer));
-      TRY(
-        in->tetra_options && in->tetra_options->shading.shadows ? stratus_shading_check(context, &in->tetra_options->shading) : STRATUS_OK);
+      TRY(stratus_tetra_shadow_check(context, in->mesh, in->transfer, in->tetra_options));
     } else {
       const stratus_ray_cast_options* options = in->options ? in->options : &defaults;
       TRY(stratus_ray_update_transfer_2d(in->caster, in->volume, options));

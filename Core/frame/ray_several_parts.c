@@ -34,16 +34,8 @@ static stratus_status bounds_of(const stratus_several* s, const stratus_several_
   }
   const stratus_tetra_mesh* mesh = in->of->tetra->mesh;
   *any = in->shows;
-  for (int corner = 0; corner < 8 && *any; ++corner) {
-    double local[3], point[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      local[axis] = corner >> axis & 1 ? mesh->hi[axis] : mesh->lo[axis];
-    }
-    stratus_matrix_point(in->of->mesh->matrix, local, point);
-    for (int axis = 0; axis < 3; ++axis) {
-      bounds[2 * axis] = corner ? fmin(bounds[2 * axis], point[axis]) : point[axis];
-      bounds[2 * axis + 1] = corner ? fmax(bounds[2 * axis + 1], point[axis]) : point[axis];
-    }
+  if (*any) {
+    stratus_matrix_box(in->of->mesh->matrix, mesh->lo, mesh->hi, bounds);
   }
   return STRATUS_OK;
 }

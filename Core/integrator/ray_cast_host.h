@@ -38,7 +38,7 @@ typedef struct stratus_ray_cast_frame {
   const uint8_t* map;
   const uint8_t* rough;  /* the map of rough blocks; NULL but for rule local */
   const int32_t* grid;   /* the tables of a grid whose spacing changes (kernels/field/stretched_grid.h); NULL: none */
-  const int32_t* lights; /* the maps of what passes from lights (kernels/base/light_map.h); NULL: none */
+  const int32_t* lights; /* the maps of lights (kernels/base/light_map.h); NULL: none */
   const void* table;     /* midpoint: 4 floats per entry, then 4 more (optical depth, 0, 0, 0) per entry; pre-integrated: sums */
   const float* opaque_depth;
   float* rgba;

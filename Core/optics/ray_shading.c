@@ -132,8 +132,7 @@ void stratus_ray_shading_arguments(const stratus_ray_optics* optics, const strat
   }
   const double origin[3] = { index_to_world[3], index_to_world[7], index_to_world[11] };
   stratus_light lights[STRATUS_LIGHTS_MAX];
-  stratus_lights_set(camera, &options->light.shading, origin, edge, &a->light);
-  (void)stratus_lights_in_world(camera, &options->light.shading, lights);
+  stratus_lights_set(camera, &options->light.shading, origin, edge, lights, &a->light);
   const bool near = options->mode == STRATUS_MODE_COMPOSITE && !stratus_ray_shading_several(optics, field) && !optics->transfer_2d.on;
   stratus_light_maps_arguments(optics->lights, lights, index_to_world, edge, near ? sample_distance : 0.0, &a->light);
 }

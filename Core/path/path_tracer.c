@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * The path tracer: what it keeps between calls, passes over the pixels, and the image with its errors. */
+ * The path tracer: the sums that it keeps between calls, passes over the pixels, and the image with its errors. */
 #include "path.h"
 
 #include "camera.h"
@@ -143,7 +143,7 @@ static void gather_view(const stratus_path_scene* scene, const stratus_camera* c
   memcpy(in->planes, clipping->clip_planes, (size_t)clipping->clip_plane_count * sizeof *in->planes);
 }
 
-/* Brings the tracer to these inputs: what follows from others is dropped. */
+/* Brings the tracer to these inputs, and drops all that follows from others. */
 static stratus_status update(stratus_path_tracer* t, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_path_options* options, const stratus_image* image, stratus_path_scene* scene)
 {

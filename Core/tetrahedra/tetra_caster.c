@@ -474,7 +474,7 @@ stratus_status stratus_tetra_light_caster(stratus_tetra_caster* caster, stratus_
   return STRATUS_OK;
 }
 
-/* Builds the maps of light of a picture of this mesh alone where they are stale. */
+/* Builds the maps of light of a picture of this one mesh where they are stale. */
 static stratus_status update_shadows(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera)
 {
   stratus_tetra_caster* dark;

@@ -126,8 +126,8 @@ struct stratus_tetra_caster {
   stratus_tetra_components components;
   uint64_t mesh_builds, value_builds, table_builds, gradient_builds, component_builds;
   const stratus_light_maps* lights;  /* shadows: the picture's maps; NULL: none */
-  stratus_light_state light;         /* of a picture of this mesh alone, or of several inputs of which it is the first */
-  struct stratus_tetra_caster* dark; /* draws what absorbs light; NULL: none */
+  stratus_light_state light;         /* of a picture of this one mesh, or of several inputs of which it is the first */
+  struct stratus_tetra_caster* dark; /* draws the matter that absorbs light; NULL: none */
   const stratus_tetra_costs* costs;  /* costs used instead of measured ones, for tests; NULL: none */
 };
 
@@ -217,7 +217,7 @@ void stratus_tetra_frame_slice(stratus_tetra_frame* frame, const stratus_tetra_o
 void stratus_tetra_frame_contours(
   stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options);
 void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);
-/* tetra_caster.c: the caster that draws what absorbs light. */
+/* tetra_caster.c: the caster that draws the matter that absorbs light. */
 stratus_status stratus_tetra_light_caster(stratus_tetra_caster* caster, stratus_tetra_caster** dark);
 /* tetra_shadow.c. A function as stratus_tetra_caster_render(); and the maps of a picture of this mesh alone, of layers that `dark` draws.
  */
@@ -225,9 +225,10 @@ typedef stratus_status stratus_tetra_draw(stratus_tetra_caster* caster, const st
   const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report);
 stratus_status stratus_tetra_shadow_update(
   stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera, stratus_tetra_draw* draw);
-/* Checks a mesh of several inputs before maps are made of it. */
-stratus_status stratus_tetra_shadow_check(stratus_context* context, const stratus_mesh* mesh);
-/* Whether a picture with these options has shadows; and a key of what decides where its matter is. */
+/* Checks a mesh of several inputs before maps are made of it. options: may be NULL. */
+stratus_status stratus_tetra_shadow_check(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfer, const stratus_tetra_options* options);
+/* Whether a picture with these options has shadows; and a key that changes with the place of its matter. */
 bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* options);
 uint64_t stratus_tetra_shadow_key(
   uint64_t key, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);

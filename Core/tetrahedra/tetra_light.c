@@ -226,8 +226,7 @@ static void set_lights(
   if (a->light.on) { /* else the lights are unchecked and unused */
     stratus_light lights[STRATUS_LIGHTS_MAX];
     double to_world[16] = { [15] = 1.0 };
-    stratus_lights_set(c, shading, origin, unit, &a->light);
-    (void)stratus_lights_in_world(c, shading, lights);
+    stratus_lights_set(c, shading, origin, unit, lights, &a->light);
     for (int row = 0; row < 3; ++row) {
       for (int axis = 0; axis < 3; ++axis) {
         to_world[4 * row + axis] = frame->basis[axis][row];

@@ -56,7 +56,7 @@ typedef struct stratus_tetra_frame {
   bool lit;               /* light and opacity depend on the gradient */
   const float* gradients; /* stratus_tetra_gradients.vectors; NULL unless lit */
   int gradient_sets;      /* of a vector for each point */
-  const int32_t* lights;  /* the maps of what passes from lights (kernels/base/light_map.h); NULL: none */
+  const int32_t* lights;  /* the maps of lights (kernels/base/light_map.h); NULL: none */
   size_t lights_bytes;
   uint64_t lights_serial;
   const float* factors; /* gradient opacities; NULL: there is none */

@@ -7,7 +7,7 @@
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-function" /* this file uses only some of the headers' functions */
 #ifndef __clang__
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* a passage has its points' numbers in mode hits only, which alone reads them */
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* a passage has its points' numbers in mode hits, and no other mode reads them */
 #endif
 #endif
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Shadows of a mesh: maps of what passes from each light, of layers that a caster of its own draws without light. */
+ * Shadows of a mesh: maps of the light that passes it, of layers that a caster of its own draws without light. */
 #include "lights.h"
 #include "tetra_caster.h"
 
@@ -15,18 +15,18 @@ typedef struct matter {
   stratus_tetra_options options;
 } matter;
 
-stratus_status stratus_tetra_shadow_check(stratus_context* context, const stratus_mesh* mesh)
+stratus_status stratus_tetra_shadow_check(
+  stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfer, const stratus_tetra_options* options)
 {
-  return stratus_mesh_check(context, mesh);
+  TRY(stratus_mesh_check(context, mesh));
+  TRY(stratus_transfer_check(context, transfer));
+  return options && options->shading.shadows ? stratus_shading_check(context, &options->shading) : STRATUS_OK;
 }
 
 bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* o)
 {
-  bool shade = o->shade != 0;
-  for (int c = 0; o->materials && !o->dependent && c < mesh->components; ++c) {
-    shade = shade || o->materials[c].shade;
-  }
-  return shade && o->shading.shadows && (o->mode == STRATUS_TETRA_COMPOSITE || o->mode == STRATUS_TETRA_ISOSURFACE);
+  const bool lit = o->mode == STRATUS_TETRA_COMPOSITE || o->mode == STRATUS_TETRA_ISOSURFACE;
+  return lit && stratus_lights_cast_shadows(&o->shading, o->shade != 0, o->dependent ? NULL : o->materials, mesh->components);
 }
 
 stratus_tetra_options stratus_tetra_dark_options(const stratus_tetra_options* options)
@@ -68,20 +68,13 @@ stratus_status stratus_tetra_shadow_update(
     .draw = draw, .dark = caster->dark, .mesh = of->mesh, .transfers = of->transfer, .options = stratus_tetra_dark_options(of->options)
   };
   stratus_light_matter all = { .draw = draw_matter, .of = &m, .tolerance = of->options->tolerance };
+  const uint64_t key = stratus_tetra_shadow_key(0, of->mesh, of->transfer, of->options);
   const int count = stratus_lights_in_world(camera, &of->options->shading, lights);
-  for (int corner = 0; corner < 8; ++corner) { /* caster->mesh is up to date */
-    double local[3], point[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      local[axis] = corner >> axis & 1 ? caster->mesh->hi[axis] : caster->mesh->lo[axis];
-    }
-    stratus_matrix_point(of->mesh->matrix, local, point);
-    for (int axis = 0; axis < 3; ++axis) {
-      all.bounds[2 * axis] = corner ? fmin(all.bounds[2 * axis], point[axis]) : point[axis];
-      all.bounds[2 * axis + 1] = corner ? fmax(all.bounds[2 * axis + 1], point[axis]) : point[axis];
-    }
+  if (stratus_light_state_is_stale(&caster->light, key, lights, count)) {
+    stratus_matrix_box(of->mesh->matrix, caster->mesh->lo, caster->mesh->hi, all.bounds); /* caster->mesh is up to date */
+    TRY(stratus_light_state_build(caster->context, &all, lights, count, &caster->light));
+    caster->light.key = key;
   }
-  TRY(stratus_light_state_update(
-    caster->context, &all, stratus_tetra_shadow_key(0, of->mesh, of->transfer, of->options), lights, count, &caster->light));
   caster->lights = caster->light.maps;
   return STRATUS_OK;
 }

@@ -113,20 +113,14 @@ void stratus_volume_index_to_world(const stratus_volume* volume, double matrix[1
 /* Computes world bounds without checks. */
 static void bounds_of(const stratus_volume* volume, double bounds[6])
 {
-  double matrix[16];
+  double matrix[16], lo[3], hi[3];
   stratus_volume_index_to_world(volume, matrix);
   const double margin = volume->cell_centered ? 0.5 : 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    double index[3], world[3];
-    for (int a = 0; a < 3; ++a) {
-      index[a] = (corner >> a & 1) ? (double)(volume->dimensions[a] - 1) + margin : -margin;
-    }
-    stratus_matrix_point(matrix, index, world);
-    for (int a = 0; a < 3; ++a) {
-      bounds[2 * a] = corner == 0 || world[a] < bounds[2 * a] ? world[a] : bounds[2 * a];
-      bounds[2 * a + 1] = corner == 0 || world[a] > bounds[2 * a + 1] ? world[a] : bounds[2 * a + 1];
-    }
+  for (int a = 0; a < 3; ++a) {
+    lo[a] = -margin;
+    hi[a] = (double)(volume->dimensions[a] - 1) + margin;
   }
+  stratus_matrix_box(matrix, lo, hi, bounds);
 }
 
 stratus_status stratus_volume_bounds(stratus_context* context, const stratus_volume* volume, double bounds[6])

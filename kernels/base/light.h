@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The light that falls on a place, as VTK's volume mappers compute it: ambient light, diffuse by N L, specular by (N H)^power with H half
  * way between the light and the eye (Blinn 1977). N points against the gradient; where both sides are lit it is turned towards the eye.
- * A share of the light may be scattered by the matter, as Henyey & Greenstein (1941) have it. What passes to the place is in maps. */
+ * A share of the light may be scattered by the matter, as Henyey & Greenstein (1941) have it. Maps say how much light passes to the place.
+ */
 #ifndef STRATUS_LIGHT_H
 #define STRATUS_LIGHT_H
 
@@ -157,8 +158,8 @@ INLINE void light_near_way(CONSTANT stratus_light_arguments* a, int i, const vfl
 INLINE int light_reflects(CONSTANT stratus_light_arguments* a) { return a->scattered < 1.0f; }
 
 /* Lights component m at the places x where the gradient is g, on rays of direction d. A colour C of opacity A becomes C diffuse + A
- * specular. diffuse includes the ambient light. maps: of the lights; not read if none has one. near: for each light what passes the near
- * matter; NULL: that is not known, and maps are asked at the places themselves. */
+ * specular. diffuse includes the ambient light. maps: of the lights; not read if none has one. near: the part of each light that passes
+ * the near matter; NULL: that is not known, and maps are read at the places themselves. */
 INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps, const vfloat* near, int m, const vfloat x[3],
   const vfloat d[3], const vfloat g[3], vfloat diffuse[3], vfloat specular[3])
 {

@@ -16,7 +16,7 @@ typedef struct stratus_light_arguments {
   int positional[8];
   float attenuation[8][3]; /* in units of `place`; of lights that are not dimmed 1, 0, 0 */
   float cone[8][5];        /* the direction in which the light shines, the cosine at the cone's edge, -1: no cone, and the exponent */
-  /* The map of what passes to a place from each light (light_map.h). map_at: where it begins; -1: there is none, and all light passes.
+  /* The map of each light (light_map.h). map_at: where it begins; -1: there is none, and all light passes.
    * map_faces: 0 of
    * a direction; of a position 1, or the 6 sides of a cube about it. map_size: nodes across and up, and layers, of a face. map_from: 3x4,
    * by rows, takes places to the map's. map_scale: of a map in perspective, the scale and middle of nodes across and up, and of layers. */

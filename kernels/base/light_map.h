@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Maps of what passes from a light to the places in a volume. A map is a stack of layers across the light's direction, each a picture of
+ * Maps of the light that passes to the places in a volume. A map is a stack of layers across the light's direction, each a picture of
  * nodes. A node is a word of 32 bits: below, in 16 bits, the part of light, 0..65535, that passes to the layer's near side there, and above
  * the part that passes to its far side. The words of a node's layers follow one another, then come the nodes across, then up.
  *

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What passes from a light through the matter next to a place. A map of light has nodes some voxels apart, between which dense matter
+ * The part of a light that passes the matter next to a place. A map of light has nodes some voxels apart, between which dense matter
  * hides itself: so a ray goes from the place towards the light, a few steps that are as long as voxels, and the map is asked where it ends.
  * Included by ray_cast.h once for each STRATUS_TYPE. */
 

@@ -40,7 +40,7 @@ typedef struct stratus_packet {
   vmask live, hits;         /* hits: rays that meet the bounds */
   vmask fresh;              /* the value at the segment's front is still to be sampled */
   GLOBAL const int* grid;   /* the tables of a grid whose spacing changes */
-  GLOBAL const int* lights; /* the maps of what passes from lights */
+  GLOBAL const int* lights; /* the maps of lights */
   vfloat surface[2];        /* slices: where the rays meet the surface, the nearer first, in samples; LARGEST_FLOAT where they do not */
 #if RAY_LIT
   stratus_lit_places places;

@@ -90,7 +90,7 @@ INLINE vfloat tetra_light_pieces(
     q = v_fma(depth * angle, v_set(a->bend[0]), most * square * v_set(0.5f * a->bend[1]));
   }
   for (int i = 0; (a->light.on >> c & 1) && i < a->light.count; ++i) {
-    if (a->light.map_at[i] >= 0) { /* what passes to the stretch changes along it */
+    if (a->light.map_at[i] >= 0) { /* the light that passes to the stretch changes along it */
       vfloat p[3];
       for (int at = 0; at < 3; ++at) {
         const vfloat z = v_fma(v_set(0.5f * (float)at), s->rise, s->begin);

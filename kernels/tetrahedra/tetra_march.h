@@ -26,7 +26,7 @@ typedef struct stratus_tetra_scene {
   GLOBAL const float* components; /* of points or cells, four floats each: places in the components' tables; or of cells their labels */
   GLOBAL const int* media;        /* sums of the components, or of labels behind their records */
   GLOBAL const float* colors;     /* extremes and slices: colours of the table's entries */
-  GLOBAL const int* lights;       /* the maps of what passes from lights (light_map.h); read only by the variant TETRA_LIT */
+  GLOBAL const int* lights;       /* the maps of lights (light_map.h); read only by the variant TETRA_LIT */
 } stratus_tetra_scene;
 
 typedef struct stratus_tetra_ray {
