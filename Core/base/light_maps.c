@@ -11,7 +11,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* Nodes along the longest side of the first map, of the last, and the words of a map at most: 64 MiB. */
+/* Nodes along the longest side of the first map and of the last. */
 #define NODES_FIRST 32
 #define NODES_LAST 256
 /* Rays may pass near matter on so many lengths, each the map's spacing or NEAR_STEPS_LEAST steps if that is more, and in so many steps at
@@ -22,7 +22,8 @@ static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
 #define NEAR_STEPS_MOST 16
 #define FAINT 1e-4f /* nodes that add less than this to a picture are not compared */
 #define LINES 32    /* so many rows, columns and layers of a map are compared with a coarser one */
-#define WORDS_MOST ((size_t)1 << 24)
+/* A map has at most so many words, 64 MiB. NODES_LAST nodes along each side are within it, but not in six faces of a cube. */
+#define WORDS_MOST ((size_t)NODES_LAST * NODES_LAST * NODES_LAST)
 /* A position whose light meets the matter at a greater slope than this, or is in it, has a cube of maps. */
 #define SLOPE_MOST 2.0
 /* The share of the tolerance that maps may use up; errors of the picture's sampling add to it by their squares. */
@@ -46,6 +47,8 @@ typedef struct map {
   frame frame;
   int faces, size[3]; /* faces: 0 of a direction */
   size_t at;          /* in words */
+  double near;        /* the length on which rays pass near matter, in near_steps */
+  int near_steps;
 } map;
 
 struct stratus_light_maps {
@@ -55,8 +58,7 @@ struct stratus_light_maps {
   int32_t* words;
   size_t words_count;
   uint64_t serial;
-  double near, error; /* near: the length on which rays pass near matter, in near_steps */
-  int near_steps;
+  double error; /* the largest of all maps */
 };
 
 static size_t map_words(const map* m)
@@ -131,18 +133,20 @@ static void place_map(const stratus_light* light, const double bounds[6], map* m
   }
   for (int axis = 0; axis < 3; ++axis) { /* of flat matter, too, nodes are apart */
     const double more = 0.5 * fmax(FLAT * longest - sides[axis], 0.0) / (axis < 2 ? scale : 1.0);
-    f->lo[axis] -= f->perspective && axis == 2 ? 0.0 : more;
-    f->hi[axis] += more;
+    const bool distance = f->perspective && axis == 2;
+    f->lo[axis] -= distance ? 0.0 : more;
+    f->hi[axis] += distance ? 2.0 * more : more;
+    sides[axis] = fmax(sides[axis], FLAT * longest);
   }
 }
 
-/* Sets the numbers of nodes of a map whose longest side has about `nodes`. Returns whether its words are few enough. */
+/* Sets the numbers of nodes of a map whose longest side has `nodes`. Returns whether its words are few enough. */
 static bool size_map(map* m, const double sides[3], int nodes)
 {
-  const double spacing = fmax(fmax(sides[0], sides[1]), sides[2]) / nodes;
+  const double spacing = fmax(fmax(sides[0], sides[1]), sides[2]) / (nodes - 1);
   for (int axis = 0; axis < 3; ++axis) {
-    const int steps = (int)fmin(ceil(sides[axis] / spacing - 1e-9), nodes);
-    m->size[axis] = axis < 2 ? (steps < 1 ? 2 : steps + 1) : (steps < 1 ? 1 : steps);
+    const int steps = (int)fmax(fmin(ceil(sides[axis] / spacing - 1e-9), nodes - 1), 1.0);
+    m->size[axis] = axis < 2 ? steps + 1 : steps;
   }
   return map_words(m) <= WORDS_MOST;
 }
@@ -397,11 +401,11 @@ static double near_length(const stratus_light_matter* matter, const map* m, doub
 
 /* Draws maps of a light, each finer than the one before, until the error that is expected of one keeps the tolerance: of the map alone, or
  * of it where near matter is passed by rays. The difference of two maps is the coarser one's error less the finer one's, and errors fall
- * from map to map as the differences do. *near: the length on which near matter is passed. */
-static stratus_status build_map(stratus_context* context, const stratus_light_matter* matter, const stratus_light* light, map* m,
-  int32_t** words, double* near, double* error)
+ * from map to map as the differences do. */
+static stratus_status build_map(
+  stratus_context* context, const stratus_light_matter* matter, const stratus_light* light, map* m, int32_t** words, double* error)
 {
-  double sides[3], last[NEARS] = { 0.0 };
+  double sides[3], last[NEARS] = { 0.0 }, near = 0.0;
   const double most = SHARE * matter->tolerance;
   map maps[2];
   int32_t* of[2] = { NULL, NULL };
@@ -409,7 +413,7 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
   bool kept = false;
   stratus_status status = STRATUS_OK;
   place_map(light, matter->bounds, &maps[0], sides);
-  *near = *error = 0.0;
+  *error = 0.0;
   for (int nodes = NODES_FIRST; nodes <= NODES_LAST; nodes *= 2) {
     drawing d = { .context = context, .matter = matter, .map = &maps[now] };
     double differences[NEARS], finest = INFINITY;
@@ -435,7 +439,7 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
         kept = expected <= most;
         if (kept || (finer && expected < finest)) {
           finest = *error = expected;
-          *near = length;
+          near = length;
           now = kept && !finer ? 1 - now : now;
         }
       }
@@ -450,6 +454,8 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
   }
   now = kept ? now : 1 - now; /* the last that was drawn */
   *m = maps[now];
+  m->near = near;
+  m->near_steps = near > 0.0 ? (int)ceil(near / matter->step) : 0;
   *words = of[now];
   of[now] = NULL;
 cleanup:
@@ -473,11 +479,10 @@ stratus_status stratus_light_maps_build(
   made->context = context;
   made->count = count;
   for (int i = 0; i < count; ++i) {
-    double near, error;
-    TRY_CLEANUP(build_map(context, matter, &lights[i], &made->of[i], &words[i], &near, &error));
+    double error;
+    TRY_CLEANUP(build_map(context, matter, &lights[i], &made->of[i], &words[i], &error));
     made->of[i].at = made->words_count;
     made->words_count += map_words(&made->of[i]);
-    made->near = fmax(made->near, near);
     made->error = fmax(made->error, error);
     TRY_CLEANUP(stratus_progress(context, "light", (i + 1.0) / count));
   }
@@ -486,7 +491,6 @@ stratus_status stratus_light_maps_build(
   for (int i = 0; i < count; ++i) {
     memcpy(made->words + made->of[i].at, words[i], map_words(&made->of[i]) * sizeof(int32_t));
   }
-  made->near_steps = made->near > 0.0 ? (int)ceil(made->near / matter->step) : 0;
   made->serial = 1 + atomic_fetch_add(&serials, 1);
   stratus_light_maps_destroy(*maps);
   *maps = made;
@@ -558,15 +562,13 @@ stratus_status stratus_light_state_build(
 }
 
 /* Sets how near matter is passed on the way to light i. */
-static void near_arguments(
-  const stratus_light_maps* maps, int i, const double to_places[16], double unit, double sample_distance, stratus_light_arguments* a)
+static void near_arguments(const map* m, int i, const double to_places[16], double unit, double sample_distance, stratus_light_arguments* a)
 {
-  const stratus_light* light = &maps->of[i].light;
   double way[3], world[3];
-  memcpy(way, light->vector, sizeof way);
+  memcpy(way, m->light.vector, sizeof way);
   (void)stratus_vector_normalize(way);
   for (int axis = 0; axis < 3; ++axis) {
-    world[axis] = a->positional[i] ? light->vector[axis] : way[axis] * maps->near;
+    world[axis] = a->positional[i] ? m->light.vector[axis] : way[axis] * m->near;
   }
   for (int row = 0; row < 3; ++row) {
     double sum = a->positional[i] ? to_places[4 * row + 3] : 0.0;
@@ -575,25 +577,27 @@ static void near_arguments(
     }
     a->near_way[i][row] = (float)sum;
   }
-  a->near_steps = maps->near_steps;
-  a->near_length = (float)(maps->near / maps->near_steps / sample_distance);
-  a->near_reach = (float)(maps->near / unit);
+  a->near = 1;
+  a->near_steps[i] = m->near_steps;
+  a->near_length[i] = (float)(m->near / m->near_steps / sample_distance);
+  a->near_reach[i] = (float)(m->near / unit);
 }
 
 void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_light* lights, const double to_world[16], double unit,
   double sample_distance, stratus_light_arguments* a)
 {
   double to_places[16];
-  const bool near = maps && maps->near_steps > 0 && sample_distance > 0.0 && stratus_matrix_invert_affine(to_world, to_places);
-  a->near_steps = 0;
+  const bool near = maps && sample_distance > 0.0 && stratus_matrix_invert_affine(to_world, to_places);
+  a->near = 0;
   for (int i = 0; i < a->count; ++i) {
     const map* m = maps && i < maps->count ? &maps->of[i] : NULL;
     a->map_at[i] = -1;
+    a->near_steps[i] = 0;
     if (!m || !same_way(&m->light, &lights[i])) { /* a light that moves with a probe's rays has no map there */
       continue;
     }
-    if (near) {
-      near_arguments(maps, i, to_places, unit, sample_distance, a);
+    if (near && m->near_steps > 0) {
+      near_arguments(m, i, to_places, unit, sample_distance, a);
     }
     const frame* f = &m->frame;
     double scale[3], shift[3];
@@ -644,5 +648,9 @@ double stratus_light_maps_error(const stratus_light_maps* maps)
 
 int stratus_light_maps_near(const stratus_light_maps* maps)
 {
-  return maps ? maps->near_steps : 0;
+  int most = 0;
+  for (int i = 0; maps && i < maps->count; ++i) {
+    most = maps->of[i].near_steps > most ? maps->of[i].near_steps : most;
+  }
+  return most;
 }

@@ -20,9 +20,9 @@ typedef struct stratus_light_matter {
   double tolerance; /* of the part of light that passes, root mean square over the matter; 0: as fine as maps can be */
 } stratus_light_matter;
 
-/* Build the maps of all lights, given in the world. The maps' spacing is the coarsest of 1/32, 1/64, 1/128 and 1/256 of the matter's extent
- * whose expected error keeps the tolerance, if need be with near matter passed by rays. *maps: NULL or maps to replace; after a failure it
- * is as before. */
+/* Build the maps of all lights, given in the world. A map has the least of 32, 64, 128 and 256 nodes along its longest side whose expected
+ * error keeps the tolerance, if need be with near matter passed by rays, and at most 64 MiB: each face of a cube of maps has at most 128.
+ * *maps: NULL or maps to replace; after a failure it is as before. */
 stratus_status stratus_light_maps_build(
   stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_maps** maps);
 void stratus_light_maps_destroy(stratus_light_maps* maps);
@@ -52,7 +52,7 @@ void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_
   double sample_distance, stratus_light_arguments* a);
 
 /* The words of all maps, NULL without maps; their bytes; a number that no other maps of this process have, 0 without; the largest expected
- * error; and the steps on which near matter is to be passed. */
+ * error; and the most steps on which near matter is passed on the way to a light. */
 const int32_t* stratus_light_maps_words(const stratus_light_maps* maps);
 size_t stratus_light_maps_bytes(const stratus_light_maps* maps);
 uint64_t stratus_light_maps_serial(const stratus_light_maps* maps);

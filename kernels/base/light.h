@@ -134,7 +134,7 @@ INLINE vfloat light_phase(CONSTANT stratus_light_arguments* a, vfloat cosine)
   return v_set(a->phase[0]) * (root * root * root);
 }
 
-/* The way from the places x towards light i on which near matter is passed. */
+/* The way from the places x towards light i on which near matter is passed, of a light that has near steps. */
 INLINE void light_near_way(CONSTANT stratus_light_arguments* a, int i, const vfloat x[3], vfloat way[3])
 {
   for (int axis = 0; axis < 3; ++axis) {
@@ -147,7 +147,7 @@ INLINE void light_near_way(CONSTANT stratus_light_arguments* a, int i, const vfl
     }
     v_transform3(a->place, way, place);
     const vfloat square = v_clamp(v_dot3(place, place), 1e-30f, 1e37f);
-    const vfloat part = v_min(v_set(a->near_reach) * v_inverse_root(square), v_set(1.0f));
+    const vfloat part = v_min(v_set(a->near_reach[i]) * v_inverse_root(square), v_set(1.0f));
     for (int axis = 0; axis < 3; ++axis) {
       way[axis] = way[axis] * part;
     }
@@ -158,9 +158,9 @@ INLINE void light_near_way(CONSTANT stratus_light_arguments* a, int i, const vfl
 INLINE int light_reflects(CONSTANT stratus_light_arguments* a) { return a->scattered < 1.0f; }
 
 /* Lights component m at the places x where the gradient is g, on rays of direction d. A colour C of opacity A becomes C diffuse + A
- * specular. diffuse includes the ambient light. maps: of the lights; not read if none has one. near: the part of each light that passes
- * the near matter; NULL: that is not known, and maps are read at the places themselves. */
-INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps, const vfloat* near, int m, const vfloat x[3],
+ * specular. diffuse includes the ambient light. maps: of the lights; not read if none has one. passing: the part of each light that passes
+ * to the places, read of lights that have a map; NULL: maps are read at the places. */
+INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps, const vfloat* passing, int m, const vfloat x[3],
   const vfloat d[3], const vfloat g[3], vfloat diffuse[3], vfloat specular[3])
 {
   CONSTANT float* material = a->material[m];
@@ -194,16 +194,7 @@ INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps
     v_normalize3(light, 0.0f);
     vfloat reaching = a->positional[i] ? lamp_reaching(a, i, way, light) : v_set(1.0f);
     if (a->map_at[i] >= 0) {
-      vfloat asked[3] = { x[0], x[1], x[2] };
-      if (near) {
-        vfloat move[3];
-        light_near_way(a, i, x, move);
-        for (int axis = 0; axis < 3; ++axis) {
-          asked[axis] = x[axis] + move[axis];
-        }
-        reaching = reaching * near[i];
-      }
-      reaching = reaching * light_map_passing(a, maps, i, asked);
+      reaching = reaching * (passing ? passing[i] : light_map_passing(a, maps, i, x));
     }
     if (a->scattered > 0.0f) {
       const vfloat part = light_phase(a, zero - v_dot3(light, eye)) * reaching * v_set(material[1] * a->scattered);

@@ -16,16 +16,16 @@ typedef struct stratus_light_arguments {
   int positional[8];
   float attenuation[8][3]; /* in units of `place`; of lights that are not dimmed 1, 0, 0 */
   float cone[8][5];        /* the direction in which the light shines, the cosine at the cone's edge, -1: no cone, and the exponent */
-  /* The map of each light (light_map.h). map_at: where it begins; -1: there is none, and all light passes.
-   * map_faces: 0 of
-   * a direction; of a position 1, or the 6 sides of a cube about it. map_size: nodes across and up, and layers, of a face. map_from: 3x4,
-   * by rows, takes places to the map's. map_scale: of a map in perspective, the scale and middle of nodes across and up, and of layers. */
+  /* The map of each light (light_map.h). map_at: where it begins; -1: there is none, and all light passes. map_faces: 0 of a direction; of
+   * a position 1, or the 6 sides of a cube about it. map_size: nodes across and up, and layers, of a face. map_from: 3x4, by rows, takes
+   * places to the map's. map_scale: of a map in perspective, the scale and middle of nodes across and up, and of layers. */
   int map_at[8], map_faces[8], map_size[8][3];
   float map_from[8][12], map_scale[8][6];
-  /* Before a map is asked, matter next to a place is passed in so many steps (light_near.h), which may be none, of near_length sample
-   * distances each. near_way: what the steps together are, or of a position, where it is; near_reach: their length in units of `place`. */
-  int near_steps;
-  float near_length, near_reach, near_way[8][3];
+  /* On the way to each light, matter next to a place is passed in near_steps steps (light_near.h), which may be 0, of near_length sample
+   * distances each, and the map is read where they end. near: whether any light has such steps. The rest is read of lights that have:
+   * near_way: the steps together, or a light's position; near_reach: their length in units of `place`. */
+  int near, near_steps[8];
+  float near_length[8], near_reach[8], near_way[8][3];
 } stratus_light_arguments;
 
 #endif

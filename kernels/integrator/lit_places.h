@@ -161,11 +161,11 @@ OUTLINE void RAY_NAME(lit_shade)(
   if (light_reflects(&a->light)) {
     RAY_NAME(ray_gradient)(a, values, k->grid, x, mask, g);
   }
-  vfloat near[8];
-  if (a->light.near_steps > 0) {
-    RAY_NAME(light_near)(a, values, hidden, table, k, x, mask, near);
+  vfloat passing[8];
+  if (a->light.near) {
+    RAY_NAME(light_near)(a, values, hidden, table, k, x, mask, passing);
   }
-  light_at(&a->light, k->lights, a->light.near_steps > 0 ? near : 0, 0, x, d, g, diffuse, specular);
+  light_at(&a->light, k->lights, a->light.near ? passing : 0, 0, x, d, g, diffuse, specular);
   for (int c = 0; c < 3; ++c) {
     float light[STRATUS_WIDTH];
     v_store(light, v_fma(v_load(p->color[c]), diffuse[c], opacity * specular[c]));

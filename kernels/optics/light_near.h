@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The part of a light that passes the matter next to a place. A map of light has nodes some voxels apart, between which dense matter
- * hides itself: so a ray goes from the place towards the light, a few steps that are as long as voxels, and the map is asked where it ends.
+ * hides itself: so a ray goes from the place towards the light, a few steps of half a voxel, and the map is read where it ends.
  * Included by ray_cast.h once for each STRATUS_TYPE. */
 
-/* The optical depth of a step of near_length sample distances between two values. */
-INLINE vfloat RAY_NAME(near_depth)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, vfloat first, vfloat last, vmask mask)
+/* The optical depth of a step to light i, of near_length sample distances, between two values. */
+INLINE vfloat RAY_NAME(near_depth)(
+  CONSTANT stratus_ray_cast_arguments* a, int i, GLOBAL const void* table, vfloat first, vfloat last, vmask mask)
 {
 #if STRATUS_PREINTEGRATED || RAY_LIT
   GLOBAL const int* sums = (GLOBAL const int*)table;
   const vint from = table_entry(&a->table, sums, first), to = table_entry(&a->table, sums, last);
   const vint low = vi_min(from, to), beyond = vi_max(from, to) + vi_set(1);
   const vfloat tau = tau_between(sums, low, beyond, mask), width = v_max(width_between(&a->table, sums, low, beyond, mask), v_set(1.0f));
-  vfloat part = v_set(a->light.near_length * a->table.tau_scale);
+  vfloat part = v_set(a->light.near_length[i] * a->table.tau_scale);
   if (RAY_RARE(RAY_CUT, a->table.cut)) { /* values beyond the table are transparent */
     vfloat before, within;
     part_within(&a->table, v_clamp(v_fma(first, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f),
@@ -28,7 +29,7 @@ INLINE vfloat RAY_NAME(near_depth)(CONSTANT stratus_ray_cast_arguments* a, GLOBA
   const vint entry = table_entry(&a->table, table, v_set(0.5f) * (first + last));
   vfloat depths[4];
   gather_four((GLOBAL const float*)table + 4 * a->table.entries, entry, mask, depths);
-  const vfloat depth = v_set(a->light.near_length) * depths[0];
+  const vfloat depth = v_set(a->light.near_length[i]) * depths[0];
 #endif
   return v_select(mask, v_min(depth, v_set(80.0f)), v_set(0.0f));
 }
@@ -53,32 +54,47 @@ INLINE void RAY_NAME(near_bounds)(CONSTANT stratus_ray_cast_arguments* a, const 
   }
 }
 
-/* For each light that has a map, the part that passes the matter next to the places x. */
-OUTLINE void RAY_NAME(light_near)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
-  GLOBAL const void* table, const stratus_packet* k, const vfloat x[3], vmask mask, vfloat near[8])
+/* The part of light i that passes the matter on `way` from the places x. */
+INLINE vfloat RAY_NAME(light_passing_near)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+  GLOBAL const void* table, const stratus_packet* k, int i, const vfloat x[3], const vfloat way[3], vmask mask)
 {
-  const vfloat share = v_set(1.0f / (float)a->light.near_steps), zero = v_set(0.0f), one = v_set(1.0f);
+  const vfloat share = v_set(1.0f / (float)a->light.near_steps[i]), zero = v_set(0.0f);
+  vfloat from = zero, to = v_set(1.0f), depth = zero, front = zero;
+  RAY_NAME(near_bounds)(a, x, way, &from, &to);
+  const vmask any = mask & v_lt(from, to);
+  const vfloat part = v_select(any, to - from, zero);
+  from = v_select(any, from, zero);
+  for (int n = 0; n <= a->light.near_steps[i]; ++n) {
+    const vfloat s = v_fma(v_set((float)n) * share, part, from);
+    const vfloat y[3] = { v_fma(s, way[0], x[0]), v_fma(s, way[1], x[1]), v_fma(s, way[2], x[2]) };
+    const vfloat value = RAY_NAME(ray_value)(a, values, hidden, k->grid, y, any);
+    if (n > 0) {
+      const vmask valid = any & v_finite(front) & v_finite(value);
+      const vfloat first = v_select(valid, front, zero), last = v_select(valid, value, zero);
+      depth = depth + part * RAY_NAME(near_depth)(a, i, table, first, last, valid);
+    }
+    front = value;
+  }
+  return v_set(1.0f) - v_absorbed(v_min(depth, v_set(80.0f)));
+}
+
+/* For each light that has a map, the part that passes to the places x: first the matter next to them, then the rest by the map. */
+OUTLINE void RAY_NAME(light_near)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
+  GLOBAL const void* table, const stratus_packet* k, const vfloat x[3], vmask mask, vfloat passing[8])
+{
   for (int i = 0; i < a->light.count; ++i) {
-    near[i] = one;
+    vfloat end[3] = { x[0], x[1], x[2] }, near = v_set(1.0f);
     if (a->light.map_at[i] < 0) {
       continue;
     }
-    vfloat way[3], from = zero, to = one, depth = zero, front = zero;
-    light_near_way(&a->light, i, x, way);
-    RAY_NAME(near_bounds)(a, x, way, &from, &to);
-    const vmask any = mask & v_lt(from, to);
-    const vfloat part = v_select(any, to - from, zero);
-    from = v_select(any, from, zero);
-    for (int n = 0; n <= a->light.near_steps; ++n) {
-      const vfloat s = v_fma(v_set((float)n) * share, part, from);
-      const vfloat y[3] = { v_fma(s, way[0], x[0]), v_fma(s, way[1], x[1]), v_fma(s, way[2], x[2]) };
-      const vfloat value = RAY_NAME(ray_value)(a, values, hidden, k->grid, y, any);
-      if (n > 0) {
-        const vmask valid = any & v_finite(front) & v_finite(value);
-        depth = depth + part * RAY_NAME(near_depth)(a, table, v_select(valid, front, zero), v_select(valid, value, zero), valid);
+    if (a->light.near_steps[i] > 0) {
+      vfloat way[3];
+      light_near_way(&a->light, i, x, way);
+      near = RAY_NAME(light_passing_near)(a, values, hidden, table, k, i, x, way, mask);
+      for (int axis = 0; axis < 3; ++axis) {
+        end[axis] = x[axis] + way[axis];
       }
-      front = value;
     }
-    near[i] = one - v_absorbed(v_min(depth, v_set(80.0f)));
+    passing[i] = near * light_map_passing(&a->light, k->lights, i, end);
   }
 }

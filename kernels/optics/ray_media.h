@@ -22,11 +22,11 @@ OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, cons
       v_select(thins, a->media.factor_reach > 0.0f ? factor_of_way(factor, depth * v_set(a->media.factor_reach)) : factor, one);
   }
   if (lit) {
-    vfloat near[8];
-    if (a->light.near_steps > 0) {
-      RAY_NAME(light_near)(a, sample->values, sample->hidden, table, k, x, mask, near);
+    vfloat passing[8];
+    if (a->light.near) {
+      RAY_NAME(light_near)(a, sample->values, sample->hidden, table, k, x, mask, passing);
     }
-    light_at(&a->light, k->lights, a->light.near_steps > 0 ? near : 0, c, x, k->d, g, lighting->diffuse, lighting->specular);
+    light_at(&a->light, k->lights, a->light.near ? passing : 0, c, x, k->d, g, lighting->diffuse, lighting->specular);
   } else {
     for (int i = 0; i < 3; ++i) {
       lighting->diffuse[i] = one;
