@@ -34,6 +34,7 @@
 #include "stratus/tetrahedra.h"
 #include "stratus/quantities.h"
 #include "stratus/path.h"
+#include "stratus/cloud.h"
 #include "stratus/scenes.h"
 
 #endif

@@ -337,6 +337,33 @@ static void ray_casters(const small_scene* scene)
   stratus_ray_caster_destroy(c);
 }
 
+static void clouds(void)
+{
+  double value = 0.0;
+  IS_SILENT(stratus_cloud_extinction(NULL, 1e-3, 1e-5, 1e3, &value));
+  REFUSES(stratus_cloud_extinction(context, 1e-3, 1e-5, 1e3, NULL));
+  IS_SILENT(stratus_cloud_opacity(NULL, 1, 1, six, &value));
+  REFUSES(stratus_cloud_opacity(context, 1, 1, NULL, &value));
+  REFUSES(stratus_cloud_opacity(context, 1, 1, six, NULL));
+  GIVES(STRATUS_CLOUD_NONE, stratus_cloud_phase_of(NULL, NULL));
+  GIVES(STRATUS_CLOUD_UNKNOWN, stratus_cloud_unit(NULL, &value));
+  GIVES(STRATUS_CLOUD_UNKNOWN, stratus_cloud_unit("kg/m3", NULL));
+  TAKES(stratus_cloud_light(NULL, NULL, NULL));
+  IS_SILENT(stratus_air_density(NULL, 1e5, 280, &value));
+  REFUSES(stratus_air_density(context, 1e5, 280, NULL));
+  IS_SILENT(stratus_air_standard(NULL, 0, &value, six));
+  REFUSES(stratus_air_standard(context, 0, NULL, &value));
+  REFUSES(stratus_air_standard(context, 0, &value, NULL));
+  IS_SILENT(stratus_time_parse(NULL, "2024-06-01", &value));
+  REFUSES(stratus_time_parse(context, NULL, &value));
+  REFUSES(stratus_time_parse(context, "2024-06-01", NULL));
+  IS_SILENT(stratus_sun_position(NULL, 0, 0, 0, &value, six));
+  REFUSES(stratus_sun_position(context, 0, 0, 0, NULL, &value));
+  REFUSES(stratus_sun_position(context, 0, 0, 0, &value, NULL));
+  IS_SILENT(stratus_sun_direction(NULL, 0, 0, 2, six));
+  REFUSES(stratus_sun_direction(context, 0, 0, 2, NULL));
+}
+
 static void path_tracers(const small_scene* scene)
 {
   static float rgba[4 * SMALL_PIXELS];
@@ -637,6 +664,7 @@ static void no_public_function_falls_over_null(void** state)
   structures(&scene);
   voxel_sets(&scene);
   ray_casters(&scene);
+  clouds();
   path_tracers(&scene);
   frustums(&scene);
   meshes(&scene);
