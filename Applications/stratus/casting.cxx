@@ -18,23 +18,29 @@ stratus_slice slice_of(const options& o, int up)
   return slice;
 }
 
-void set_suns(const options& o, stratus_light lights[STRATUS_LIGHTS_MAX])
+int set_suns(const options& o, int up, stratus_light lights[STRATUS_LIGHTS_MAX])
 {
-  for (size_t i = 0; i < o.suns.size(); ++i) {
-    std::copy_n(o.suns[i].begin(), 3, lights[i].vector);
-    std::fill_n(lights[i].color, 3, 1.0);
-    std::copy(o.suns[i].begin() + 3, o.suns[i].end(), lights[i].color);
+  std::vector<std::vector<double>> suns = o.suns;
+  if (!o.sun_at.empty()) {
+    suns.emplace_back(3);
+    const context core("host", 1);
+    core.check(stratus_sun_direction(core, o.sun_at[0], o.sun_at[1], up, suns.back().data()), "--sun-at");
+    suns.back().insert(suns.back().end(), o.sun_at.begin() + 2, o.sun_at.end());
   }
+  for (size_t i = 0; i < suns.size(); ++i) {
+    std::copy_n(suns[i].begin(), 3, lights[i].vector);
+    std::copy_n(o.sun_color, 3, lights[i].color);
+    std::copy(suns[i].begin() + 3, suns[i].end(), lights[i].color);
+  }
+  return static_cast<int>(suns.size());
 }
 
-void set_light(const options& o, int& shade, stratus_shading& shading)
+void set_light(const options& o, int up, int& shade, stratus_shading& shading)
 {
   shade = o.shade || o.scatter;
   shading.shadows = o.shadows || o.scatter;
-  if (!o.suns.empty()) {
-    shading.light_count = static_cast<int>(o.suns.size());
-    set_suns(o, shading.lights);
-  }
+  const int suns = set_suns(o, up, shading.lights);
+  shading.light_count = suns > 0 ? suns : shading.light_count;
   if (o.scatter) {
     shading.ambient = shading.specular = 0.0;
     shading.diffuse = o.albedo;
@@ -60,7 +66,7 @@ stratus_ray_cast_options casting_of(const options& o, int up)
   cast.sampling.distance = o.sample_distance;
   cast.sampling.cell_error = o.cell_error;
   cast.sampling.tolerance = o.tolerance;
-  set_light(o, cast.light.shade, cast.light.shading);
+  set_light(o, up, cast.light.shade, cast.light.shading);
   cast.skipping.audit = o.audit;
   return cast;
 }

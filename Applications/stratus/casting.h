@@ -13,9 +13,10 @@ namespace cli {
 
 // The plane of --slice; no surface where there is none.
 stratus_slice slice_of(const options& o, int up);
-// The lights of --sun; and whether matter is lit, and how.
-void set_suns(const options& o, stratus_light lights[STRATUS_LIGHTS_MAX]);
-void set_light(const options& o, int& shade, stratus_shading& shading);
+// Sets the lights of --sun and --sun-at, and returns their number. `up` is the axis of heights, 0 to 2.
+int set_suns(const options& o, int up, stratus_light lights[STRATUS_LIGHTS_MAX]);
+// Sets whether matter is lit, and how.
+void set_light(const options& o, int up, int& shade, stratus_shading& shading);
 // All that the options say but for the parts of the volume. `up` is the axis of heights, 0 to 2.
 stratus_ray_cast_options casting_of(const options& o, int up);
 

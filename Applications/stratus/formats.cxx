@@ -400,6 +400,16 @@ std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time)
   return list;
 }
 
+std::vector<variable_name> names_of_variables(vtkAlgorithm* reader)
+{
+  std::vector<variable_name> names;
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  for (int i = 0; by_name && i < by_name->GetNumberOfVariables(); ++i) {
+    names.push_back({ by_name->GetNameOfVariable(i), by_name->GetUnitsOfVariable(i), by_name->GetStandardNameOfVariable(i) });
+  }
+  return names;
+}
+
 std::vector<collection_step> read_collection(const std::string& path)
 {
   const auto wrong = [&path](const std::string& why) { return failure("cannot read '" + path + "': " + why); };

@@ -40,6 +40,11 @@ struct variable_entry {
 };
 // Lists the variables at a step; empty for a reader of whole files. The reader's variable is the first afterwards.
 std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time);
+// The names of a file's variables, without reading values; empty for a reader of whole files.
+struct variable_name {
+  std::string name, units, standard_name;
+};
+std::vector<variable_name> names_of_variables(vtkAlgorithm* reader);
 // Description of time and grid by a reader of variables, "" by other readers.
 std::string time_units_of(vtkAlgorithm* reader);
 std::string description_of(vtkAlgorithm* reader);

@@ -13,7 +13,7 @@ namespace cli {
 frame::frame(const options& o)
     : Width(o.width), Height(o.height), Behind(parse_background(o.background)), Color(o.color),
       Format(format_of_picture(o.frames.empty() ? o.output : o.frames)), IsExr(Format == picture_format::exr),
-      ShowsSamples(o.shows_samples), Wanted(o.quantities), Threshold(o.threshold)
+      ShowsSamples(o.shows_samples), Linear(o.cloud), Wanted(o.quantities), Threshold(o.threshold)
 {
   if (this->Behind.transparent && !this->IsExr && this->Format != picture_format::png) {
     throw usage("'" + (o.frames.empty() ? o.output : o.frames) + "': only .png and .exr pictures can be transparent");
@@ -173,7 +173,8 @@ void frame::write(output_file& file) const
     file.write(encode(this->Format, heat_map(this->Numbers[0], this->Width, this->Height, this->scale_of(0), this->Color),
       this->Width + heat_bar_width, this->Height));
   } else {
-    file.write(encode(this->Format, to_bytes(this->Rgba, this->Width, this->Height, this->Behind), this->Width, this->Height));
+    file.write(
+      encode(this->Format, to_bytes(this->Rgba, this->Width, this->Height, this->Behind, this->Linear), this->Width, this->Height));
   }
 }
 } // namespace cli

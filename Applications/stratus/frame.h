@@ -42,7 +42,7 @@ private:
   background Behind;
   std::string Color;
   picture_format Format;
-  bool IsExr, ShowsSamples;
+  bool IsExr, ShowsSamples, Linear; // Linear: colours are radiances
   std::vector<float> Rgba, Depth;
   std::vector<stratus_quantity> Wanted;
   double Threshold;

@@ -125,7 +125,7 @@ stratus_tetra_options grid_drawing::how() const
   how.contour_count = static_cast<int>(o.contours.size());
   std::copy(o.contours.begin(), o.contours.end(), how.contours);
   how.slice = cli::slice_of(o, o.up.empty() ? 2 : o.up[0] - 'x');
-  cli::set_light(o, how.shade, how.shading);
+  cli::set_light(o, o.up.empty() ? 2 : o.up[0] - 'x', how.shade, how.shading);
   how.shade = how.shade || o.mode == STRATUS_MODE_FIRST_HIT;
   how.normals = o.normals;
   return how;

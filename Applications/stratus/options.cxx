@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "options.h"
+#include "cloud.h"
 #include "colors.h"
 #include "support.h"
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <iterator>
 #include <limits>
 
@@ -77,6 +79,7 @@ Data and appearance
   --scatter               light from the eye, or from each --sun, that the matter scatters once (composite, isosurface); --albedo and
                           --anisotropy say how. With shadows
   --shadows               with --shade: matter absorbs light on its way from each sun
+  --cloud [R]             draw water of clouds as a photograph shows it, from mass and size of the droplets: see Clouds
   --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)
 
 Camera
@@ -126,11 +129,24 @@ Scattered light: --mode path traces random paths until their number or their err
   --tolerance E           end when the standard error of the image, root mean square of RGBA over the lit pixels, is at most E
   --sun X,Y,Z[,R,G,B]     direction to a sun, and its colour (default 1,1,1); repeat it for up to 8 (default: light from the eye, or no
                           sun if there is a sky)
+  --sun-at A,E[,R,G,B]    direction to a sun by azimuth, degrees clockwise from north (-360..360), and elevation, degrees above the
+                          horizon (-90..90). x is east and y is north
+  --sun-time T            direction to the sun at a moment in UTC, such as 2024-06-01T15:30, or file: at the time of the step
+  --place LAT,LON         where --sun-time is meant, degrees north and east (default: the middle of a file with longitudes and latitudes)
   --sky R,G,B[,R,G,B]     colour of the sky at the zenith, and at and below the horizon (default: of one colour, as at the zenith)
   --albedo A              part of the light that is scattered, times the colour; the rest is absorbed, 0..1 (default 1)
   --anisotropy G          -.99...99; light is scattered forwards by G > 0 (default 0: evenly)
   --bounces N             largest number of scatterings; 0: no limit (default 0)
   --seed N                selects the noise (default 0)
+
+Clouds: --cloud sets extinction, light, sky and background, all to be replaced by their options; heights are as long as widths
+  --cloud [R]             R: effective radius in micrometres, .1..10000 (default 10 of liquid water, 30 of ice). The extinction is 3 W / (2
+                          density R) for W kilograms of water in a cubic metre. The variable is the first of cloud water by standard_name or
+                          name (qc, QCLOUD, clw ...), or --variable. Mixing ratios are multiplied by the density of air: the file's
+                          air_density, or of its air_pressure and air_temperature, otherwise the standard atmosphere's at that height
+  --water-units U         unit of the values, such as g/m3 or kg/kg (default: the file's)
+  --metres M              length of a unit of the coordinates in metres (default: the file's)
+                          The sun is at the file's time and place if these are known and the sun is up, otherwise as by --sun-at 120,40
 
 Trees
   --lower V, --upper V    range of the occupied values (default: values that the opacity shows)
@@ -411,10 +427,49 @@ template <double options::*Number> void keep_scattering(options& o, const std::s
   o.of_scattering = word;
 }
 
+void set_sun_at(options& o, const std::string& word, const std::string& value)
+{
+  o.sun_at = numbers(value, word, 2, 5);
+  if (o.sun_at.size() != 2 && o.sun_at.size() != 5) {
+    throw usage(word + ": '" + value + "' is neither AZIMUTH,ELEVATION nor AZIMUTH,ELEVATION,R,G,B");
+  }
+}
+
+void set_sun_time(options& o, const std::string& word, const std::string& value)
+{
+  if (value != "file") {
+    const context core("host", 1);
+    double seconds = 0.0;
+    core.check(stratus_time_parse(core, value.c_str(), &seconds), word);
+  }
+  o.sun_time = value;
+}
+
+void set_radius(options& o, const std::string& value)
+{
+  o.radius = within(value, "--cloud", 0.1, 10000.0) * 1e-6;
+}
+
+void set_water_units(options& o, const std::string& word, const std::string& value)
+{
+  double factor = 1.0;
+  if (stratus_cloud_unit(value.c_str(), &factor) == STRATUS_CLOUD_UNKNOWN) {
+    throw usage(word + ": '" + value + "' is no mass of water in a volume or a mass of air, such as kg/m3, g/m3, kg/kg or g/kg");
+  }
+  o.water_units = value;
+}
+
 void set_tolerance(options& o, const std::string& word, const std::string& value)
 {
   o.has_tolerance = true;
   (o.command == "compare" ? o.largest_mean : o.tolerance) = not_negative(value, word);
+}
+
+bool is_number(const std::string& word)
+{
+  char* end = nullptr;
+  std::strtod(word.c_str(), &end);
+  return !word.empty() && *end == '\0';
 }
 
 using text = const std::string&;
@@ -467,11 +522,16 @@ constexpr struct {
   { "--threshold", set_threshold },
   { "--samples", keep_path_number<&options::samples, 1> },
   { "--sun", set_sun },
+  { "--sun-at", set_sun_at },
+  { "--sun-time", set_sun_time },
+  { "--place", [](options& o, text word, text value) { o.place = numbers(value, word, 2, 2); } },
   { "--sky", set_sky },
   { "--albedo", keep_scattering<&options::albedo> },
   { "--anisotropy", keep_scattering<&options::anisotropy> },
   { "--bounces", keep_path_number<&options::bounces, 0> },
   { "--seed", keep_path_number<&options::seed, 0> },
+  { "--water-units", set_water_units },
+  { "--metres", keep_positive<&options::metres> },
   { "--lower", keep_bound<&options::lower> },
   { "--upper", keep_bound<&options::upper> },
   { "--depth", [](options& o, text word, text value) { o.depth = whole_number(value, word, 0, 16); } },
@@ -553,8 +613,9 @@ void check_path(const options& o)
     if (!o.of_scattering.empty() && !o.scatter) {
       throw usage(o.of_scattering + " is for --scatter and --mode path");
     }
-    if (!o.suns.empty() && !o.scatter && !o.shade) {
-      throw usage("--sun is for --shade, --scatter and --mode path");
+    const char* const sun = !o.suns.empty() ? "--sun" : !o.sun_at.empty() ? "--sun-at" : !o.sun_time.empty() ? "--sun-time" : nullptr;
+    if (sun && !o.scatter && !o.shade) {
+      throw usage(std::string(sun) + " is for --shade, --scatter and --mode path");
     }
     if (o.shadows && !o.shade) {
       throw usage("--shadows is for --shade; --scatter has them");
@@ -588,8 +649,48 @@ void check_path(const options& o)
   }
 }
 
+void check_suns(const options& o)
+{
+  if (!o.sun_at.empty() && !o.sun_time.empty()) {
+    throw usage("--sun-at and --sun-time are two directions of one sun: leave out one");
+  }
+  if (!o.place.empty() && o.sun_time.empty()) {
+    throw usage("--place: when? Give --sun-time, or --sun-time file");
+  }
+  if (o.suns.size() == STRATUS_LIGHTS_MAX && (!o.sun_at.empty() || !o.sun_time.empty())) {
+    throw usage(format("--sun: %d suns and one more, must be %d at most", STRATUS_LIGHTS_MAX, STRATUS_LIGHTS_MAX));
+  }
+}
+
+void check_cloud(const options& o)
+{
+  const char* const of_cloud = o.metres > 0.0 ? "--metres" : !o.water_units.empty() ? "--water-units" : nullptr;
+  if (!o.cloud && of_cloud) {
+    throw usage(std::string(of_cloud) + " is for --cloud");
+  }
+  const char* other = !o.cloud         ? nullptr
+    : !o.opacity.empty()               ? "--opacity"
+    : o.unit_distance > 0.0            ? "--unit-distance"
+    : o.logarithmic                    ? "--log"
+    : o.color_bar                      ? "--color-bar"
+    : o.shade                          ? "--shade"
+    : o.mode != STRATUS_MODE_COMPOSITE ? "--mode"
+                                       : nullptr;
+  if (other) {
+    throw usage(std::string("--cloud has opacity and light of its own: leave out ") + other);
+  }
+  if (o.cloud && o.command != "render") {
+    throw usage("--cloud is for render, not " + o.command);
+  }
+  if (o.cloud && !o.companions.empty()) {
+    throw usage("--cloud draws one INPUT: leave out '" + o.companions[0].source + "'");
+  }
+}
+
 void check_complete(const options& o)
 {
+  check_suns(o);
+  check_cloud(o);
   check_path(o);
   if (o.command == "render" || o.command == "info" || o.command == "tree" || o.command == "sort") {
     if (o.source.empty()) {
@@ -646,8 +747,17 @@ void check_complete(const options& o)
 options parse(int argc, char* argv[])
 {
   options o;
+  if (std::any_of(argv + 1, argv + std::max(argc, 1), [](const char* word) { return std::string(word) == "--cloud"; })) {
+    set_cloud_look(o); // before the options that replace parts of it
+  }
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
+    if (word == "--cloud") {
+      if (i + 1 < argc && is_number(argv[i + 1])) {
+        set_radius(o, argv[++i]);
+      }
+      continue;
+    }
     if (word == "--help" || word == "-h") {
       o.command = "help";
       return o;
@@ -682,6 +792,7 @@ options parse(int argc, char* argv[])
         ": '" + word + "' is too many");
     }
   }
+  o.scatter = o.scatter || (o.cloud && !o.path); // the path tracer scatters by itself
   check_complete(o);
   return o;
 }

@@ -73,7 +73,15 @@ struct options {
   int seed = 0;                          // path
   double albedo = 1.0, anisotropy = 0.0; // path, scatter
   std::vector<std::vector<double>> suns; // x, y, z and, if given, red, green, blue
+  std::vector<double> sun_at;            // azimuth, elevation in degrees and, if given, red, green, blue
+  std::string sun_time;                  // a moment in UTC, or "file"
+  std::vector<double> place;             // of sun_time: latitude, longitude in degrees; empty: the file's
+  double sun_color[3] = { 1, 1, 1 };     // of suns without a colour
   std::vector<double> sky;               // path: red, green, blue of the zenith and, if given, of the horizon
+  bool cloud = false;                    // values are a cloud's water
+  double radius = 0.0;                   // cloud: effective radius in m; 0: the usual one
+  std::string water_units;               // cloud: of the values; empty: the file's
+  double metres = 0.0;                   // cloud: of a unit of the coordinates; 0: the file's
   std::vector<double> contours;          // isosurface
   std::vector<double> slice;             // slice: a point of the plane, and its normal
   std::vector<double> average;           // average: empty, or the range of values that count

@@ -20,8 +20,8 @@ stratus_path_options paths_of(const options& o, const stratus_ray_cast_options& 
   paths.bounces = o.bounces;
   paths.albedo = o.albedo;
   paths.anisotropy = o.anisotropy;
-  paths.light_count = o.suns.empty() && o.sky.empty() ? -1 : static_cast<int>(o.suns.size());
-  set_suns(o, paths.lights);
+  const int suns = set_suns(o, up, paths.lights);
+  paths.light_count = suns == 0 && o.sky.empty() ? -1 : suns;
   if (!o.sky.empty()) {
     std::copy_n(o.sky.begin(), 3, paths.sky_zenith);
     std::copy_n(o.sky.end() - 3, 3, paths.sky_horizon);

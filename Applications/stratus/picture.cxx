@@ -116,7 +116,17 @@ static uint8_t to_byte(double level)
   return static_cast<uint8_t>(std::lround(255.0 * std::min(std::max(level, 0.0), 1.0)));
 }
 
-std::vector<uint8_t> to_bytes(const std::vector<float>& rgba, int width, int height, const background& behind)
+double to_screen(double linear)
+{
+  return linear <= 0.0031308 ? 12.92 * std::max(linear, 0.0) : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+double from_screen(double level)
+{
+  return level <= 0.04045 ? std::max(level, 0.0) / 12.92 : std::pow((level + 0.055) / 1.055, 2.4);
+}
+
+std::vector<uint8_t> to_bytes(const std::vector<float>& rgba, int width, int height, const background& behind, bool linear)
 {
   const size_t channels = behind.transparent ? 4 : 3;
   std::vector<uint8_t> bytes(static_cast<size_t>(width) * static_cast<size_t>(height) * channels);
@@ -129,8 +139,9 @@ std::vector<uint8_t> to_bytes(const std::vector<float>& rgba, int width, int hei
       const double alpha = static_cast<double>(in[3]);
       for (int c = 0; c < 3; ++c) {
         const double own = static_cast<double>(in[c]);
-        const double under = behind.bottom[c] + t * (behind.top[c] - behind.bottom[c]);
-        out[c] = to_byte(behind.transparent ? (alpha > 0.0 ? own / alpha : 0.0) : own + (1.0 - alpha) * under);
+        const double level = behind.bottom[c] + t * (behind.top[c] - behind.bottom[c]), under = linear ? from_screen(level) : level;
+        const double mixed = behind.transparent ? (alpha > 0.0 ? own / alpha : 0.0) : own + (1.0 - alpha) * under;
+        out[c] = to_byte(linear ? to_screen(mixed) : mixed);
       }
       if (behind.transparent) {
         out[3] = to_byte(alpha);

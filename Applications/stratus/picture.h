@@ -17,8 +17,13 @@ struct background {
 // Parses "dark", "light", "black", "white", "transparent", "r:g:b", or "r:g:b,r:g:b" from bottom to top.
 background parse_background(const std::string& text);
 
+// Encodes a linear level for a screen, and decodes it: sRGB (IEC 61966-2-1), at least 0.
+double to_screen(double linear);
+double from_screen(double level);
+
 // Returns 3 bytes per pixel, or 4 for a transparent background, bottom row first. With 4 bytes alpha is not premultiplied, as PNG requires.
-std::vector<uint8_t> to_bytes(const std::vector<float>& rgba, int width, int height, const background& behind);
+// linear: colours are radiances, which are encoded for a screen; the background is already.
+std::vector<uint8_t> to_bytes(const std::vector<float>& rgba, int width, int height, const background& behind, bool linear);
 
 enum class picture_format { png, jpeg, tiff, bmp, exr };
 // Returns the format that the name's extension says, PNG for a name without one. Throws usage, with a list of the supported formats, for

@@ -2,10 +2,12 @@
 // `stratus render`: opens a file, chooses how its data are drawn, and draws one step or all. The next step is read while one is drawn.
 #include "render.h"
 
+#include "cloud.h"
 #include "drawing.h"
 #include "frame.h"
 #include "input.h"
 #include "series.h"
+#include "sun.h"
 
 #include "vtkStratusMetres.h"
 
@@ -20,20 +22,35 @@ namespace {
 
 using cli::row;
 
-// Converts a step's data to the grids that the options need.
-cli::routed route_for(vtkDataObject* data, const cli::options& o)
+// Converts a step's data to the grids that the options need. `water` is null without --cloud.
+cli::routed route_for(vtkDataObject* data, size_t step, const cli::options& o, const cli::cloud* water)
 {
   const bool hits = o.mode == STRATUS_MODE_FIRST_HIT, lit = hits ? o.normals == STRATUS_NORMALS_GRADIENT : o.shade || o.scatter;
-  return cli::route(data, o.source, o.array, o.nearest || hits, lit);
+  cli::routed routed = cli::route(data, o.source, o.array, o.nearest || hits, lit);
+  if (water) {
+    water->convert(routed, step);
+  }
+  return routed;
+}
+
+// Sets what --cloud and --sun-time find out from the data. Returns a line about the sun, or "".
+std::string set_by_data(
+  cli::options& o, const cli::options& given, const cli::routed& data, const cli::series* in, size_t step, const cli::cloud* water)
+{
+  vtkDataSet* const grid = data.image ? data.image : data.grid;
+  if (water) {
+    water->set_function(o, grid);
+  }
+  return cli::set_sun(o, given, in, grid, step);
 }
 
 // Reads a step into memory of its own, so that the reader is free for the next one in another thread.
-cli::routed read_apart(cli::series& in, size_t step, const cli::options& o)
+cli::routed read_apart(cli::series& in, size_t step, const cli::options& o, const cli::cloud* water)
 {
   const vtkSmartPointer<vtkDataObject> shared = in.read(step);
   const auto own = vtkSmartPointer<vtkDataObject>::Take(shared->NewInstance());
   own->DeepCopy(shared);
-  return route_for(own, o);
+  return route_for(own, step, o, water);
 }
 
 // Draws the requested annotations around the volume.
@@ -65,7 +82,7 @@ std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& co
 }
 
 // Prints which variable is drawn, on which grid. `in` is null for a scene.
-void print_reading(const cli::series* in)
+void print_reading(const cli::series* in, const cli::cloud* water, const std::string& sun)
 {
   if (in && !in->choice().empty()) {
     row("variable", in->choice());
@@ -73,11 +90,19 @@ void print_reading(const cli::series* in)
   if (in && !in->grid().empty()) {
     row("coordinates", in->grid());
   }
+  if (water) {
+    water->print_rows();
+  }
+  if (!sun.empty()) {
+    row("sun", sun);
+  }
 }
 
 // `in` is null for a scene.
-void render_one(const cli::options& o, const cli::routed& data, const cli::series* in, size_t step)
+void render_one(const cli::options& given, const cli::routed& data, const cli::series* in, size_t step, const cli::cloud* water)
 {
+  cli::options o = given;
+  const std::string sun = set_by_data(o, given, data, in, step, water);
   const std::string time = in ? in->describe(step) : "";
   cli::context core(o.path ? "host" : o.device, o.threads);
   cli::frame frame(o);
@@ -93,7 +118,7 @@ void render_one(const cli::options& o, const cli::routed& data, const cli::serie
   }
   annotate(frame, o, *drawing, in, step);
   std::printf("%s\n", o.source.c_str());
-  print_reading(in);
+  print_reading(in, water, sun);
   if (!time.empty()) {
     row("time", time);
   }
@@ -120,7 +145,7 @@ std::string frame_name(const std::string& pattern, size_t number)
 }
 
 // Takes the one of the first, middle and last step whose values range widest, and looks at it: a field often starts as one value.
-void look_at_widest(cli::drawing& drawing, cli::series& in, const cli::options& o)
+void look_at_widest(cli::drawing& drawing, cli::series& in, const cli::options& o, const cli::cloud* water)
 {
   const size_t candidates[] = { 0, in.steps() / 2, in.steps() - 1 };
   size_t best = 0;
@@ -129,14 +154,14 @@ void look_at_widest(cli::drawing& drawing, cli::series& in, const cli::options& 
     if (i > 0 && candidates[i] == candidates[i - 1]) {
       continue;
     }
-    drawing.take(read_apart(in, candidates[i], o));
+    drawing.take(read_apart(in, candidates[i], o, water));
     const std::pair<double, double> range = drawing.range();
     if (range.second - range.first > widest) {
       widest = range.second - range.first;
       best = candidates[i];
     }
   }
-  drawing.take(read_apart(in, best, o));
+  drawing.take(read_apart(in, best, o, water));
   drawing.look();
   row("functions", "and camera by " + in.describe(best));
 }
@@ -175,8 +200,9 @@ private:
   std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
 };
 
-void render_film(const cli::options& o, cli::series& in)
+void render_film(const cli::options& given, cli::series& in, const cli::cloud* water)
 {
+  cli::options o = given;
   cli::context core(o.path ? "host" : o.device, o.threads);
   core.quiet();
   cli::frame frame(o);
@@ -184,18 +210,19 @@ void render_film(const cli::options& o, cli::series& in)
     cli::output_file first(frame_name(o.frames, 0));
   } // a path that cannot be written is reported at once
   std::printf("%s\n", o.source.c_str());
-  cli::routed data = read_apart(in, 0, o);
-  print_reading(&in);
+  cli::routed data = read_apart(in, 0, o, water);
+  print_reading(&in, water, set_by_data(o, given, data, &in, 0, water));
   const std::unique_ptr<cli::drawing> drawing = drawing_of(o, core, data);
-  look_at_widest(*drawing, in, o);
+  look_at_widest(*drawing, in, o, water);
   const stratus_image image = frame.view();
   {
     film_progress progress(in.steps());
     for (size_t step = 0; step < in.steps(); ++step) {
       std::future<cli::routed> next;
       if (step + 1 < in.steps()) {
-        next = std::async(std::launch::async, [&in, &o, step] { return read_apart(in, step + 1, o); });
+        next = std::async(std::launch::async, [&in, &given, water, step] { return read_apart(in, step + 1, given, water); });
       }
+      cli::set_sun(o, given, &in, data.image ? data.image : data.grid, step); // which moves
       drawing->take(data);
       drawing->draw(image);
       if (frame.has_numbers()) {
@@ -221,20 +248,27 @@ void render_film(const cli::options& o, cli::series& in)
 }
 } // namespace
 
-void cli::render(const options& o)
+void cli::render(const options& given)
 {
+  options o = given;
+  std::unique_ptr<cloud> water;
   if (is_scene(o.source)) {
     if (!o.time.empty() || !o.frames.empty()) {
       throw usage("'" + o.source + "' is a scene, which has no time: leave out " + (o.time.empty() ? "--frames" : "--time"));
     }
-    render_one(o, routed(), nullptr, 0);
+    water = o.cloud ? std::make_unique<cloud>(o, nullptr) : nullptr;
+    render_one(o, routed(), nullptr, 0, water.get());
     return;
   }
+  if (o.cloud) {
+    o.array = find_cloud_water(series(o.source, o.reading()), o);
+  }
   series in(o.source, o.reading());
+  water = o.cloud ? std::make_unique<cloud>(o, &in) : nullptr;
   if (!o.frames.empty()) {
-    render_film(o, in);
+    render_film(o, in, water.get());
     return;
   }
   const size_t step = in.find(o.time);
-  render_one(o, route_for(in.read(step), o), &in, step);
+  render_one(o, route_for(in.read(step), step, o, water.get()), &in, step, water.get());
 }

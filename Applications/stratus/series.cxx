@@ -242,6 +242,11 @@ std::vector<variable_entry> series::variables(size_t step)
   return list;
 }
 
+std::vector<variable_name> series::names() const
+{
+  return this->Reader ? names_of_variables(this->Reader) : std::vector<variable_name>();
+}
+
 std::string series::choice() const
 {
   return this->Reader ? choice_of(this->Reader) : "";

@@ -35,6 +35,8 @@ public:
   std::string describe(size_t step) const;
   // The file's variables at a step, none of a file that is not read by variables.
   std::vector<variable_entry> variables(size_t step);
+  // The names of the file's variables, none of a file that is not read by variables.
+  std::vector<variable_name> names() const;
   // Which of several variables is read, and how to choose another, "" for a file of one or that is not read by variables.
   std::string choice() const;
   // How coordinates became a grid, "" where that is VTK's own affair.

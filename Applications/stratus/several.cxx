@@ -184,7 +184,7 @@ std::vector<stratus_ray_cast_input> several_drawing::inputs()
     if (one.mesh) {
       one.tetra_options = stratus_tetra_options_default();
       one.tetra_options.tolerance = this->Options.tolerance;
-      cli::set_light(this->Options, one.tetra_options.shade, one.tetra_options.shading);
+      cli::set_light(this->Options, this->Up, one.tetra_options.shade, one.tetra_options.shading);
       one.tetra_options.crop = n == 0 && !this->Options.crop.empty();
       std::copy(this->Options.crop.begin(), this->Options.crop.end(), one.tetra_options.crop_bounds);
       one.tetra_options.crop_regions = static_cast<uint32_t>(this->Options.crop_regions);

@@ -86,7 +86,8 @@ void vtkStratusNetCDFReader::AddVariable(const vtkStratusNetCDFFile& file, const
   const std::string name = file.Text(variable, "long_name");
   this->Ranks.insert(this->Ranks.begin() + at, rank);
   this->Variables.insert(this->Variables.begin() + at,
-    { variable.Name, file.Text(variable, "units"), name.empty() ? file.Text(variable, "description") : name });
+    { variable.Name, file.Text(variable, "units"), name.empty() ? file.Text(variable, "description") : name,
+      file.Text(variable, "standard_name") });
 }
 
 vtkStratusNetCDFReader::~vtkStratusNetCDFReader()

@@ -70,6 +70,11 @@ const char* vtkStratusVariableReader::GetLongNameOfVariable(int index)
   return index >= 0 && index < this->GetNumberOfVariables() ? this->Variables[static_cast<size_t>(index)].LongName.c_str() : "";
 }
 
+const char* vtkStratusVariableReader::GetStandardNameOfVariable(int index)
+{
+  return index >= 0 && index < this->GetNumberOfVariables() ? this->Variables[static_cast<size_t>(index)].StandardName.c_str() : "";
+}
+
 const char* vtkStratusVariableReader::GetTimeUnits()
 {
   return this->TimeUnits.c_str();

@@ -48,14 +48,15 @@ public:
 
   //@{
   /**
-   * Get the variables that can be read, after UpdateInformation(): their number, all names, and the name, units and long name of each. A
-   * text that the file does not contain is "". An index out of range gives "".
+   * Get the variables that can be read, after UpdateInformation(): their number, all names, and the name, units, long name and standard
+   * name (of the CF conventions) of each. A text that the file does not contain is "". An index out of range gives "".
    */
   int GetNumberOfVariables();
   vtkStringArray* GetNamesOfVariables();
   const char* GetNameOfVariable(int index);
   const char* GetUnitsOfVariable(int index);
   const char* GetLongNameOfVariable(int index);
+  const char* GetStandardNameOfVariable(int index);
   //@}
 
   /**
@@ -90,7 +91,7 @@ protected:
   ~vtkStratusVariableReader() override;
 
   struct VariableEntry {
-    std::string Name, Units, LongName;
+    std::string Name, Units, LongName, StandardName = {};
   };
 
   /// Looks up Variables, Times, TimeUnits, Description and WholeExtent. Returns the class of the output for the chosen variable.
