@@ -6,6 +6,7 @@ render(data)              RGBA and depth as floats, and counters
 render_tetrahedra(points, tetrahedra, values)
 turn(data)                a film of the data as it turns
 view(data)                a picture in a notebook that the mouse turns
+cloud(data)               water of clouds as a photograph shows it
 render_several(items)     volumes and meshes that overlap, as one medium
 slab(center, normal, thickness)  the clip planes of a thick slice
 Volume, Tetrahedra        the same again and again, from other sides, without building anew
@@ -15,6 +16,7 @@ partition, VisibilityOrder  meshes cut into leaves, and the order in which cells
 Octree                    which of many boxes a camera sees
 """
 from ._cells import Partition, VisibilityOrder, partition
+from ._cloud import cloud
 from ._core import Cancelled, Context, DeviceError, Unsupported, devices
 from ._core import version as __version__
 from ._draw import render, render_tetrahedra, show, turn
@@ -29,5 +31,5 @@ from ._volume import Volume
 from ._voxels import Hits, Tree, distance_field, first_hits
 
 __all__ = ["Cancelled", "Context", "DeviceError", "Film", "Hits", "NothingShown", "Octree", "Partition", "Picture", "Rendering", "Tetrahedra", "Tree",
-           "Unsupported", "View", "VisibilityOrder", "Visible", "Volume", "devices", "distance_field", "first_hits", "partition", "render",
+           "Unsupported", "View", "VisibilityOrder", "Visible", "Volume", "cloud", "devices", "distance_field", "first_hits", "partition", "render",
            "render_several", "render_tetrahedra", "show", "slab", "turn", "view"]

@@ -184,6 +184,13 @@ def turn(
     background: _Background = ..., seconds: float = ..., progress: _Progress = ..., spacing: Sequence[float] | None = ...,
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
     device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., **options: Any) -> Film: ...
+def cloud(
+    data: Any, radius: float | None = ..., ice: bool | None = ..., units: str | None = ..., metres: float | None = ...,
+    density: ArrayLike | None = ..., variable: str | None = ..., sun: Sequence[float] | None = ..., time: Any = ...,
+    place: Sequence[float] | None = ..., size: Sequence[int] = ..., camera: Any = ..., background: Literal["sky"] | _Background = ...,
+    albedo: float = ..., anisotropy: float = ..., spacing: Sequence[float] | None = ..., origin: Sequence[float] | None = ...,
+    axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ..., device: _Device = ...,
+    threads: int | None = ..., matrix: _Matrix = ..., **options: Any) -> Picture: ...
 def view(
     data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: dict[str, float] | None = ...,
     background: _Background = ..., draft: float = ..., draft_tolerance: float = ..., spacing: Sequence[float] | None = ...,
