@@ -200,7 +200,7 @@ static void set_opacity(const volumes& all, const stratus_scene* scene, const op
 {
   if (!o.opacity.empty()) {
     result.opacity = parse_opacity(o.opacity);
-    result.origin = "as given";
+    result.origin = o.cloud ? "proportional to the water" : "as given";
   } else if (scene && !o.logarithmic) {
     result.opacity.assign(scene->transfer.opacity, scene->transfer.opacity + 2 * scene->transfer.opacity_count);
     result.origin = "the scene's own";
