@@ -297,6 +297,12 @@ std::string time_units_of(vtkAlgorithm* reader)
   return by_name ? by_name->GetTimeUnits() : "";
 }
 
+std::string time_calendar_of(vtkAlgorithm* reader)
+{
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  return by_name ? by_name->GetTimeCalendar() : "";
+}
+
 std::string description_of(vtkAlgorithm* reader)
 {
   vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);

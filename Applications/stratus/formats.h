@@ -47,6 +47,7 @@ struct variable_name {
 std::vector<variable_name> names_of_variables(vtkAlgorithm* reader);
 // Description of time and grid by a reader of variables, "" by other readers.
 std::string time_units_of(vtkAlgorithm* reader);
+std::string time_calendar_of(vtkAlgorithm* reader);
 std::string description_of(vtkAlgorithm* reader);
 std::string choice_of(vtkAlgorithm* reader);
 std::string axis_name_of(vtkAlgorithm* reader, int axis);

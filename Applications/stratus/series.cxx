@@ -252,6 +252,11 @@ std::string series::choice() const
   return this->Reader ? choice_of(this->Reader) : "";
 }
 
+std::string series::calendar() const
+{
+  return this->Reader ? time_calendar_of(this->Reader) : "";
+}
+
 std::string series::grid() const
 {
   return this->Reader ? description_of(this->Reader) : "";

@@ -22,6 +22,7 @@ public:
   size_t steps() const { return this->Times.empty() ? 1 : this->Times.size(); }
   const std::vector<double>& times() const { return this->Times; } // ascending; empty: the file has no time
   const std::string& units() const { return this->Units; }         // as the file has them ("hours since 2001-01-01"), "" if it has none
+  std::string calendar() const;                                    // of the units, as the file has it ("noleap"), "" if it has none
   // Reads a step. Any complaint of VTK is a failure, so that a damaged file is never drawn in part. The result may share arrays with the
   // reader: take a deep copy where the next step is read while this one is used.
   vtkSmartPointer<vtkDataObject> read(size_t step);

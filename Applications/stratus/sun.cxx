@@ -16,7 +16,15 @@ constexpr double least_elevation = 5.0;
 // Of the sphere on which the reader of netCDF puts longitudes and latitudes.
 constexpr double earth_radius = 6371000.0;
 
-// Finds a step's moment, seconds since 1970. Returns false if the file's times have no reference.
+// Returns whether a calendar counts days since a moment, seconds since 1970, as the Gregorian one does.
+bool is_gregorian(const std::string& calendar, double since)
+{
+  constexpr double first_day = -12219292800.0; // 1582-10-15; before it the calendar "standard" is the Julian one
+  return calendar == "proleptic_gregorian" ||
+    ((calendar.empty() || calendar == "standard" || calendar == "gregorian") && since >= first_day);
+}
+
+// Finds a step's moment, seconds since 1970. Returns false if the file's times have no reference in the Gregorian calendar.
 bool find_moment(const cli::series* in, size_t step, double& seconds)
 {
   const std::string units = in ? in->units() : "";
@@ -27,7 +35,8 @@ bool find_moment(const cli::series* in, size_t step, double& seconds)
   }
   const cli::context core("host", 1);
   const size_t at = units.find_first_not_of(' ', since + 7);
-  if (at == std::string::npos || stratus_time_parse(core, units.c_str() + at, &seconds) != STRATUS_OK) {
+  if (at == std::string::npos || stratus_time_parse(core, units.c_str() + at, &seconds) != STRATUS_OK ||
+    !is_gregorian(in->calendar(), seconds)) {
     return false;
   }
   seconds += unit * in->times()[step];
@@ -76,7 +85,8 @@ std::string cli::set_sun(options& o, const options& given, const series* in, vtk
     has_place = find_place(in, grid, place[0], place[1]);
   }
   if (asked && !has_moment) {
-    throw usage("--sun-time file: '" + o.source + "' has no times since a date: give the moment, such as --sun-time 2024-06-01T15:30");
+    throw usage("--sun-time file: '" + o.source +
+      "' has no times since a date of the Gregorian calendar: give the moment, such as --sun-time 2024-06-01T15:30");
   }
   if (asked && !has_place) {
     throw usage("--sun-time: '" + o.source + "' has no longitudes and latitudes: give --place LATITUDE,LONGITUDE");

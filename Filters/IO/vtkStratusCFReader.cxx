@@ -90,6 +90,7 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
     const vtkStratusNetCDFFile::TimeSteps steps = file.ReadTimes(grid.GetTime());
     this->Times = steps.Values;
     this->TimeUnits = steps.Units;
+    this->TimeCalendar = steps.Calendar;
     this->Description += steps.Note;
   }
   if (grid.IsSheet()) {

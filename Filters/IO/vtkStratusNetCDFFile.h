@@ -32,6 +32,7 @@ public:
     std::vector<double> Values; // ascending
     std::string Units;          // "hours since 2001-01-01", "" if the file does not say
     std::string Note;           // "; ..." if steps are numbers because the file has no numbers for them, else ""
+    std::string Calendar = {};  // "noleap", "" if the file does not say
   };
 
   // selection: "NAME=INDEX,NAME=INDEX...", dimensions that are read at one index only; "": none.

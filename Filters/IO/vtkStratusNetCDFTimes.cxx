@@ -132,7 +132,7 @@ vtkStratusNetCDFFile::TimeSteps vtkStratusNetCDFFile::ReadTimes(int dimension) c
     const std::vector<double> times = this->ReadComplete(*time, "time");
     const std::string units = this->Text(*time, "units");
     if (Ascend(times)) {
-      return { times, units, "" };
+      return { times, units, "", this->Text(*time, "calendar") };
     }
     if (units.find(" since ") == std::string::npos && this->Text(*time, "standard_name") != "time") {
       return { Counted(count), "", "; steps of time are counted from 0, because '" + time->Name + "' does not increase" };

@@ -159,6 +159,7 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
     const vtkStratusNetCDFFile::TimeSteps steps = file.ReadTimes(time);
     this->Times = steps.Values;
     this->TimeUnits = steps.Units;
+    this->TimeCalendar = steps.Calendar;
     this->Description += steps.Note;
   }
   return "vtkUnstructuredGrid";

@@ -80,6 +80,11 @@ const char* vtkStratusVariableReader::GetTimeUnits()
   return this->TimeUnits.c_str();
 }
 
+const char* vtkStratusVariableReader::GetTimeCalendar()
+{
+  return this->TimeCalendar.c_str();
+}
+
 const char* vtkStratusVariableReader::GetLengthUnits()
 {
   return this->LengthUnits.c_str();
@@ -126,6 +131,7 @@ bool vtkStratusVariableReader::Look()
   this->Variables.clear();
   this->Times.clear();
   this->TimeUnits.clear();
+  this->TimeCalendar.clear();
   this->Description.clear();
   this->LengthUnits.clear();
   for (int axis = 0; axis < 3; ++axis) {

@@ -65,6 +65,12 @@ public:
   const char* GetTimeUnits();
 
   /**
+   * Get the calendar of the time steps as the file names it ("noleap", "360_day"), "" if it does not: the Gregorian one. After
+   * UpdateInformation().
+   */
+  const char* GetTimeCalendar();
+
+  /**
    * Get the unit of all three of the output's coordinates, such as "m" or "mm", after UpdateInformation(). It is "" if the file has no
    * units or they differ.
    */
@@ -112,7 +118,7 @@ protected:
   char* VariableName = nullptr;
   std::vector<VariableEntry> Variables;
   std::vector<double> Times;
-  std::string TimeUnits;
+  std::string TimeUnits, TimeCalendar;
   std::string Description;
   std::string LengthUnits;
   std::string AxisNames[3], AxisUnits[3]; // units: "" as LengthUnits

@@ -35,9 +35,9 @@ def refuse(status, pattern, *words):
         fail(f"{words} left a picture")
 
 
-def write(name, variables, lengths=("m", "m", "m"), time=None, north=None, east=None):
+def write(name, variables, lengths=("m", "m", "m"), time=None, north=None, east=None, calendar=None, curved=False):
     """A file of a 5 x 4 x 3 grid, 400 m wide, from 1000 to 1200 m. variables: (name, units, standard_name, values by height). lengths: the units of
-    z, y and x; north, east: the middle in degrees, in place of lengths."""
+    z, y and x; north, east: the middle in degrees, in place of lengths. curved: heights of three dimensions."""
     metres = {"m": 1.0, "km": 1000.0}
     with netCDF4.Dataset(name, "w") as file:
         places = [1000.0 + 50.0 * numpy.arange(5), 100.0 * numpy.arange(4), WIDTH / 2 * numpy.arange(3)]
@@ -57,11 +57,19 @@ def write(name, variables, lengths=("m", "m", "m"), time=None, north=None, east=
             file.createDimension("time", 1)
             own = file.createVariable("time", "f8", ("time",))
             own.units, own[:] = time[0], time[1]
+            if calendar:
+                own.calendar = calendar
             dimensions = ("time", *dimensions)
+        if curved:
+            own = file.createVariable("heights", "f8", tuple(names))
+            own.units, own.standard_name = "m", "height"
+            own[:] = numpy.broadcast_to(places[0][:, None, None], (5, 4, 3))
         for variable, units, standard_name, values in variables:
             own = file.createVariable(variable, "f8", dimensions)
             if units:
                 own.units = units
+            if curved:
+                own.coordinates = "heights"
             if standard_name:
                 own.standard_name = standard_name
             own[:] = numpy.broadcast_to(numpy.reshape(numpy.asarray(values, float), (-1, 1, 1)), (5, 4, 3)).reshape(own.shape)
@@ -95,6 +103,9 @@ def test_extinction():
     holds("a radius of 20 um", darkest("kg.nc", "20"), depth_of(content) / 2)
     write("g.nc", [("a", "g m-3", "mass_concentration_of_cloud_liquid_water_in_air", 1000 * content)], lengths=("m", "km", "km"))
     holds("g m-3 on kilometres", darkest("g.nc"), depth_of(content))
+    write("curved.nc", [("qc", "kg m-3", None, content)], curved=True)
+    holds("a curvilinear grid", darkest("curved.nc"), depth_of(content))
+    expect(0, "mesh +[1-9]", "render", "curved.nc", "--cloud", "-o", "a.png", "--size", "8x8")
     write("ice.nc", [("QICE", "g m-3", None, 1000 * content)])
     holds("ice", darkest("ice.nc"), depth_of(content, 3e-5, 917.0))
     write("none.nc", [("a", None, None, content)], lengths=("", "", ""))
@@ -116,6 +127,8 @@ def test_air():
         fail(f"the standard atmosphere's density: depth {found}, {highest} at the level")
     write("dense.nc", [("qc", "g kg-1", None, 1000 * ratio), ("rho", "kg m-3", "air_density", 0.7)])
     holds("the file's density", darkest("dense.nc"), depth_of(ratio * 0.7))
+    write("curved.nc", [("qc", "g kg-1", None, 1000 * ratio), ("rho", "kg m-3", "air_density", 0.7)], curved=True)
+    holds("the file's density on a curvilinear grid", darkest("curved.nc"), depth_of(ratio * 0.7))
     expect(0, "air +density 'rho'", "render", "dense.nc", "--cloud", "-o", "a.png", "--size", "8x8")
     write("warm.nc", [("ta", "K", "air_temperature", 250.0), ("qc", "g kg-1", None, 1000 * ratio), ("p", "Pa", "air_pressure", 60000.0)])
     holds("the file's pressure and temperature", darkest("warm.nc"), depth_of(ratio * 60000 / (287.05 * 250)))
@@ -135,10 +148,13 @@ def test_sun():
     expect(0, "sun +azimuth 120.0, elevation 40.0 degrees, because at the file's time and place it is -", "render", "night.nc", "--cloud", "-o", "a.png",
            "--size", "8x8")
     refuse(1, "the sun is below the horizon: azimuth", "night.nc", "--cloud", "--sun-time", "file")
+    for since, calendar in ("2003-10-17 18:00", "noleap"), ("1500-01-01", "standard"):
+        write("other.nc", water, time=(f"hours since {since}", 1.0), north=39.7, east=-105.2, calendar=calendar)
+        refuse(2, "has no times since a date of the Gregorian calendar", "other.nc", "--cloud", "--sun-time", "file")
     write("plain.nc", water)
     expect(0, "sun +azimuth 120.0, elevation 40.0 degrees, as usual, because the file's place is not known", "render", "plain.nc", "--cloud", "-o",
            "a.png", "--size", "8x8")
-    refuse(2, "has no times since a date", "plain.nc", "--cloud", "--sun-time", "file", "--place", "0,0")
+    refuse(2, "has no times since a date of", "plain.nc", "--cloud", "--sun-time", "file", "--place", "0,0")
     refuse(2, "has no longitudes and latitudes: give --place", "plain.nc", "--cloud", "--sun-time", "2003-10-17 12:00")
     refuse(2, "--place: when", "plain.nc", "--cloud", "--place", "1,2")
     refuse(2, "leave out one", "plain.nc", "--cloud", "--sun-time", "2003-10-17", "--sun-at", "1,2")
