@@ -186,7 +186,7 @@ def turn(
     device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., **options: Any) -> Film: ...
 def cloud(
     data: Any, radius: float | None = ..., ice: bool | None = ..., units: str | None = ..., metres: float | None = ...,
-    density: ArrayLike | None = ..., variable: str | None = ..., sun: Sequence[float] | None = ..., time: Any = ...,
+    density: ArrayLike | None = ..., variable: str | None = ..., step: int = ..., sun: Sequence[float] | None = ..., time: Any = ...,
     place: Sequence[float] | None = ..., size: Sequence[int] = ..., camera: Any = ..., background: Literal["sky"] | _Background = ...,
     albedo: float = ..., anisotropy: float = ..., spacing: Sequence[float] | None = ..., origin: Sequence[float] | None = ...,
     axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ..., device: _Device = ...,

@@ -7,7 +7,7 @@ import os
 import numpy
 
 from . import _declarations as c
-from ._core import context as context_of, library
+from ._core import context as context_of, library, whole
 from ._draw import drawn_of
 from ._look import _METRES
 from ._picture import Picture
@@ -18,7 +18,7 @@ from ._volume import Volume
 _USUAL_SUN = (120.0, 40.0)
 
 
-def cloud(data, radius=None, ice=None, units=None, metres=None, density=None, variable=None, sun=None, time=None, place=None, size=(640, 480),
+def cloud(data, radius=None, ice=None, units=None, metres=None, density=None, variable=None, step=0, sun=None, time=None, place=None, size=(640, 480),
           camera=None, background="sky", albedo=c.STRATUS_CLOUD_ALBEDO, anisotropy=c.STRATUS_CLOUD_ANISOTROPY, spacing=None, origin=None, axes=None,
           scalars=None, component=None, device=None, threads=None, matrix=None, **options):
     """Draws water of clouds as a photograph shows it, and returns a Picture.
@@ -33,10 +33,11 @@ def cloud(data, radius=None, ice=None, units=None, metres=None, density=None, va
                 standard_name air_density, or by those of air_pressure and air_temperature, otherwise that of the standard atmosphere at
                 the height z
     variable    name of the Dataset's variable; default: the first of cloud water by standard_name or name, liquid before ice
+    step        index of an xarray.DataArray of more than three dimensions along the first one, such as its time; the last three are space
     sun         azimuth, degrees clockwise from north, and elevation, degrees; x is east and y is north. Default: by time and place,
                 otherwise 120 and 40
-    time        moment in UTC: a text such as "2024-06-01T15:30", a datetime or a numpy.datetime64; with place
-    place       latitude and longitude in degrees
+    time        moment in UTC: a text such as "2024-06-01T15:30", a datetime or a numpy.datetime64; default: that of the DataArray's step
+    place       latitude and longitude in degrees, for the sun by time
     background  "sky", (r, g, b) in 0..1, or None for transparent
     albedo      single-scattering albedo, 0..1
     anisotropy  of the phase function by Henyey and Greenstein, -.99...99
@@ -47,10 +48,11 @@ def cloud(data, radius=None, ice=None, units=None, metres=None, density=None, va
     if isinstance(data, (str, os.PathLike)):
         import xarray
         with xarray.open_dataset(data) as file:
-            return cloud(file, radius, ice, units, metres, density, variable, sun, time, place, size, camera, background, albedo, anisotropy,
+            return cloud(file, radius, ice, units, metres, density, variable, step, sun, time, place, size, camera, background, albedo, anisotropy,
                          device=context, **{name: value for name, value in place_of.items() if value is not None}, **options)
-    values, density = _chosen(data, variable, density)
+    values, density = _chosen(data, variable, density, step)
     if _is_xarray(values):
+        time = _time_of(values) if time is None and sun is None and place is not None else time
         attributes = values.attrs
         units = attributes.get("units") if units is None else units
         if ice is None:
@@ -84,12 +86,30 @@ def _is_xarray(data):
     return hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs")
 
 
-def _chosen(data, variable, density):
-    """The variable of a Dataset, and the density of its air if none is given; other data as they are."""
+def _indices(array, step):
+    """The indices of a DataArray that leave its last three dimensions, at a step of the first one."""
+    others = array.dims[:-3]
+    indices = {name: 0 for name in others}
+    if others:
+        count = array.sizes[others[0]]
+        indices[others[0]] = whole(step, f"step, along {others[0]!r},", -count, count - 1)
+    return indices
+
+
+def _time_of(values):
+    """The moment of a DataArray of one step."""
+    for coordinate in values.coords.values():
+        if coordinate.ndim == 0 and coordinate.dtype.kind == "M":
+            return coordinate.values
+    return None
+
+
+def _chosen(data, variable, density, step):
+    """The variable of a Dataset at a step, and the density of its air if none is given; other data as they are."""
     if not hasattr(data, "data_vars"):
         if variable is not None:
             raise ValueError(f"variable is {variable!r}, but the data are no Dataset")
-        return data, density
+        return data.isel(_indices(data, step)) if _is_xarray(data) else data, density
     phases = {name: library.stratus_cloud_phase_of(str(name).encode(), str(array.attrs.get("standard_name", "")).encode())
               for name, array in data.data_vars.items()}
     if variable is None:
@@ -99,6 +119,7 @@ def _chosen(data, variable, density):
         variable = list(phases)[known[0][1]]
     elif variable not in data.data_vars:
         raise ValueError(f"variable is {variable!r}, it must be one of {sorted(map(str, phases))}")
+    data = data.isel(_indices(data[variable], step))
     values = data[variable]
     if density is None:
         air = {array.attrs.get("standard_name"): array for array in data.variables.values()}

@@ -113,6 +113,16 @@ def of_xarray():
     file["qc"].attrs.update(units="g kg-1")
     apart = numpy.abs(cloud(file, **host).astype(int) - wanted.astype(int))
     check(apart.max() <= 1, f"a Dataset with a density: {apart.max()}")
+    times = numpy.array(["2003-10-17T06:00", "2003-10-17T19:30:30"], "datetime64[ns]")
+    film = xarray.concat([file * 0, file], dim=xarray.Variable("time", times), combine_attrs="override")
+    for name, array in film.data_vars.items():
+        array.attrs.update(file[name].attrs)
+    film = film.transpose("time", "z", "y", "x")
+    same(cloud(film, step=1, **host), cloud(file, **host), "a step of a Dataset")
+    same(cloud(film["qc"].isel(z=slice(None)), step=-1, density=0.5, **host), cloud(file, **host), "a step of a DataArray")
+    by_time = cloud(film, step=1, place=(39.742476, -105.1786), **host)
+    same(by_time, cloud(file, time=times[1], place=(39.742476, -105.1786), **host), "the sun at the step's time")
+    refuse(ValueError, "step, along 'time', is 2, it must be a whole number in -2..1", cloud, film, step=2)
     refuse(ValueError, "no variable of the Dataset is known", cloud, file[["qr"]].rename(qr="rain"))
     refuse(ValueError, "variable is 'qx', it must be one of", cloud, file, variable="qx")
     with tempfile.TemporaryDirectory() as folder:
