@@ -54,7 +54,7 @@ def write(name, variables, lengths=("m", "m", "m"), time=None, north=None, east=
                 own[:] = values / metres.get(unit, 1.0)
         dimensions = tuple(names)
         if time:
-            file.createDimension("time", 1)
+            file.createDimension("time", numpy.size(time[1]))
             own = file.createVariable("time", "f8", ("time",))
             own.units, own[:] = time[0], time[1]
             if calendar:
@@ -72,7 +72,7 @@ def write(name, variables, lengths=("m", "m", "m"), time=None, north=None, east=
                 own.coordinates = "heights"
             if standard_name:
                 own.standard_name = standard_name
-            own[:] = numpy.broadcast_to(numpy.reshape(numpy.asarray(values, float), (-1, 1, 1)), (5, 4, 3)).reshape(own.shape)
+            own[:] = numpy.broadcast_to(numpy.reshape(numpy.asarray(values, float), (-1, 1, 1)), (5, 4, 3))
 
 
 def darkest(file, *words):
@@ -148,6 +148,19 @@ def test_sun():
     expect(0, "sun +azimuth 120.0, elevation 40.0 degrees, because at the file's time and place it is -", "render", "night.nc", "--cloud", "-o", "a.png",
            "--size", "8x8")
     refuse(1, "the sun is below the horizon: azimuth", "night.nc", "--cloud", "--sun-time", "file")
+    write("day.nc", water, time=("hours since 2003-10-17", [14.5, 17.5, 30.0]), north=39.742476, east=-105.1786)
+    expect(0, "frames +3, day", "render", "day.nc", "--cloud", "--frames", "day-%d.bmp", "--size", "24x24", "--device", "host")
+    frames = []
+    for n in range(3):
+        with open(f"day-{n}.bmp", "rb") as file:
+            frames.append(file.read())
+    if len(set(frames)) != 3:
+        fail("the sun does not move in a film of water that stands still")
+    expect(0, "picture", "render", "day.nc", "--cloud", "--time", "step:1", "-o", "day.bmp", "--size", "24x24", "--device", "host")
+    with open("day.bmp", "rb") as file:
+        if file.read() != frames[1]:
+            fail("the sun of a frame is not that of its step")
+    refuse(1, "the sun is below the horizon", "day.nc", "--cloud", "--time", "step:2", "--sun-time", "file")
     for since, calendar in ("2003-10-17 18:00", "noleap"), ("1500-01-01", "standard"):
         write("other.nc", water, time=(f"hours since {since}", 1.0), north=39.7, east=-105.2, calendar=calendar)
         refuse(2, "has no times since a date of the Gregorian calendar", "other.nc", "--cloud", "--sun-time", "file")
