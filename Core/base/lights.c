@@ -184,7 +184,7 @@ void stratus_lights_set(const stratus_camera* camera, const stratus_shading* sha
 bool stratus_lights_cast_shadows(const stratus_shading* shading, bool shade, const stratus_material* materials, int count)
 {
   for (int c = 0; materials && c < count; ++c) {
-    shade = shade || materials[c].shade;
+    shade = (c > 0 && shade) || materials[c].shade;
   }
   return shade && shading->shadows;
 }

@@ -17,7 +17,8 @@ int stratus_lights_in_world(const stratus_camera* camera, const stratus_shading*
  * receives the lights in world coordinates. */
 void stratus_lights_set(const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit,
   stratus_light lights[STRATUS_LIGHTS_MAX], stratus_light_arguments* a);
-/* Whether a picture has shadows: its shading has them on, and matter is lit. materials: of `count` components; NULL: none of their own. */
+/* Whether a picture has shadows: its shading has them on, and matter is lit. materials: of `count` components, which replace `shade`; NULL:
+ * none of their own. */
 bool stratus_lights_cast_shadows(const stratus_shading* shading, bool shade, const stratus_material* materials, int count);
 
 /* The lights of first hits, which are solids. */

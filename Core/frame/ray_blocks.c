@@ -316,11 +316,14 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
   TRY_CLEANUP(stratus_allocate(b.context, (size_t)image->width * (size_t)image->height, sizeof(float), &ends));
   b.ends = ends;
   stratus_ray_cast_report light = { .light_ms = 0.0 };
-  status = stratus_ray_light_update_several(inputs, count, true, camera, stratus_ray_caster_render_blocks, &light);
+  if (kept.mode != STRATUS_MODE_QUANTITIES) { /* which leave a picture's maps as they are */
+    status = stratus_ray_light_update_several(inputs, count, true, camera, stratus_ray_caster_render_blocks, &light);
+  }
   if (status == STRATUS_OK) {
     status = (b.kept ? draw_kept : draw_all)(&b, order, reports);
   }
   stratus_ray_light_return(inputs, count);
+  stratus_ray_light_report(&light, reports, count);
   if (status != STRATUS_OK) {
     goto cleanup;
   }

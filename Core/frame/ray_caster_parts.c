@@ -41,6 +41,10 @@ void stratus_ray_cast_report_add(stratus_ray_cast_report* sum, const stratus_ray
   sum->upload_ms += part->upload_ms;
   sum->cast_ms += part->cast_ms;
   sum->probe_ms += part->probe_ms;
+  sum->light_ms += part->light_ms;
+  sum->light_builds += part->light_builds;
+  sum->light_bytes = sum->light_bytes > part->light_bytes ? sum->light_bytes : part->light_bytes; /* parts share their maps */
+  sum->light_error = fmax(sum->light_error, part->light_error);
   sum->structure_bytes += part->structure_bytes;
   sum->probe_builds += part->probe_builds;
   sum->probe_samples += part->probe_samples;
@@ -53,6 +57,7 @@ stratus_status stratus_ray_part(stratus_ray_caster* caster, int component, strat
     TRY(stratus_ray_caster_create(caster->context, &caster->parts[component]));
   }
   *part = caster->parts[component];
+  (*part)->on_host = caster->on_host;
   return STRATUS_OK;
 }
 

@@ -6,6 +6,7 @@
 #include "lights.h"
 #include "matrix.h"
 #include "ray_sampling.h"
+#include "ray_shading_table.h"
 #include "ray_shading_render.h"
 #include "tetra_caster.h"
 
@@ -17,9 +18,10 @@
 static bool has_shadows(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   const bool lit = options->mode == STRATUS_MODE_COMPOSITE || options->mode == STRATUS_MODE_ISOSURFACE;
+  const int components = stratus_volume_components(volume);
+  const bool own = components > 1 && !options->optics.dependent;
   return lit &&
-    stratus_lights_cast_shadows(&options->light.shading, options->light.shade != 0,
-      options->optics.dependent ? NULL : options->light.materials, stratus_volume_components(volume));
+    stratus_lights_cast_shadows(&options->light.shading, options->light.shade != 0, own ? options->light.materials : NULL, components);
 }
 
 static bool input_has_shadows(const stratus_ray_cast_input* in)
@@ -50,30 +52,65 @@ static stratus_status dark_caster(stratus_ray_caster* caster, stratus_ray_caster
   return STRATUS_OK;
 }
 
-/* Brings the caster of a volume's matter up to date, and adds what decides where its matter is to the key. */
-static stratus_status key_of_volume(stratus_ray_caster* dark, const stratus_volume* volume, const stratus_transfer* transfer,
-  const stratus_ray_cast_options* options, uint64_t* key)
+static void drop_volume(stratus_ray_caster* caster)
 {
-  stratus_ray_cast_report unused = { .rays = 0 };
+  stratus_light_state_drop(&caster->light);
+  caster->optics.lights = NULL;
+  stratus_ray_caster_destroy(caster->parts[STRATUS_RAY_LIGHT_PART]);
+  caster->parts[STRATUS_RAY_LIGHT_PART] = NULL;
+}
+
+/* ---- keys */
+
+static uint64_t key_of_function(uint64_t key, const stratus_transfer_2d* f)
+{
+  const uint64_t counts[3] = { (uint64_t)f->columns, (uint64_t)f->rows, f->revision };
+  const double numbers[5] = { f->value_range[0], f->value_range[1], f->second_range[0], f->second_range[1], f->unit_distance };
+  key = stratus_light_key(key, &f->rgba, sizeof f->rgba);
+  key = stratus_light_key(key, counts, sizeof counts);
+  return stratus_light_key(key, numbers, sizeof numbers);
+}
+
+static uint64_t key_of_data(uint64_t key, const stratus_volume* v)
+{
+  const void* data[4] = { v->values, v->point_ghosts, v->cell_ghosts, v->gradients };
+  const uint64_t counts[4] = { (uint64_t)v->type, (uint64_t)v->cell_centered, (uint64_t)stratus_volume_components(v), v->revision };
   double to_world[16];
-  TRY(stratus_ray_update_transfer_2d(dark, volume, options));
-  transfer = options->optics.transfer_2d ? &dark->optics.transfer_2d.shown : transfer;
-  TRY(stratus_ray_update_tables(dark, volume, transfer, options, 0, &unused));
+  stratus_volume_index_to_world(v, to_world);
+  key = stratus_light_key(key, data, sizeof data);
+  key = stratus_light_key(key, counts, sizeof counts);
+  key = stratus_light_key(key, v->dimensions, sizeof v->dimensions);
+  key = stratus_light_key(key, &v->value_stride, sizeof v->value_stride);
+  key = stratus_light_key(key, to_world, sizeof to_world);
+  for (int axis = 0; axis < 3; ++axis) {
+    const size_t positions = (size_t)v->dimensions[axis] + (v->cell_centered ? 1 : 0);
+    key = stratus_light_key(key, v->coordinates[axis], v->coordinates[axis] ? positions * sizeof(double) : 0);
+    key = stratus_light_key(key, &axis, sizeof axis); /* so that equal positions along another axis give another key */
+  }
+  return key;
+}
+
+/* Adds all that decides where a volume's matter is to a key. The key depends on no caster, so that pictures of several inputs have one.
+ * Bytes under the same address are the same unless their revision has changed. */
+static uint64_t key_of_volume(
+  uint64_t key, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+{
   const stratus_ray_optics_options* optics = &options->optics;
   const stratus_ray_clipping_options* clip = &options->clipping;
-  const uint64_t serials[2] = { dark->field.data_serial, dark->optics.table_serial };
-  const double numbers[10] = { options->mode, options->sampling.interpolation, options->sampling.tolerance, optics->gradient_distance,
-    optics->gradient_length, optics->mean_components, clip->clip_gradients, clip->clipped_value, clip->clip_plane_count,
-    clip->crop ? clip->crop_regions : 0.0 };
-  stratus_volume_index_to_world(volume, to_world);
-  *key = stratus_light_key(*key, serials, sizeof serials);
-  *key = stratus_light_key(*key, numbers, sizeof numbers);
-  *key = stratus_light_key(*key, clip->clip_planes, (size_t)clip->clip_plane_count * sizeof clip->clip_planes[0]);
-  *key = stratus_light_key(*key, clip->crop_bounds, clip->crop ? sizeof clip->crop_bounds : 0);
-  *key = stratus_light_key(*key, to_world, sizeof to_world);
-  /* tables of another function are made when the sampling is chosen, and their serial is the old one until then */
-  *key = stratus_light_key_of_transfers(*key, transfer, dark->optics.transfer_count);
-  return STRATUS_OK;
+  const bool surfaces = options->mode == STRATUS_MODE_ISOSURFACE;
+  const uint64_t mask[2] = { options->mask.revision, (uint64_t)options->mask.label_count };
+  const double numbers[] = { options->mode, options->sampling.interpolation, options->sampling.tolerance, optics->dependent,
+    optics->mean_components, optics->gradient_distance, optics->gradient_length, clip->clip_gradients, clip->clipped_value,
+    clip->clip_plane_count, clip->crop ? clip->crop_regions : 0.0, surfaces ? optics->contour_count : 0.0 };
+  key = key_of_data(key, volume);
+  key = stratus_light_key(key, &options->mask.bytes, sizeof options->mask.bytes);
+  key = stratus_light_key(key, mask, sizeof mask);
+  key = stratus_light_key(key, numbers, sizeof numbers);
+  key = stratus_light_key(key, clip->clip_planes, (size_t)clip->clip_plane_count * sizeof clip->clip_planes[0]);
+  key = stratus_light_key(key, clip->crop_bounds, clip->crop ? sizeof clip->crop_bounds : 0);
+  key = stratus_light_key(key, optics->contours, surfaces ? (size_t)optics->contour_count * sizeof optics->contours[0] : 0);
+  return optics->transfer_2d ? key_of_function(key, optics->transfer_2d)
+                             : stratus_light_key_of_transfers(key, transfer, stratus_ray_shading_media(volume, options));
 }
 
 /* ---- one volume */
@@ -97,15 +134,11 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
   const stratus_camera* camera, const stratus_ray_cast_options* options, stratus_ray_draw_one* draw, stratus_ray_cast_report* report)
 {
   stratus_light lights[STRATUS_LIGHTS_MAX];
-  uint64_t key = 0;
   if (caster->light_given) {
     return STRATUS_OK;
   }
   if (!has_shadows(volume, options)) {
-    stratus_light_state_drop(&caster->light);
-    caster->optics.lights = NULL;
-    stratus_ray_caster_destroy(caster->parts[STRATUS_RAY_LIGHT_PART]);
-    caster->parts[STRATUS_RAY_LIGHT_PART] = NULL;
+    drop_volume(caster);
     return STRATUS_OK;
   }
   const double start = stratus_now_ms();
@@ -116,14 +149,14 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
     !options->optics.transfer_2d && transfer->gradient_count == 0 && !regions) { /* near rays know no gradient opacity */
     matter.step = stratus_ray_voxel_length(volume) / NEAR_STEPS_A_VOXEL;
   }
-  TRY(dark_caster(caster, &m.caster));
-  TRY(key_of_volume(m.caster, volume, transfer, &m.options, &key));
+  const uint64_t key = key_of_volume(0, volume, transfer, options);
   const int count = stratus_lights_in_world(camera, &options->light.shading, lights);
   if (stratus_light_state_is_stale(&caster->light, key, lights, count)) {
+    TRY(dark_caster(caster, &m.caster));
+    TRY(stratus_ray_update_transfer_2d(m.caster, volume, options));
     TRY(stratus_volume_bounds(caster->context, volume, matter.bounds));
     TRY(stratus_light_state_build(caster->context, &matter, lights, count, &caster->light));
-    /* the drawing may have chosen the sampling, and with it made tables */
-    TRY(key_of_volume(m.caster, volume, transfer, &m.options, &caster->light.key));
+    caster->light.key = key;
   }
   caster->optics.lights = caster->light.maps;
   report->light_ms = stratus_now_ms() - start;
@@ -147,47 +180,38 @@ static stratus_status draw_several(void* of, const stratus_camera* camera, const
   return m->draw(m->inputs, m->count, camera, image, NULL);
 }
 
-/* Makes the inputs of the matter, and the key. */
-static stratus_status darken(several* m, const stratus_ray_cast_input* inputs, uint64_t* key)
+static uint64_t key_of_inputs(const stratus_ray_cast_input* inputs, int count)
 {
   const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
-  *key = 0;
+  const stratus_tetra_options tetra_defaults = stratus_tetra_options_default();
+  uint64_t key = 0;
+  for (int n = 0; n < count; ++n) {
+    const stratus_ray_cast_input* in = &inputs[n];
+    key = in->tetra ? stratus_tetra_shadow_key(key, in->mesh, in->transfer, in->tetra_options ? in->tetra_options : &tetra_defaults)
+                    : key_of_volume(key, in->volume, in->transfer, in->options ? in->options : &defaults);
+  }
+  return key;
+}
+
+/* Makes the inputs of the matter. */
+static stratus_status darken(several* m, const stratus_ray_cast_input* inputs)
+{
+  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
+  const stratus_tetra_options tetra_defaults = stratus_tetra_options_default();
   for (int n = 0; n < m->count; ++n) {
     stratus_ray_cast_input* dark = &m->inputs[n];
     *dark = inputs[n];
     if (inputs[n].tetra) {
-      const stratus_tetra_options tetra_defaults = stratus_tetra_options_default();
       m->tetra_options[n] = stratus_tetra_dark_options(inputs[n].tetra_options ? inputs[n].tetra_options : &tetra_defaults);
       dark->tetra_options = &m->tetra_options[n];
       TRY(stratus_tetra_light_caster(inputs[n].tetra, &dark->tetra));
-      *key = stratus_tetra_shadow_key(*key, dark->mesh, dark->transfer, dark->tetra_options);
     } else {
       m->options[n] = dark_options(inputs[n].options ? inputs[n].options : &defaults);
       dark->options = &m->options[n];
       TRY(dark_caster(inputs[n].caster, &dark->caster));
-      TRY(key_of_volume(dark->caster, dark->volume, dark->transfer, dark->options, key));
     }
   }
   return STRATUS_OK;
-}
-
-/* Adds the points of a mesh, or of each of its blocks, to bounds. */
-static void add_points(const stratus_mesh* mesh, const double matrix[16], double bounds[6])
-{
-  for (int n = 0; n < mesh->block_count; ++n) {
-    add_points(mesh->blocks + n, matrix, bounds);
-  }
-  for (int64_t i = 0; (mesh->points || mesh->float_points) && i < mesh->point_count; ++i) {
-    double local[3], point[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      local[axis] = mesh->points ? mesh->points[3 * i + axis] : (double)mesh->float_points[3 * i + axis];
-    }
-    stratus_matrix_point(matrix, local, point);
-    for (int axis = 0; axis < 3 && isfinite(point[0] + point[1] + point[2]); ++axis) {
-      bounds[2 * axis] = fmin(bounds[2 * axis], point[axis]);
-      bounds[2 * axis + 1] = fmax(bounds[2 * axis + 1], point[axis]);
-    }
-  }
 }
 
 static stratus_status bounds_of(const several* m, double bounds[6])
@@ -196,14 +220,18 @@ static stratus_status bounds_of(const several* m, double bounds[6])
     bounds[side] = side & 1 ? -INFINITY : INFINITY;
   }
   for (int n = 0; n < m->count; ++n) {
-    double own[6];
-    if (m->inputs[n].tetra) {
-      add_points(m->inputs[n].mesh, m->inputs[n].mesh->matrix, bounds);
+    const stratus_ray_cast_input* in = &m->inputs[n];
+    double own[6], lo[3], hi[3];
+    if (in->tetra && !stratus_tetra_box(in->mesh, lo, hi)) {
+      continue;
+    }
+    if (in->tetra) {
+      stratus_matrix_box(in->mesh->matrix, lo, hi, own);
     } else {
-      TRY(stratus_volume_bounds(m->context, m->inputs[n].volume, own));
-      for (int side = 0; side < 6; ++side) {
-        bounds[side] = side & 1 ? fmax(bounds[side], own[side]) : fmin(bounds[side], own[side]);
-      }
+      TRY(stratus_volume_bounds(m->context, in->volume, own));
+    }
+    for (int side = 0; side < 6; ++side) {
+      bounds[side] = side & 1 ? fmax(bounds[side], own[side]) : fmin(bounds[side], own[side]);
     }
   }
   for (int axis = 0; axis < 3; ++axis) { /* without any point there is no matter */
@@ -226,30 +254,43 @@ static void give(const stratus_ray_cast_input* inputs, int count, bool given, co
   }
 }
 
+/* Drops maps that no picture of these inputs reads. lit: the first input keeps the maps of all, and all keep what draws their matter. */
+static void drop_several(const stratus_ray_cast_input* inputs, int count, bool lit)
+{
+  for (int n = 0; n < count; ++n) {
+    if (lit && n > 0) {
+      stratus_light_state_drop(inputs[n].tetra ? &inputs[n].tetra->light : &inputs[n].caster->light);
+    } else if (!lit && inputs[n].tetra) {
+      stratus_tetra_shadow_drop(inputs[n].tetra);
+    } else if (!lit) {
+      drop_volume(inputs[n].caster);
+    }
+  }
+}
+
 static stratus_status update_several(several* m, const stratus_ray_cast_input* inputs, const stratus_ray_cast_input* lit,
-  const stratus_camera* camera, stratus_light_state* state, stratus_ray_cast_report* report)
+  const stratus_camera* camera, stratus_light_state* state)
 {
   const stratus_shading* shading = lit->tetra ? &lit->tetra_options->shading : &lit->options->light.shading;
   stratus_light lights[STRATUS_LIGHTS_MAX];
   stratus_light_matter matter = {
     .draw = draw_several, .of = m, .tolerance = lit->tetra ? lit->tetra_options->tolerance : lit->options->sampling.tolerance
   };
-  const double start = stratus_now_ms();
-  uint64_t key;
+  const uint64_t key = key_of_inputs(inputs, m->count);
   const int count = stratus_lights_in_world(camera, shading, lights);
-  TRY(darken(m, inputs, &key));
   if (stratus_light_state_is_stale(state, key, lights, count)) {
+    TRY(darken(m, inputs));
     TRY(bounds_of(m, matter.bounds));
     TRY(stratus_light_state_build(m->context, &matter, lights, count, state));
-    TRY(darken(m, inputs, &state->key)); /* the drawing may have chosen the sampling, and with it made tables */
+    state->key = key;
   }
-  report->light_ms = stratus_now_ms() - start;
   return STRATUS_OK;
 }
 
 stratus_status stratus_ray_light_update_several(const stratus_ray_cast_input* inputs, int count, bool given, const stratus_camera* camera,
   stratus_ray_draw_several* draw, stratus_ray_cast_report* report)
 {
+  const double start = stratus_now_ms();
   const stratus_ray_cast_input* lit = NULL;
   several m = { .context = inputs->tetra ? inputs->tetra->context : inputs->caster->context, .count = count, .draw = draw };
   void *memory = NULL, *options = NULL, *tetra_options = NULL;
@@ -258,6 +299,7 @@ stratus_status stratus_ray_light_update_several(const stratus_ray_cast_input* in
     lit = input_has_shadows(&inputs[n]) ? &inputs[n] : NULL;
   }
   give(inputs, count, given, NULL);
+  drop_several(inputs, count, lit != NULL);
   if (!lit) {
     return STRATUS_OK;
   }
@@ -268,13 +310,27 @@ stratus_status stratus_ray_light_update_several(const stratus_ray_cast_input* in
   m.options = options;
   m.tetra_options = tetra_options;
   stratus_light_state* state = inputs->tetra ? &inputs->tetra->light : &inputs->caster->light;
-  TRY_CLEANUP(update_several(&m, inputs, lit, camera, state, report));
+  TRY_CLEANUP(update_several(&m, inputs, lit, camera, state));
   give(inputs, count, given, state->maps);
+  report->light_ms = stratus_now_ms() - start;
+  report->light_builds = state->builds;
+  report->light_bytes = stratus_light_maps_bytes(state->maps);
+  report->light_error = stratus_light_maps_error(state->maps);
 cleanup:
   stratus_release(m.context, memory);
   stratus_release(m.context, options);
   stratus_release(m.context, tetra_options);
   return status;
+}
+
+void stratus_ray_light_report(const stratus_ray_cast_report* light, stratus_ray_cast_report* reports, int count)
+{
+  for (int n = 0; reports && n < count; ++n) {
+    reports[n].light_ms = n == 0 ? light->light_ms : 0.0;
+    reports[n].light_builds = n == 0 ? light->light_builds : 0;
+    reports[n].light_bytes = light->light_bytes;
+    reports[n].light_error = light->light_error;
+  }
 }
 
 void stratus_ray_light_return(const stratus_ray_cast_input* inputs, int count)

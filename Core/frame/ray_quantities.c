@@ -251,26 +251,6 @@ static void reach_box(
   }
 }
 
-static void reach_mesh(const stratus_camera* camera, const stratus_mesh* mesh, const double to_world[16], double* lo, double* hi)
-{
-  double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
-  for (int b = 0; b < mesh->block_count; ++b) {
-    reach_mesh(camera, &mesh->blocks[b], to_world, lo, hi);
-  }
-  for (int64_t p = 0; mesh->block_count == 0 && p < mesh->point_count; ++p) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double x = mesh->points ? mesh->points[3 * p + axis] : (double)mesh->float_points[3 * p + axis];
-      if (isfinite(x)) {
-        low[axis] = fmin(low[axis], x);
-        high[axis] = fmax(high[axis], x);
-      }
-    }
-  }
-  if (low[0] <= high[0]) {
-    reach_box(camera, low, high, to_world, lo, hi);
-  }
-}
-
 static void reach_volume(const stratus_camera* camera, const stratus_volume* volume, double* lo, double* hi)
 {
   double to_world[16], low[3], high[3];
@@ -289,7 +269,10 @@ static bool find_camera(const quantities* q, stratus_camera* camera)
   for (int n = 0; n < q->count; ++n) {
     const stratus_ray_cast_input* in = &q->inputs[n];
     if (in->tetra) {
-      reach_mesh(q->camera, in->mesh, in->mesh->matrix, &lo, &hi);
+      double low[3], high[3];
+      if (stratus_tetra_box(in->mesh, low, high)) {
+        reach_box(q->camera, low, high, in->mesh->matrix, &lo, &hi);
+      }
     } else {
       reach_volume(q->camera, in->volume, &lo, &hi);
     }

@@ -94,8 +94,9 @@ static stratus_status draw_on_device(stratus_several* s, const stratus_several_f
 
 static stratus_status draw(stratus_several* s, const stratus_several_frame* frame, stratus_ray_counts* counts)
 {
-  const stratus_ray_caster* first = s->inputs[0].of->caster;
-  if (s->context->device && !(first && first->on_host)) {
+  const stratus_ray_cast_input* first = s->inputs[0].of; /* all are on the host, or none */
+  const bool on_host = first->tetra ? first->tetra->on_host : first->caster->on_host;
+  if (s->context->device && !on_host) {
     bool drawn = false;
     const stratus_status status = draw_on_device(s, frame, counts, &drawn);
     if (status != STRATUS_OK) { /* if the host is to draw, the message goes to the log only */
@@ -183,7 +184,7 @@ static stratus_status render(stratus_several* s, stratus_ray_cast_arguments* arg
   uint64_t differing = 0;
   int window[4] = { 0, 0, 0, 0 };
   float termination = 1.0f;
-  TRY(stratus_ray_light_update_several(s->given, s->count, false, s->camera, stratus_ray_caster_render_several, &s->inputs[0].report));
+  TRY(stratus_ray_light_update_several(s->given, s->count, false, s->camera, stratus_ray_caster_render_several, &s->light));
   s->lights = stratus_light_maps_words(s->given->tetra ? s->given->tetra->lights : s->given->caster->optics.lights);
   for (int n = 0; n < s->count; ++n) {
     TRY(stratus_several_update(s, &s->inputs[n]));
@@ -223,38 +224,6 @@ static stratus_status render(stratus_several* s, stratus_ray_cast_arguments* arg
   return STRATUS_OK;
 }
 
-static bool asks_for_shadows(const stratus_ray_cast_input* inputs, int count)
-{
-  bool asks = false;
-  for (int n = 0; n < count; ++n) {
-    asks = asks ||
-      (inputs[n].tetra ? inputs[n].tetra_options && inputs[n].tetra_options->shading.shadows
-                       : inputs[n].options && inputs[n].options->light.shading.shadows);
-  }
-  return asks;
-}
-
-/* Checks what maps of light are made of, before stratus_several_kept() checks its own input. */
-static stratus_status check_before_light(
-  stratus_context* context, const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera, const stratus_image* image)
-{
-  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
-  TRY(stratus_image_check(context, image));
-  TRY(stratus_camera_check(context, camera, image));
-  for (int n = 0; n < count; ++n) {
-    const stratus_ray_cast_input* in = &inputs[n];
-    if (in->tetra) {
-      TRY(stratus_tetra_shadow_check(context, in->mesh, in->transfer, in->tetra_options));
-    } else {
-      const stratus_ray_cast_options* options = in->options ? in->options : &defaults;
-      TRY(stratus_ray_update_transfer_2d(in->caster, in->volume, options));
-      TRY(stratus_ray_check_input(
-        context, in->volume, options->optics.transfer_2d ? &in->caster->optics.transfer_2d.shown : in->transfer, options));
-    }
-  }
-  return STRATUS_OK;
-}
-
 stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
   const stratus_image* image, stratus_ray_cast_report* reports)
 {
@@ -269,14 +238,7 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
     return stratus_ray_caster_render(inputs[0].caster, inputs[0].volume, inputs[0].transfer, camera, inputs[0].options, image, reports);
   }
   if (stratus_kept_mode(inputs) != STRATUS_MODE_COMPOSITE) {
-    stratus_ray_cast_report light = { .light_ms = 0.0 };
-    if (asks_for_shadows(inputs, count)) {
-      TRY(check_before_light(s.context, inputs, count, camera, image));
-      TRY(stratus_ray_light_update_several(inputs, count, true, camera, stratus_ray_caster_render_several, &light));
-    }
-    const stratus_status status = stratus_several_kept(inputs, count, camera, image, reports);
-    stratus_ray_light_return(inputs, count);
-    return status;
+    return stratus_several_kept(inputs, count, camera, image, reports);
   }
   for (int n = 0; n < count; ++n) {
     stratus_several_input* in = &s.inputs[n];
@@ -305,5 +267,6 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
   for (int n = 0; reports && n < count; ++n) {
     reports[n] = s.inputs[n].report;
   }
+  stratus_ray_light_report(&s.light, reports, count);
   return STRATUS_OK;
 }

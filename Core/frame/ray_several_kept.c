@@ -3,6 +3,7 @@
 #include "camera.h"
 #include "picture.h"
 #include "ray_kept.h"
+#include "ray_light.h"
 #include "ray_several_picture.h"
 #include "ray_shading_table.h"
 #include "tetra_cells.h"
@@ -18,8 +19,20 @@ static int components_of(const stratus_ray_cast_input* input, stratus_mode mode)
                                                                 : stratus_tetra_component_count(input->mesh);
 }
 
+static bool asks_for_shadows(const stratus_ray_cast_input* inputs, int count)
+{
+  bool asks = false;
+  for (int n = 0; n < count; ++n) {
+    asks = asks ||
+      (inputs[n].tetra ? inputs[n].tetra_options && inputs[n].tetra_options->shading.shadows
+                       : inputs[n].options && inputs[n].options->light.shading.shadows);
+  }
+  return asks;
+}
+
 static stratus_status check(stratus_context* context, const stratus_ray_cast_input* inputs, int count)
 {
+  const bool shadows = asks_for_shadows(inputs, count);
   for (int n = 0; n < count; ++n) {
     const stratus_ray_cast_input* in = &inputs[n];
     const stratus_mode mode = stratus_kept_mode(in), first = stratus_kept_mode(inputs);
@@ -30,7 +43,9 @@ static stratus_status check(stratus_context* context, const stratus_ray_cast_inp
     if (in->tetra && !in->mesh) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume %d of several has no mesh", n);
     }
-    if (!in->tetra) {
+    if (in->tetra && shadows) { /* maps of light are made before meshes are drawn, and check them */
+      TRY(stratus_tetra_shadow_check(context, in->mesh, in->transfer, in->tetra_options));
+    } else if (!in->tetra) {
       const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
       TRY(stratus_ray_check_input(context, in->volume, in->transfer, in->options ? in->options : &defaults));
     }
@@ -161,6 +176,13 @@ static void take_material(const stratus_material* material, stratus_ray_light_op
   light->materials = NULL;
 }
 
+/* The component's caster reads the maps of light of the whole, until it is drawn. */
+static void share_light(const stratus_ray_caster* whole, stratus_ray_caster* part)
+{
+  part->optics.lights = whole ? whole->optics.lights : NULL;
+  part->light_given = whole && whole->light_given;
+}
+
 static stratus_status take_component(
   stratus_context* context, const stratus_ray_cast_input* in, int c, component* to, stratus_ray_cast_input* input)
 {
@@ -171,6 +193,7 @@ static stratus_status take_component(
   for (size_t i = 0; i < to->transfer->opacity_count; ++i) {
     opacity[2 * i + 1] *= in->transfer[c].weight;
   }
+  share_light(in->caster, caster);
   to->volume = stratus_volume_component(in->volume, c);
   to->options = *in->options;
   if (to->options.light.materials) {
@@ -216,6 +239,9 @@ static stratus_status draw_components(const stratus_ray_cast_input* inputs, int 
   }
 cleanup:
   for (n = 0; parts && n < total; ++n) {
+    if (parts[n].transfer) {
+      share_light(NULL, ((stratus_ray_cast_input*)list)[n].caster);
+    }
     stratus_release(context, parts[n].transfer);
   }
   stratus_release(context, memory);
@@ -236,6 +262,16 @@ stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int co
   for (int n = 0; n < count; ++n) {
     total += components_of(&inputs[n], mode);
   }
-  return stratus_kept_is(mode) || total == count ? draw_all(inputs, count, camera, image, reports)
-                                                 : draw_components(inputs, count, total, camera, image, reports);
+  const bool given = inputs[0].caster && inputs[0].caster->light_given; /* by a picture of blocks, of which this is one */
+  stratus_ray_cast_report light = { .light_ms = 0.0 };
+  if (!given && mode != STRATUS_MODE_QUANTITIES) { /* quantities leave a picture's maps as they are */
+    TRY(stratus_ray_light_update_several(inputs, count, true, camera, stratus_several_kept, &light));
+  }
+  const stratus_status status = stratus_kept_is(mode) || total == count ? draw_all(inputs, count, camera, image, reports)
+                                                                        : draw_components(inputs, count, total, camera, image, reports);
+  if (!given) {
+    stratus_ray_light_return(inputs, count);
+    stratus_ray_light_report(&light, reports, count);
+  }
+  return status;
 }

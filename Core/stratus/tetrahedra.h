@@ -165,6 +165,11 @@ typedef struct stratus_tetra_report {
   uint64_t again;                                                /* project: pixels drawn again because their cells came in a wrong order */
   double sort_ms, bin_ms, project_ms; /* project: times of the order, of the cells' outlines and tiles, and of the pixels */
   size_t bytes;                       /* bytes kept for the mesh, and for a frame */
+  /* Shadows: as in stratus_ray_cast_report. */
+  uint64_t light_builds;
+  double light_ms;
+  size_t light_bytes;
+  double light_error;
 } stratus_tetra_report;
 
 typedef struct stratus_tetra_caster stratus_tetra_caster;

@@ -57,7 +57,7 @@ static void drop_mesh(stratus_tetra_caster* caster)
   caster->mesh = NULL;
 }
 
-static void drop_shadows(stratus_tetra_caster* caster)
+void stratus_tetra_shadow_drop(stratus_tetra_caster* caster)
 {
   stratus_light_state_drop(&caster->light);
   caster->lights = NULL;
@@ -68,7 +68,7 @@ static void drop_shadows(stratus_tetra_caster* caster)
 void stratus_tetra_caster_release(stratus_tetra_caster* caster)
 {
   if (caster) {
-    drop_shadows(caster);
+    stratus_tetra_shadow_drop(caster);
     drop_mesh(caster);
     stratus_tetra_list_destroy(caster->list);
     caster->list = NULL;
@@ -240,7 +240,7 @@ static stratus_status march_rays(
 {
   const stratus_tetra_device_source source = device_source(caster);
   bool drawn = false;
-  if (caster->context->device) {
+  if (caster->context->device && !caster->on_host) {
     const stratus_status status = stratus_tetra_march_device(
       caster->context, &caster->device, &source, frame, &caster->buffers, counts, &report->entries_ms, &report->march_ms, &drawn);
     if (!stratus_device_hands_back(caster->context, status)) {
@@ -268,7 +268,7 @@ static stratus_status project_tiles(
   stratus_tetra_caster* caster = data;
   const stratus_tetra_device_source source = device_source(caster);
   bool drawn = false;
-  if (context->device) {
+  if (context->device && !caster->on_host) {
     const stratus_status status = stratus_tetra_project_device(context, &caster->device, &source, projection, counts, &drawn);
     if (!stratus_device_hands_back(context, status)) {
       TRY(status);
@@ -471,19 +471,27 @@ stratus_status stratus_tetra_light_caster(stratus_tetra_caster* caster, stratus_
     TRY(stratus_tetra_caster_create(caster->context, &caster->dark));
   }
   *dark = caster->dark;
+  (*dark)->on_host = true;
   return STRATUS_OK;
 }
 
 /* Builds the maps of light of a picture of this one mesh where they are stale. */
-static stratus_status update_shadows(stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera)
+static stratus_status update_shadows(
+  stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera, stratus_tetra_report* report)
 {
+  const double start = stratus_now_ms();
   stratus_tetra_caster* dark;
   if (!stratus_tetra_has_shadows(of->mesh, of->options)) {
-    drop_shadows(caster);
+    stratus_tetra_shadow_drop(caster);
     return STRATUS_OK;
   }
   TRY(stratus_tetra_light_caster(caster, &dark));
-  return stratus_tetra_shadow_update(caster, of, camera, stratus_tetra_caster_render);
+  TRY(stratus_tetra_shadow_update(caster, of, camera, stratus_tetra_caster_render));
+  report->light_ms = stratus_now_ms() - start;
+  report->light_builds = caster->light.builds;
+  report->light_bytes = stratus_light_maps_bytes(caster->lights);
+  report->light_error = stratus_light_maps_error(caster->lights);
+  return STRATUS_OK;
 }
 
 stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
@@ -502,7 +510,7 @@ stratus_status stratus_tetra_caster_render(stratus_tetra_caster* caster, const s
   }
   const stratus_tetra_subject of = { mesh, transfer, options };
   TRY(take(caster, &of, camera, image, &drawn, &mine));
-  TRY(update_shadows(caster, &of, camera));
+  TRY(update_shadows(caster, &of, camera, &mine));
   if (stratus_tetra_draws_last(drawn, options)) {
     double bias;
     TRY(draw_component(caster, drawn->components - 1, drawn, transfer, camera, options, image, &mine, &bias));

@@ -128,6 +128,7 @@ struct stratus_tetra_caster {
   const stratus_light_maps* lights;  /* shadows: the picture's maps; NULL: none */
   stratus_light_state light;         /* of a picture of this one mesh, or of several inputs of which it is the first */
   struct stratus_tetra_caster* dark; /* draws the matter that absorbs light; NULL: none */
+  bool on_host;                      /* it never draws on the device */
   const stratus_tetra_costs* costs;  /* costs used instead of measured ones, for tests; NULL: none */
 };
 
@@ -155,6 +156,8 @@ stratus_status stratus_tetra_caster_enter(stratus_tetra_caster* caster, stratus_
 uint64_t stratus_tetra_hash(const stratus_context* context, const stratus_mesh* mesh);
 stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);
 void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
+/* Gives the local bounds of all finite coordinates of a mesh, or of its blocks. Returns false if an axis has none. */
+bool stratus_tetra_box(const stratus_mesh* mesh, double lo[3], double hi[3]);
 /* Whether the mesh has the content in points and vertices, not merely the pointers, that `tetra` was made from. */
 bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh);
 /* Takes other values of a mesh that fits. *taken false: other cells show by them, so that the borders differ; then nothing has changed. */
@@ -217,8 +220,10 @@ void stratus_tetra_frame_slice(stratus_tetra_frame* frame, const stratus_tetra_o
 void stratus_tetra_frame_contours(
   stratus_tetra_frame* frame, const stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_tetra_options* options);
 void stratus_tetra_frame_clip(stratus_tetra_frame* frame, const stratus_mesh* mesh, const stratus_tetra_options* options);
-/* tetra_caster.c: the caster that draws the matter that absorbs light. */
+/* tetra_caster.c: the caster that draws the matter that absorbs light, on the host, so that host and device have the same maps; and drop
+ * it, with all maps. */
 stratus_status stratus_tetra_light_caster(stratus_tetra_caster* caster, stratus_tetra_caster** dark);
+void stratus_tetra_shadow_drop(stratus_tetra_caster* caster);
 /* tetra_shadow.c. A function as stratus_tetra_caster_render(); and the maps of a picture of this mesh alone, of layers that `dark` draws.
  */
 typedef stratus_status stratus_tetra_draw(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,

@@ -306,6 +306,26 @@ static stratus_status build(
   return STRATUS_OK;
 }
 
+bool stratus_tetra_box(const stratus_mesh* mesh, double lo[3], double hi[3])
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    lo[axis] = INFINITY;
+    hi[axis] = -INFINITY;
+  }
+  for (int part = 0; part < stratus_mesh_part_count(mesh); ++part) {
+    const stratus_mesh* of = stratus_mesh_part(mesh, part);
+    for (int64_t p = 0; p < of->point_count; ++p) {
+      double at[3];
+      stratus_mesh_point(of, p, at);
+      for (int axis = 0; axis < 3; ++axis) {
+        lo[axis] = isfinite(at[axis]) ? fmin(lo[axis], at[axis]) : lo[axis];
+        hi[axis] = isfinite(at[axis]) ? fmax(hi[axis], at[axis]) : hi[axis];
+      }
+    }
+  }
+  return lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2];
+}
+
 bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
 {
   const bool lattice = stratus_mesh_is_lattice(mesh);

@@ -26,7 +26,8 @@ stratus_status stratus_tetra_shadow_check(
 bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* o)
 {
   const bool lit = o->mode == STRATUS_TETRA_COMPOSITE || o->mode == STRATUS_TETRA_ISOSURFACE;
-  return lit && stratus_lights_cast_shadows(&o->shading, o->shade != 0, o->dependent ? NULL : o->materials, mesh->components);
+  const bool own = stratus_tetra_mixes(mesh, o) && !o->dependent;
+  return lit && stratus_lights_cast_shadows(&o->shading, o->shade != 0, own ? o->materials : NULL, mesh->components);
 }
 
 stratus_tetra_options stratus_tetra_dark_options(const stratus_tetra_options* options)
@@ -38,18 +39,31 @@ stratus_tetra_options stratus_tetra_dark_options(const stratus_tetra_options* op
   return dark;
 }
 
-uint64_t stratus_tetra_shadow_key(uint64_t key, const stratus_mesh* m, const stratus_transfer* transfers, const stratus_tetra_options* o)
+/* Bytes under the same address are the same unless the mesh's revision has changed. */
+static uint64_t key_of_mesh(uint64_t key, const stratus_mesh* m)
 {
-  const void* data[4] = { m->points, m->vertices, m->values, m->blocks };
-  const int64_t counts[4] = { (int64_t)m->revision, m->point_count, m->cell_count, m->components };
-  const double numbers[6] = { o->mode, o->tolerance, o->gradient_distance, o->clip_plane_count, o->crop, o->crop_regions };
-  const int functions = o->label_count > 0 ? o->label_count + 1 : m->components > 1 && !o->dependent ? m->components : 1;
+  const void* data[6] = { m->points, m->float_points, m->vertices, m->values, m->hidden, m->labels };
+  const int64_t counts[11] = { (int64_t)m->revision, m->point_count, m->cell_count, m->value_stride, m->type, m->components, m->cell_values,
+    m->lattice[0], m->lattice[1], m->lattice[2], m->block_count };
   key = stratus_light_key(key, data, sizeof data);
   key = stratus_light_key(key, counts, sizeof counts);
+  for (int n = 0; n < m->block_count; ++n) {
+    key = key_of_mesh(key, m->blocks + n);
+  }
+  return key;
+}
+
+uint64_t stratus_tetra_shadow_key(uint64_t key, const stratus_mesh* m, const stratus_transfer* transfers, const stratus_tetra_options* o)
+{
+  const bool surfaces = o->mode == STRATUS_TETRA_ISOSURFACE;
+  const double numbers[10] = { o->mode, o->tolerance, o->gradient_distance, o->clip_plane_count, o->crop, o->crop_regions, o->dependent,
+    o->mean_components, o->label_count, surfaces ? o->contour_count : 0.0 };
+  const int functions = o->label_count > 0 ? o->label_count + 1 : m->components > 1 && !o->dependent ? m->components : 1;
+  key = key_of_mesh(key, m);
   key = stratus_light_key(key, numbers, sizeof numbers);
   key = stratus_light_key(key, o->clip_planes, (size_t)o->clip_plane_count * sizeof o->clip_planes[0]);
   key = stratus_light_key(key, o->crop_bounds, o->crop ? sizeof o->crop_bounds : 0);
-  key = stratus_light_key(key, o->contours, (size_t)o->contour_count * sizeof o->contours[0]);
+  key = stratus_light_key(key, o->contours, surfaces ? (size_t)o->contour_count * sizeof o->contours[0] : 0);
   key = stratus_light_key(key, m->matrix, sizeof m->matrix);
   return stratus_light_key_of_transfers(key, transfers, functions);
 }

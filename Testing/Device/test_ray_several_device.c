@@ -286,6 +286,27 @@ static void make_mesh_case(stratus_context* context, uint32_t seed, mixed_case* 
   }
 }
 
+/* Lets matter cast shadows from one side on what is lit: volumes and meshes, of which a mesh is the first input where seed is even. The
+ * maps of light are made on the host for both. */
+static void add_shadows(mixed_case* m, uint32_t seed)
+{
+  static const stratus_light light = { .vector = { 3.0, -1.0, 2.0 }, .color = { 1.0, 0.9, 0.8 } };
+  m->meshes_first = seed % 2 == 0;
+  for (int n = 0; n < m->volumes.count + m->mesh_count; ++n) {
+    const bool mesh = n >= m->volumes.count;
+    stratus_shading* s = mesh ? &m->meshes[n - m->volumes.count].options.shading : &m->volumes.of[n].options.light.shading;
+    if (mesh) {
+      m->meshes[n - m->volumes.count].options.shade = 1;
+      m->meshes[n - m->volumes.count].options.tolerance = 0.02; /* of which coarse maps are enough */
+    } else {
+      m->volumes.of[n].options.light.shade = 1;
+      m->volumes.of[n].options.sampling.tolerance = 0.02;
+    }
+    s->shadows = s->light_count = 1;
+    s->lights[0] = light;
+  }
+}
+
 static void compare_meshes(bool one_ray)
 {
   static float opaque[CASE_PIXELS];
@@ -297,7 +318,11 @@ static void compare_meshes(bool one_ray)
   for (uint32_t seed = 0; seed < 7; seed += few_run() || one_ray ? 3 : 1) {
     mixed_case m;
     make_mesh_case(host, seed, &m, &media, opaque);
+    if (seed == 0 || seed == 3) {
+      add_shadows(&m, seed);
+    }
     assert_int_equal(mixed_draw(&m, &on_host), STRATUS_OK);
+    assert_true((seed != 0 && seed != 3) || on_host.report.light_bytes > 0);
     const stratus_status status = mixed_draw_by(device, &m, &on_device);
     print_message("             seed %u: %d volumes, %d meshes, %d pixels, %d differ; %s%s\n", seed, m.volumes.count, m.mesh_count,
       case_lit(&on_host), differing(), on_device.report.why, status ? stratus_context_message(device) : "");

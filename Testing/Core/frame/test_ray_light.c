@@ -3,7 +3,9 @@
 #include "picture_case.h"
 
 #include "base.h"
+#include "ray_caster.h"
 #include "testing.h"
+#include "tetra_caster.h"
 
 static picture drawn;
 static picture other;
@@ -282,6 +284,154 @@ static void matter_shadows_other_volumes(void** state)
   stratus_context_destroy(context);
 }
 
+/* Draws two volumes, and expects this number of builds of maps so far. */
+static void draw_two(const stratus_ray_cast_input inputs[2], const picture_case* c,
+  stratus_status (*draw)(const stratus_ray_cast_input*, int, const stratus_camera*, const stratus_image*, stratus_ray_cast_report*),
+  uint64_t builds)
+{
+  static stratus_ray_cast_report reports[2];
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba };
+  assert_int_equal(draw(inputs, 2, &c->camera, &image, reports), STRATUS_OK);
+  assert_int_equal(reports[0].light_builds, builds);
+  assert_int_equal(reports[1].light_builds, 0);
+  for (int n = 0; n < 2; ++n) {
+    assert_true(reports[n].light_bytes > 0 && reports[n].light_error > 0.0);
+  }
+  assert_true(reports[0].light_ms > 0.0 && reports[1].light_ms == 0.0);
+}
+
+/* Maps of several inputs follow the inputs' data, whatever their casters have drawn before; they are reported; and they are dropped with
+ * all that drew them when no input has shadows. */
+static void maps_of_several_are_of_their_data(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c, second;
+  make_case(context, &c, STRATUS_FLOAT32);
+  c.options.sampling.tolerance = 0.02;
+  case_create(context, &second, STRATUS_FLOAT32, 30, 26, 28, 6);
+  stratus_ray_caster* casters[3] = { NULL, NULL, NULL };
+  for (int n = 0; n < 3; ++n) {
+    assert_int_equal(stratus_ray_caster_create(context, &casters[n]), STRATUS_OK);
+  }
+  stratus_ray_cast_input inputs[2] = { { .caster = casters[0], .volume = &c.volume, .transfer = &c.transfer, .options = &c.options },
+    { .caster = casters[1], .volume = &c.volume, .transfer = &c.transfer, .options = &c.options } };
+  draw_two(inputs, &c, stratus_ray_caster_render_several, 1);
+  inputs[1].caster = casters[2]; /* the same matter by another caster, then other matter */
+  draw_two(inputs, &c, stratus_ray_caster_render_several, 1);
+  inputs[1].caster = casters[1];
+  inputs[1].volume = &second.volume;
+  draw_two(inputs, &c, stratus_ray_caster_render_several, 2);
+  inputs[1].caster = casters[2];
+  inputs[1].volume = &c.volume;
+  draw_two(inputs, &c, stratus_ray_caster_render_several, 3);
+  draw_two(inputs, &c, stratus_ray_caster_render_blocks, 3);
+  c.options.mode = STRATUS_MODE_ISOSURFACE;
+  c.options.optics.contour_count = 1;
+  c.options.optics.contours[0] = c.opacity[4];
+  draw_two(inputs, &c, stratus_ray_caster_render_several, 4);
+  c.options.optics.contours[0] = 0.9 * c.opacity[4] + 0.1 * c.opacity[2];
+  draw_two(inputs, &c, stratus_ray_caster_render_several, 5);
+  c.options.light.shading.shadows = 0;
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba };
+  assert_int_equal(stratus_ray_caster_render_several(inputs, 2, &c.camera, &image, NULL), STRATUS_OK);
+  for (int n = 0; n < 3; n += 2) {
+    assert_null(casters[n]->light.maps);
+    assert_null(casters[n]->parts[STRATUS_RAY_LIGHT_PART]);
+  }
+  for (int n = 0; n < 3; ++n) {
+    stratus_ray_caster_destroy(casters[n]);
+  }
+  case_destroy(&second);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
+/* A ball above a plate, in components of their own. */
+static void make_components(picture_case* c, float* pairs, float* apart[2])
+{
+  for (int i = 0; i < 30 * 26 * 28; ++i) {
+    const int x = i % 30, y = i / 30 % 26, z = i / (30 * 26);
+    const double ball = 6.0 - sqrt((x - 15) * (x - 15) + (y - 13) * (y - 13) + (z - 18) * (z - 18)), plate = 5.3 - z;
+    pairs[2 * i] = apart[0][i] = (float)ball;
+    pairs[2 * i + 1] = apart[1][i] = (float)plate;
+  }
+  c->options.mode = STRATUS_MODE_ISOSURFACE;
+  c->options.optics.contour_count = 1;
+  c->options.optics.contours[0] = 0.0;
+  c->options.sampling.tolerance = 0.02;
+  c->options.light.shading.lights[0] = (stratus_light){ .vector = { 0.2, 0.1, 1 }, .color = { 1, 1, 1 } };
+}
+
+/* Isosurfaces of independent components shadow one another, as surfaces of two volumes do, and the plate is dark in the ball's
+ * shadow, whose middle is below the ball as the light falls. */
+static void components_shadow_one_another(void** state)
+{
+  static float pairs[2 * 30 * 26 * 28], first[30 * 26 * 28], second[30 * 26 * 28];
+  static double opacity[4] = { -20.0, 1.0, 20.0, 1.0 }, color[4] = { 0.0, 1.0, 1.0, 1.0 };
+  static stratus_ray_cast_report report;
+  float* apart[2] = { first, second };
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  make_case(context, &c, STRATUS_FLOAT32);
+  make_components(&c, pairs, apart);
+  stratus_transfer transfers[2] = { stratus_transfer_default(), stratus_transfer_default() };
+  stratus_volume one[2], both = c.volume;
+  stratus_ray_caster* casters[3] = { NULL, NULL, NULL };
+  stratus_ray_cast_input inputs[2];
+  both.values = pairs;
+  both.value_stride = both.components = 2;
+  for (int n = 0; n < 3; ++n) {
+    assert_int_equal(stratus_ray_caster_create(context, &casters[n]), STRATUS_OK);
+  }
+  for (int n = 0; n < 2; ++n) {
+    transfers[n].opacity = opacity;
+    transfers[n].color = color;
+    transfers[n].opacity_count = 2;
+    transfers[n].color_count = 1;
+    one[n] = c.volume;
+    one[n].values = apart[n];
+    inputs[n] = (stratus_ray_cast_input){ .caster = casters[n], .volume = &one[n], .transfer = &transfers[n], .options = &c.options };
+  }
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba },
+                      joint = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = drawn.rgba };
+  assert_int_equal(stratus_ray_caster_render_several(inputs, 2, &c.camera, &image, NULL), STRATUS_OK);
+  assert_int_equal(stratus_ray_caster_render(casters[2], &both, transfers, &c.camera, &c.options, &joint, &report), STRATUS_OK);
+  const double db = reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS);
+  print_message("             components: %.1f dB from volumes\n", db);
+  assert_true(db > 60.0);
+  assert_int_equal(report.light_builds, 1);
+  assert_true(report.light_bytes > 0 && report.light_ms > 0.0 && report.light_error > 0.0);
+  c.camera.parallel = 1; /* from above: a pixel in the shadow of the ball, and another in the light */
+  const double eye[2][3] = { { 12.1, 11.55, 8.0 }, { 26.0, 22.0, 8.0 } };
+  for (int n = 0; n < 2; ++n) {
+    float pixel[4];
+    const stratus_image small = { .width = 1, .height = 1, .rgba = pixel };
+    stratus_camera camera = c.camera;
+    memcpy(camera.eye, eye[n], sizeof camera.eye);
+    memcpy(camera.forward, (const double[3]){ 0, 0, -1 }, sizeof camera.forward);
+    memcpy(camera.right, (const double[3]){ 0.1, 0, 0 }, sizeof camera.right);
+    memcpy(camera.up, (const double[3]){ 0, 0.1, 0 }, sizeof camera.up);
+    camera.near_k = 0.0;
+    camera.far_k = 20.0;
+    assert_int_equal(stratus_ray_caster_render(casters[2], &both, transfers, &camera, &c.options, &small, &report), STRATUS_OK);
+    assert_int_equal(report.light_builds, 1);
+    print_message("             %s: %.3f\n", n ? "in the light" : "in the shadow", (double)pixel[0]);
+    assert_true(pixel[3] > 0.99f && (n ? pixel[0] > 0.1f : pixel[0] < 0.02f));
+  }
+  /* components whose materials are not lit have no maps, whatever `shade` says */
+  static const stratus_material unlit[2] = { { .shade = 0 }, { .shade = 0 } };
+  c.options.light.materials = unlit;
+  assert_int_equal(stratus_ray_caster_render(casters[2], &both, transfers, &c.camera, &c.options, &joint, &report), STRATUS_OK);
+  assert_int_equal(report.light_bytes, 0);
+  for (int n = 0; n < 3; ++n) {
+    stratus_ray_caster_destroy(casters[n]);
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
 /* Tetrahedra between the same values draw almost as the image does, alone and as one of several. */
 static void meshes_have_shadows(void** state)
 {
@@ -315,8 +465,11 @@ static void meshes_have_shadows(void** state)
   const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba };
   assert_int_equal(stratus_tetra_caster_create(context, &caster), STRATUS_OK);
   case_render(context, &c, &drawn);
-  assert_int_equal(stratus_tetra_caster_render(caster, &mesh, &c.transfer, &c.camera, &options, &image, NULL), STRATUS_OK);
+  stratus_tetra_report of_mesh;
+  assert_int_equal(stratus_tetra_caster_render(caster, &mesh, &c.transfer, &c.camera, &options, &image, &of_mesh), STRATUS_OK);
   const double alone = reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS);
+  assert_int_equal(of_mesh.light_builds, 1);
+  assert_true(of_mesh.light_bytes > 0 && of_mesh.light_ms > 0.0 && of_mesh.light_error > 0.0);
   stratus_ray_caster* empty = NULL;
   picture_case none;
   case_create(context, &none, STRATUS_FLOAT32, 2, 2, 2, 5);
@@ -331,6 +484,9 @@ static void meshes_have_shadows(void** state)
   const double several = reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS);
   print_message("             a mesh: %.1f dB, of several: %.1f dB from the image\n", alone, several);
   assert_true(alone > 40.0 && several > 40.0);
+  options.shading.shadows = 0;
+  assert_int_equal(stratus_ray_caster_render_several(inputs, 2, &c.camera, &image, NULL), STRATUS_OK);
+  assert_true(!caster->dark && !caster->light.maps && !caster->lights);
   stratus_ray_caster_destroy(empty);
   stratus_tetra_caster_destroy(caster);
   free(points);
@@ -472,6 +628,8 @@ int test_ray_light_maps(void)
     cmocka_unit_test(maps_are_built_when_they_are_stale),
     cmocka_unit_test(pictures_with_shadows_are_the_same_however_they_are_made),
     cmocka_unit_test(matter_shadows_other_volumes),
+    cmocka_unit_test(maps_of_several_are_of_their_data),
+    cmocka_unit_test(components_shadow_one_another),
     cmocka_unit_test(meshes_have_shadows),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

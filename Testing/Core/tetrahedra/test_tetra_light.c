@@ -269,9 +269,122 @@ static void wrong_light_is_refused(void** state)
   tetra_destroy(&c);
 }
 
+/* Sets one of the things that decide where matter is; false if there are no more. */
+static bool change(int number, stratus_mesh* m, stratus_transfer* t, stratus_tetra_options* o)
+{
+  static const double points[2] = { 0.1, 0.3 };
+  static stratus_mesh blocks[2];
+  static uint8_t bytes[2];
+  switch (number) {
+    case 0:
+      m->hidden = bytes;
+      break;
+    case 1:
+      m->labels = bytes;
+      break;
+    case 2:
+      m->float_points = (const float*)points;
+      break;
+    case 3:
+      m->lattice[1] = 3;
+      break;
+    case 4:
+      m->type = STRATUS_FLOAT64;
+      break;
+    case 5:
+      m->value_stride = 2;
+      break;
+    case 6:
+      m->cell_values = !m->cell_values;
+      break;
+    case 7:
+      ++m->revision;
+      break;
+    case 8:
+      m->values = points;
+      break;
+    case 9:
+      m->matrix[3] += 1.0;
+      break;
+    case 10:
+      m->components = 2;
+      m->value_stride = 2;
+      break;
+    case 11:
+      o->mean_components = 1;
+      break;
+    case 12:
+      o->dependent = 1;
+      break;
+    case 13:
+      o->label_count = 1;
+      break;
+    case 14:
+      o->mode = STRATUS_TETRA_ISOSURFACE;
+      break;
+    case 15:
+      o->crop = 1;
+      break;
+    case 16:
+      o->clip_plane_count = 1;
+      break;
+    case 17:
+      t[0].unit_distance *= 2.0;
+      break;
+    case 18:
+      m->blocks = blocks;
+      m->block_count = 1;
+      break;
+    case 19:
+      m->blocks = blocks;
+      m->block_count = 2;
+      break;
+    case 20:
+      blocks[0].hidden = bytes;
+      m->blocks = blocks;
+      m->block_count = 1;
+      break;
+    case 21:
+      blocks[0].hidden = NULL;
+      blocks[0].values = points;
+      m->blocks = blocks;
+      m->block_count = 1;
+      break;
+    default:
+      return false;
+  }
+  return true;
+}
+
+/* Each change of matter gives another key, so that shadows are built anew. */
+static void shadows_follow_all_that_absorbs(void** state)
+{
+  uint64_t keys[64];
+  int count = 0;
+  tetra_case c;
+  (void)state;
+  tetra_create(&c, 3, 0.2, 0.0, 1);
+  keys[count++] = stratus_tetra_shadow_key(0, &c.mesh, &c.transfer, &c.options);
+  for (bool more = true; more; ++count) {
+    stratus_mesh mesh = c.mesh;
+    stratus_transfer transfers[2] = { c.transfer, c.transfer };
+    stratus_tetra_options options = c.options;
+    more = change(count - 1, &mesh, transfers, &options);
+    keys[count] = stratus_tetra_shadow_key(0, &mesh, transfers, &options);
+    for (int i = 0; i < count && more; ++i) {
+      if (keys[i] == keys[count]) {
+        fail_msg("changes %d and %d have the same key", i - 1, count - 1);
+      }
+    }
+  }
+  assert_int_equal(count, 24);
+  tetra_destroy(&c);
+}
+
 int test_tetra_light(void)
 {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(shadows_follow_all_that_absorbs),
     cmocka_unit_test_setup_teardown(light_is_right, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(gradient_opacity_is_right, tetra_start, tetra_stop),
     cmocka_unit_test_setup_teardown(opaque_values_are_thinned, tetra_start, tetra_stop),
