@@ -126,6 +126,11 @@ class progress;
 
 // ---- judge.cxx
 
+uint64_t hash_bytes(uint64_t hash, const void* data, size_t bytes);
+// Hashes everything that determines the reference's picture, except light, view, size, tile and step. The reference's own sources count, so
+// that a cache holds no picture of an earlier one.
+uint64_t hash_of(const scene& s);
+
 // The reference pictures of one scene, refined until they are precise enough for the compared results. They are drawn at one pixel of each
 // tile, if enough of these pixels show something.
 class judge
@@ -198,7 +203,7 @@ struct curves {
 // Returns the method without its setting: a method's settings share one curve.
 std::string family_of(const std::string& method);
 bool is_ours(const std::string& method);
-// The curves of a part: volume, tetra, tree (two: primary and random rays), distance, octree.
+// The curves of a part: volume, light, tetra, tree (two: primary and random rays), distance, octree.
 std::vector<curves> curves_of(const std::string& part, const std::vector<row>& rows);
 std::vector<std::string> scenes_of(const curves& c);
 // A peer's point, and the point of ours that is faster and more exact by most; without one `by` is nullptr. Where the peer has no error at

@@ -63,6 +63,16 @@ curves volume_curves(const std::vector<row>& rows)
   return c;
 }
 
+curves light_curves(const std::vector<row>& rows)
+{
+  curves c = { "Light", "frame, ms", "RMS error, of 1", "is faster and more exact", "at its error, ours is faster", {}, 0.0 };
+  for (const measured_method& m : methods_of(rows)) {
+    const double error = m.at("error");
+    add(c, m, m.method, m.at("frame_ms"), error > 0.0 ? error : -1.0);
+  }
+  return c;
+}
+
 curves tetra_curves(const std::vector<row>& rows)
 {
   curves c = { "Tetrahedra", "whole frame, ms", "RMS error of the window, of 1", "is faster and more exact", "at its error, ours is faster",
@@ -174,6 +184,9 @@ std::vector<curves> curves_of(const std::string& part, const std::vector<row>& r
 {
   if (part == "volume") {
     return { volume_curves(rows) };
+  }
+  if (part == "light") {
+    return { light_curves(rows) };
   }
   if (part == "tetra") {
     return { tetra_curves(rows) };

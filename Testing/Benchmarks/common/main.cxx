@@ -2,6 +2,7 @@
 // stratus-bench: runs the part that its first argument names.
 #include "bench.h"
 #include "distance.h"
+#include "light_bench.h"
 #include "octree_bench.h"
 #include "paraview_bench.h"
 #include "tetra_bench.h"
@@ -39,6 +40,9 @@ int main(int argc, char* argv[])
   try {
     if (part == "distance") {
       return bench::distance_main(argc, argv);
+    }
+    if (part == "light") {
+      return bench::light_main(argc, argv);
     }
     if (part == "octree") {
       return bench::octree_main(argc, argv);

@@ -15,14 +15,7 @@
 
 namespace bench {
 
-namespace {
-
-constexpr double finest = 1.0 / 256.0;
-constexpr double least_of_jumps = 70.0; // dB
-// Of all views, on which errors are measured. Squares of errors differ by two decades or so, so that their mean is known to a few percent.
-constexpr size_t enough_pixels = 16384;
-
-uint64_t mix(uint64_t hash, const void* data, size_t bytes)
+uint64_t hash_bytes(uint64_t hash, const void* data, size_t bytes)
 {
   const unsigned char* p = static_cast<const unsigned char*>(data);
   uint64_t word;
@@ -37,27 +30,32 @@ uint64_t mix(uint64_t hash, const void* data, size_t bytes)
   return hash;
 }
 
-// Hashes everything that determines the reference's picture, except view, size, tile and step. The reference's own sources count, so that
-// a cache holds no picture of an earlier one.
 uint64_t hash_of(const scene& s)
 {
   const stratus_volume& v = s.volume;
   const int64_t values = v.dimensions[0] * v.dimensions[1] * v.dimensions[2] * v.value_stride;
-  uint64_t hash = mix(mix(2, STRATUS_BENCH_REFERENCE, std::strlen(STRATUS_BENCH_REFERENCE)), v.values,
+  uint64_t hash = hash_bytes(hash_bytes(2, STRATUS_BENCH_REFERENCE, std::strlen(STRATUS_BENCH_REFERENCE)), v.values,
     static_cast<size_t>(values) * stratus_type_size(v.type));
-  hash = mix(hash, v.dimensions, sizeof v.dimensions);
-  hash = mix(hash, v.spacing, sizeof v.spacing);
-  hash = mix(hash, v.origin, sizeof v.origin);
-  hash = mix(hash, &v.components, sizeof v.components);
-  hash = mix(hash, &s.up_axis, sizeof s.up_axis);
-  hash = mix(hash, &s.shaded, sizeof s.shaded);
+  hash = hash_bytes(hash, v.dimensions, sizeof v.dimensions);
+  hash = hash_bytes(hash, v.spacing, sizeof v.spacing);
+  hash = hash_bytes(hash, v.origin, sizeof v.origin);
+  hash = hash_bytes(hash, &v.components, sizeof v.components);
+  hash = hash_bytes(hash, &s.up_axis, sizeof s.up_axis);
+  hash = hash_bytes(hash, &s.shaded, sizeof s.shaded);
   for (const stratus_transfer& t : transfers_of(s)) {
-    hash = mix(hash, t.opacity, 2 * t.opacity_count * sizeof(double));
-    hash = mix(hash, t.color, 4 * t.color_count * sizeof(double));
-    hash = mix(hash, &t.unit_distance, sizeof(double));
+    hash = hash_bytes(hash, t.opacity, 2 * t.opacity_count * sizeof(double));
+    hash = hash_bytes(hash, t.color, 4 * t.color_count * sizeof(double));
+    hash = hash_bytes(hash, &t.unit_distance, sizeof(double));
   }
   return hash;
 }
+
+namespace {
+
+constexpr double finest = 1.0 / 256.0;
+constexpr double least_of_jumps = 70.0; // dB
+// Of all views, on which errors are measured. Squares of errors differ by two decades or so, so that their mean is known to a few percent.
+constexpr size_t enough_pixels = 16384;
 
 // Whether a function has two points of the same value.
 bool jumps(const std::vector<double>& points, size_t width)

@@ -50,8 +50,8 @@ floor_ms is an estimate, not a bound: the samples with alpha > 0, one a voxel un
 up, skips and tests nothing. A method can take fewer samples than floor counts.
 
 stratus-bench all --out FOLDER measures everything, stratus-bench compare A B compares two such runs.
-stratus-bench distance --help describes distance fields, octree --help culling, tetra --help tetrahedra, tree --help first hits, and
-paraview --help the plugin in ParaView.
+stratus-bench distance --help describes distance fields, light --help light, octree --help culling, tetra --help tetrahedra, tree --help
+first hits, and paraview --help the plugin in ParaView.
 )";
 
 struct options {
