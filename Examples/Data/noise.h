@@ -34,6 +34,17 @@ static inline double noise(double x, double y, double z)
   return sum;
 }
 
+/* The same of noises folded at 0, whose bulges are round and whose furrows are sharp: -1..1. */
+static inline double billows(double x, double y, double z, int octaves)
+{
+  double sum = 0.0, strength = 0.5;
+  for (int i = 0; i < octaves; ++i, strength *= 0.5) {
+    const double scale = (double)(1 << i);
+    sum += strength * (2.0 * fabs(noise(x * scale, y * scale, z * scale)) - 0.5);
+  }
+  return sum;
+}
+
 /* The sum of `octaves` noises, each half as strong and twice as fine as the one before. */
 static inline double turbulence(double x, double y, double z, int octaves)
 {
