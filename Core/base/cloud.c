@@ -161,8 +161,9 @@ stratus_status stratus_cloud_opacity(stratus_context* context, double extinction
 
 void stratus_cloud_light(double sun[3], double zenith[3], double horizon[3])
 {
-  /* A white surface that faces the zenith shows 4 times the colour of a sun there, and the horizon's radiance / 3 + the zenith's 2 / 3. */
-  static const double light[3][3] = { { 0.218, 0.204, 0.179 }, { 0.08, 0.14, 0.26 }, { 0.22, 0.27, 0.33 } };
+  /* A white surface that faces the zenith shows 4 times the colour of a sun there, and the horizon's radiance / 3 + the zenith's 2 / 3:
+   * here 4/3. */
+  static const double light[3][3] = { { 0.295, 0.271, 0.228 }, { 0.085, 0.19, 0.4 }, { 0.29, 0.37, 0.46 } };
   double* const out[3] = { sun, zenith, horizon };
   for (int i = 0; i < 3; ++i) {
     for (int c = 0; c < 3 && out[i]; ++c) {

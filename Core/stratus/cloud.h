@@ -68,9 +68,11 @@ STRATUS_API stratus_status stratus_cloud_extinction(
 STRATUS_API stratus_status stratus_cloud_opacity(
   stratus_context* context, double extinction, double highest, double points[4], double* unit_distance);
 
-/* Get light for pictures in which a white surface that faces the sun shows about 1: the colour of the sun (see stratus_shading: an
- * irradiance of E is a colour of E / (4 pi)), and the radiance of a clear sky at the zenith and at the horizon, about a fifth of all light
- * on level ground. Red, green and blue each; they are linear, and a screen needs them encoded (sRGB). */
+/* Get light for pictures as a photographer exposes clouds: a surface that reflects 3/4 of all light, as a thick cloud does, and faces the
+ * sun at the zenith shows 1 in each colour. Returns the colour of the sun (see stratus_shading: an irradiance of E is a colour of E / (4
+ * pi)), and the radiance of a clear sky at the zenith and at the horizon, about a fifth of all light. They are linear, and a screen needs
+ * them encoded (sRGB).
+ */
 STRATUS_API void stratus_cloud_light(double sun[3], double zenith[3], double horizon[3]);
 
 /* Compute the density of dry air, kg/m3: pressure / (STRATUS_DRY_AIR temperature).

@@ -242,7 +242,7 @@ static void direction_turns_from_north_to_east(void** state)
 }
 
 /* A white surface that faces the sun at the zenith shows the irradiance of sun and sky over pi. */
-static void light_shows_white_as_white(void** state)
+static void light_shows_a_thick_cloud_as_white(void** state)
 {
   (void)state;
   double sun[3], zenith[3], horizon[3];
@@ -253,7 +253,7 @@ static void light_shows_white_as_white(void** state)
       const double cosine = (i + 0.5) / 1000.0;
       sky += 2.0 * cosine * (horizon[c] + (zenith[c] - horizon[c]) * cosine) / 1000.0;
     }
-    assert_within(4.0 * sun[c] + sky, 1.0, 0.005); /* the colours have three digits */
+    assert_within(0.75 * (4.0 * sun[c] + sky), 1.0, 0.005); /* the colours have three digits */
   }
   stratus_cloud_light(NULL, NULL, NULL);
 }
@@ -283,7 +283,7 @@ int test_cloud(void)
     cmocka_unit_test(moments_are_counted_from_1970),
     cmocka_unit_test(sun_is_where_an_ephemeris_has_it),
     cmocka_unit_test(direction_turns_from_north_to_east),
-    cmocka_unit_test(light_shows_white_as_white),
+    cmocka_unit_test(light_shows_a_thick_cloud_as_white),
   };
   return cmocka_run_group_tests(tests, make, destroy);
 }
