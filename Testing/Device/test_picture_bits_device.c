@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * OpenCL on a processor, PoCL's and Intel's, draws pictures with the bits that are on record for the host. */
+#define CASE_FULL_SIZE
 #include "picture_bits.h"
 #include "testing.h"
 

@@ -41,7 +41,7 @@ static void compare(
     }
   }
   print_message("             %s: %d pixels, apart by %g at most\n", what, case_lit(&on_host), (double)most);
-  assert_true(case_lit(&on_host) > 50);
+  assert_true(case_lit(&on_host) > case_share(50));
   assert_true(counts == 0 || !device->device->is_cpu || !case_counts_agree()); /* single rays do not wait for others */
   assert_true(most <= LARGEST_DIFFERENCE);
 }

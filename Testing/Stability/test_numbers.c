@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Numbers at their ends: values and lengths next to nothing or beyond everything, zeros with a sign, pictures of one pixel, volumes of one
  * voxel, views along axes, edges and diagonals, one thread and many. */
+#define CASE_FULL_SIZE
 #include "picture_case.h"
 #include "testing.h"
 
@@ -11,7 +12,7 @@ static picture first, second;
 
 static double db_of(const picture_case* c, const picture* p)
 {
-  static float truth[4 * CASE_PIXELS];
+  static float truth[4 * CASE_PIXELS_MOST];
   const reference_scene scene = case_scene(c);
   assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, 0.25, truth, NULL), 0);
   return reference_psnr(p->rgba, truth, CASE_PIXELS);

@@ -128,7 +128,7 @@ static uint32_t build(stratus_context* context, tetra_case* c, uint32_t* random)
 static void both_methods_draw_the_reference(void** state)
 {
   static tetra_picture picture;
-  static double reference[4 * TETRA_PIXELS];
+  static double reference[4 * TETRA_PIXELS_MOST];
   int64_t inverted = 0, flat = 0, repeated = 0, shown = 0;
   double worst = 0.0;
   test_seeds seeds = test_seeds_of(TEST_SOME(ALL), ALL);

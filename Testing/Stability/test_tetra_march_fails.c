@@ -5,7 +5,7 @@
 #include "tetra_case.h"
 
 static tetra_picture picture;
-static double reference[4 * TETRA_PIXELS];
+static double reference[4 * TETRA_PIXELS_MOST];
 
 /* A constant transfer function, so that alpha measures the thickness. */
 static void make_plain(tetra_case* c, double opacity)

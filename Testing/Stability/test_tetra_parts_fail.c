@@ -7,7 +7,7 @@
 #define CLOSE 0.025 /* greatest RMSE of 255: half of the bar of record for functions with peaks */
 
 static tetra_picture picture;
-static double reference[4 * TETRA_PIXELS];
+static double reference[4 * TETRA_PIXELS_MOST];
 
 static void agrees(stratus_context* context, const tetra_case* c, const char* what)
 {

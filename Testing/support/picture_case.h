@@ -4,6 +4,7 @@
 #define STRATUS_TESTING_PICTURE_CASE_H
 
 #include "instruction_set.h"
+#include "picture_size.h"
 #include "reference.h"
 
 #include <math.h>
@@ -18,14 +19,23 @@
 
 #include <cmocka.h>
 
-#define CASE_WIDTH 52
-#define CASE_HEIGHT 44
-#define CASE_PIXELS (CASE_WIDTH * CASE_HEIGHT)
+#define CASE_WIDTH_MOST 52
+#define CASE_HEIGHT_MOST 44
+#define CASE_PIXELS_MOST (CASE_WIDTH_MOST * CASE_HEIGHT_MOST)
+#define CASE_WIDTH (CASE_SMALL ? CASE_WIDTH_MOST / 2 : CASE_WIDTH_MOST)
+#define CASE_HEIGHT (CASE_SMALL ? CASE_HEIGHT_MOST / 2 : CASE_HEIGHT_MOST)
+#define CASE_PIXELS (CASE_SMALL ? CASE_PIXELS_MOST / 4 : CASE_PIXELS_MOST)
+
+/* Returns the part of a number of pixels of the large picture that falls to the picture as it is drawn. */
+static inline int case_share(int pixels)
+{
+  return CASE_SMALL ? pixels / 4 : pixels;
+}
 
 typedef struct picture {
-  float rgba[4 * CASE_PIXELS];
-  float depth[CASE_PIXELS];
-  uint32_t samples[CASE_PIXELS];
+  float rgba[4 * CASE_PIXELS_MOST];
+  float depth[CASE_PIXELS_MOST];
+  uint32_t samples[CASE_PIXELS_MOST];
   stratus_ray_cast_report report;
 } picture;
 
@@ -322,7 +332,7 @@ static inline int case_lit(const picture* p)
 /* Returns the PSNR of the ray caster's picture against the reference. */
 static inline double case_psnr(const char* what, stratus_context* context, const picture_case* c, picture* p)
 {
-  static float reference[4 * CASE_PIXELS];
+  static float reference[4 * CASE_PIXELS_MOST];
   const reference_scene scene = case_scene(c);
   double reference_db = 0.0;
   case_render(context, c, p);

@@ -134,7 +134,7 @@ static inline void several_draw(stratus_context* context, const several_case* m,
 /* Returns the PSNR against the reference. */
 static inline double several_psnr(const char* what, stratus_context* context, const several_case* m, picture* p)
 {
-  static float reference[4 * CASE_PIXELS];
+  static float reference[4 * CASE_PIXELS_MOST];
   reference_scene scenes[STRATUS_SEVERAL_MAX];
   double reference_db = 0.0;
   for (int n = 0; n < m->count; ++n) {

@@ -6,6 +6,7 @@
 #define STRATUS_TESTING_TETRA_CASE_H
 
 #include "linear_between.h"
+#include "picture_size.h"
 #include "stratus.h"
 
 #include <math.h>
@@ -20,9 +21,11 @@
 
 #include <cmocka.h>
 
-#define TETRA_WIDTH 45
-#define TETRA_HEIGHT 37
-#define TETRA_PIXELS (TETRA_WIDTH * TETRA_HEIGHT)
+#define TETRA_PIXELS_MOST (45 * 37)
+/* Odd numbers, so that a pixel is in the middle. */
+#define TETRA_WIDTH (CASE_SMALL ? 23 : 45)
+#define TETRA_HEIGHT (CASE_SMALL ? 19 : 37)
+#define TETRA_PIXELS (CASE_SMALL ? 23 * 19 : TETRA_PIXELS_MOST)
 
 typedef struct tetra_case {
   stratus_mesh mesh;
@@ -39,9 +42,9 @@ typedef struct tetra_case {
 } tetra_case;
 
 typedef struct tetra_picture {
-  float rgba[4 * TETRA_PIXELS], depth[TETRA_PIXELS];
-  uint8_t rgba8[4 * TETRA_PIXELS];
-  uint32_t samples[TETRA_PIXELS];
+  float rgba[4 * TETRA_PIXELS_MOST], depth[TETRA_PIXELS_MOST];
+  uint8_t rgba8[4 * TETRA_PIXELS_MOST];
+  uint32_t samples[TETRA_PIXELS_MOST];
   stratus_tetra_report report;
 } tetra_picture;
 

@@ -4,6 +4,7 @@
  * pictures and for orbits, builds included. Lines of CSV, then the ratios of automatic to the best fixed choice, by the clock and by the
  * processor's time. */
 #define _POSIX_C_SOURCE 200809L
+#define CASE_FULL_SIZE
 #include "random_scene.h"
 
 #include "stratus/scenes.h"

@@ -4,6 +4,7 @@
 #include "stratus.h"
 
 #include "boxes.h"
+#include "testing.h"
 
 #include <stdio.h>
 
@@ -119,7 +120,7 @@ static void density_peaks_are_those_of_all_pairs(void** state)
 {
   uint32_t random = 1;
   (void)state;
-  for (int repeat = 0; repeat < 40; ++repeat) {
+  for (int repeat = 0; repeat < (few_run() ? 10 : 40); ++repeat) {
     const uint32_t places = 2 + (uint32_t)random_below(&random, PLACES_MAX - 1);
     stratus_box* at = make_boxes(repeat % 2 ? BOXES_UNEVEN : BOXES_UNIT, places, &random);
     stratus_box boxes[BOXES_MAX];
@@ -233,7 +234,7 @@ static void trees_cost_little_more_than_the_sweeps(void** state)
 {
   static const char* const names[] = { "17K", "24K", "30K", "35K" };
   (void)state;
-  for (size_t n = 0; n < sizeof names / sizeof *names; ++n) {
+  for (size_t n = 0; n < (few_run() ? 1 : sizeof names / sizeof *names); ++n) {
     int64_t dimensions[3];
     int32_t* positions = NULL;
     size_t count = 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Pictures keep their bits, from version to version, whichever compiler built the core and whichever instruction set runs it. */
+#define CASE_FULL_SIZE
 #include "picture_bits.h"
 
 #include "base.h"

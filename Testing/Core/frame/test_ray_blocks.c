@@ -335,7 +335,7 @@ static void other_modes_draw_the_whole(void** state)
 /* Rays end at opaque geometry, and blocks behind what is opaque cost nothing. */
 static void what_is_hidden_is_not_drawn(void** state)
 {
-  static float depth[CASE_PIXELS];
+  static float depth[CASE_PIXELS_MOST];
   stratus_ray_cast_report reports[BLOCKS_MOST];
   picture_case c;
   cut b = { .count = 0 };

@@ -292,7 +292,7 @@ static void indices_beyond_32_bits_do_not_overflow(void** state)
     c.volume.origin[a] = (double)at;
   }
   case_camera(*state, &c, 0, 0);
-  static float reference[4 * CASE_PIXELS];
+  static float reference[4 * CASE_PIXELS_MOST];
   const reference_scene scene = case_scene(&c);
   double db = 0.0;
   assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 70.0, reference, NULL, &db), 0);
@@ -317,8 +317,8 @@ static void indices_beyond_32_bits_do_not_overflow(void** state)
 static void depth_is_where_the_picture_begins(void** state)
 {
   picture_case c;
-  static float rgba[4 * CASE_PIXELS];
-  static float depth[CASE_PIXELS];
+  static float rgba[4 * CASE_PIXELS_MOST];
+  static float depth[CASE_PIXELS_MOST];
   case_create(*state, &c, STRATUS_FLOAT32, 24, 24, 24, 16);
   for (int parallel = 0; parallel < 2; ++parallel) {
     case_camera(*state, &c, 6, parallel);

@@ -4,7 +4,7 @@
 #include "testing.h"
 
 static picture shown;
-static uint8_t bytes[4 * CASE_PIXELS];
+static uint8_t bytes[4 * CASE_PIXELS_MOST];
 
 static void render_bytes(stratus_context* context, const picture_case* c)
 {
@@ -59,7 +59,8 @@ static void expect_bytes(const char* device, uint32_t seeds)
   }
   print_message(
     "             %d of %u pictures show something, %d have pixels outside the window, %d inside\n", lit, seeds, outside, inside);
-  assert_true(lit > 3 && outside > 3 && inside > 3); /* else the cases test little */
+  const int least = (int)seeds / 4 < 3 ? (int)seeds / 4 : 3;
+  assert_true(lit > least && outside > least && inside > least); /* else the cases test little */
   stratus_context_destroy(context);
 }
 
@@ -72,7 +73,7 @@ static void bytes_are_the_rounded_picture(void** state)
 static void bytes_are_the_rounded_picture_on_a_device(void** state)
 {
   (void)state;
-  expect_bytes("0", few_run() ? 7 : 12);
+  expect_bytes("0", few_run() ? 4 : 12);
 }
 
 /* Colours above 1 don't wrap around. */

@@ -25,7 +25,7 @@ static void structures_change_no_bit(void** state)
   stratus_context* context = case_context("host", 2);
   int lit = 0;
   uint64_t skipped = 0;
-  for (uint32_t seed = 1; seed <= 120; ++seed) {
+  for (uint32_t seed = 1; seed <= 120; seed += few_run() ? 3 : 1) {
     picture_case c;
     char what[128];
     case_create_random(context, seed, &c);
@@ -46,7 +46,7 @@ static void structures_change_no_bit(void** state)
     }
     case_destroy(&c);
   }
-  assert_true(lit > 60); /* else the pictures show too little */
+  assert_true(lit > (few_run() ? 20 : 60)); /* else the pictures show too little */
   assert_true(skipped > 0);
   stratus_context_destroy(context);
 }
@@ -69,7 +69,7 @@ static void trees_that_come_with_the_data_change_no_bit(void** state)
   static const stratus_tree_method methods[] = { STRATUS_TREE_HYBRID, STRATUS_TREE_SAH, STRATUS_TREE_HYBRID_PAPER, STRATUS_TREE_LBVH };
   stratus_context* context = case_context("host", 2);
   int used = 0;
-  for (uint32_t seed = 1; seed <= 80; ++seed) {
+  for (uint32_t seed = 1; seed <= 80; seed += few_run() ? 3 : 1) {
     picture_case c;
     char what[128];
     stratus_ray_caster* caster = NULL;
@@ -87,7 +87,7 @@ static void trees_that_come_with_the_data_change_no_bit(void** state)
     case_destroy(&c);
     stratus_ray_caster_destroy(caster);
   }
-  assert_true(used > 40);
+  assert_true(used > (few_run() ? 13 : 40));
   stratus_context_destroy(context);
 }
 
@@ -95,7 +95,7 @@ static void threads_change_no_bit(void** state)
 {
   (void)state;
   stratus_context* contexts[3] = { case_context("host", 1), case_context("host", 2), case_context("host", 3) };
-  for (uint32_t seed = 200; seed < 230; ++seed) {
+  for (uint32_t seed = 200; seed < 230; seed += few_run() ? 3 : 1) {
     picture_case c;
     char what[64];
     case_create_random(contexts[0], seed, &c);
@@ -128,7 +128,7 @@ static void tiles_change_nothing_but_roundings(void** state)
     case_render(context, &c, &first);
     /* The last 8 columns as a window of their own: its camera has their centre and half width in the plane of rays. */
     enum { COLUMNS = 8 };
-    static float rgba[4 * COLUMNS * CASE_HEIGHT];
+    static float rgba[4 * COLUMNS * CASE_HEIGHT_MOST];
     const double share = (double)COLUMNS / CASE_WIDTH;
     stratus_camera whole = c.camera;
     for (int a = 0; a < 3; ++a) {
@@ -186,7 +186,7 @@ static void a_caster_that_was_used_before_draws_the_same(void** state)
   stratus_context* context = case_context("host", 2);
   stratus_ray_caster* used = NULL;
   assert_int_equal(stratus_ray_caster_create(context, &used), STRATUS_OK);
-  for (uint32_t seed = 400; seed < 440; ++seed) {
+  for (uint32_t seed = 400; seed < 440; seed += few_run() ? 3 : 1) {
     picture_case c;
     case_create_random(context, seed, &c);
     c.volume.revision = seed; /* memory may come back at the same address */

@@ -9,10 +9,10 @@
 
 static picture drawn;
 static picture other;
-static float reference[4 * CASE_PIXELS];
+static float reference[4 * CASE_PIXELS_MOST];
 
 /* The reference draws one pixel of each tile of so many: each of its samples has rays of its own. */
-#define TILE (few_run() ? 9 : 5)
+#define TILE (few_run() ? 4 : 5)
 /* Limit in dB: maps keep half of the tolerance, 1e-3, and samples are a quarter of a voxel apart. */
 #define LEAST_DB 56.0
 
@@ -70,7 +70,9 @@ static void matter_shadows_itself_as_the_reference_says(void** state)
   s->anisotropy = -0.4;
   s->light_count = 2;
   s->lights[1] = (stratus_light){ .vector = { 60, 50, -40 }, .color = { 0.3, 0.5, 1.5 }, .positional = 1 };
-  compare("a direction and a position", context, &c, LEAST_DB);
+  if (!few_run()) { /* the lamp in the volume is another position, of the same two lights */
+    compare("a direction and a position", context, &c, LEAST_DB);
+  }
   s->lights[1].vector[0] = 16.0;
   s->lights[1].vector[1] = 11.0;
   s->lights[1].vector[2] = 13.0;
@@ -123,7 +125,9 @@ static void dense_matter_shadows_itself_and_what_is_behind(void** state)
     if (lamp) {
       c.options.light.shading.lights[0] = (stratus_light){ .vector = { 50, 10, 60 }, .color = { 1, 1, 1 }, .positional = 1 };
     }
-    for (int rule = STRATUS_SAMPLING_AUTO; rule <= STRATUS_SAMPLING_PREINTEGRATED; rule += few_run() ? 2 : 1) {
+    /* few: a rule for each lamp */
+    for (int rule = STRATUS_SAMPLING_AUTO + (few_run() && lamp ? 2 : 0); rule <= STRATUS_SAMPLING_PREINTEGRATED;
+         rule += few_run() ? 3 : 1) {
       c.options.sampling.rule = (stratus_sampling)rule;
       compare(stratus_sampling_name((stratus_sampling)rule), context, &c, 44.0);
       assert_true(drawn.report.light_error < 0.01);
@@ -546,7 +550,7 @@ static void scattering_is_that_of_paths(void** state)
   picture_case c;
   stratus_path_tracer* tracer = NULL;
   stratus_path_report report;
-  static float paths[4 * CASE_PIXELS];
+  static float paths[4 * CASE_PIXELS_MOST];
   make_case(context, &c, STRATUS_FLOAT32);
   stratus_shading* s = &c.options.light.shading;
   s->anisotropy = 0.6;

@@ -13,7 +13,7 @@
 #define MIXED_DB 80.0
 
 static picture drawn, other, third;
-static float reference[4 * CASE_PIXELS], finer[4 * CASE_PIXELS], depths[CASE_PIXELS];
+static float reference[4 * CASE_PIXELS_MOST], finer[4 * CASE_PIXELS_MOST], depths[CASE_PIXELS_MOST];
 
 static mixed_case m;
 
@@ -76,7 +76,7 @@ static double mixed_psnr(void** state, const char* what, double step)
   const double db = reference_psnr(drawn.rgba, finer, CASE_PIXELS);
   print_message("             %s: %.1f dB, reference %.0f dB, %d pixels; %s\n", what, db, reference_psnr(reference, finer, CASE_PIXELS),
     case_lit(&drawn), m.reports[m.volumes.count + m.mesh_count - 1].why);
-  assert_true(case_lit(&drawn) > 100);
+  assert_true(case_lit(&drawn) > case_share(100));
   return db;
 }
 
@@ -128,7 +128,7 @@ static void every_kind_of_mesh_mixes(void** state)
   tetra_as_lattice(&m.meshes[0], 3);
   expect_drawn(state, &drawn);
   print_message("             lattice and list: %g\n", (double)largest_difference(&drawn, &other));
-  assert_true(case_lit(&drawn) > 300);
+  assert_true(case_lit(&drawn) > case_share(300));
   assert_true(largest_difference(&drawn, &other) < 1e-5f);
   mixed_destroy(&m);
 }
@@ -258,7 +258,7 @@ static void components_of_meshes_mix(void** state)
       stratus_tetra_caster_render(m.tetra[0], &m.meshes[0].mesh, transfers, &m.volumes.of[0].camera, &m.meshes[0].options, &image, NULL),
       STRATUS_OK);
     print_message("             dependent, with an empty volume: %g\n", (double)largest_difference(&drawn, &other));
-    assert_true(case_lit(&drawn) > 500 && largest_difference(&drawn, &other) < 1e-3f);
+    assert_true(case_lit(&drawn) > case_share(500) && largest_difference(&drawn, &other) < 1e-3f);
     m.mesh_count = 2;
     mixed_destroy(&m);
   }
@@ -267,7 +267,7 @@ static void components_of_meshes_mix(void** state)
 /* A single mesh, also with an empty volume and with another mesh behind it, has the picture that its own caster draws. */
 static void a_mesh_alone_is_the_ordinary_picture(void** state)
 {
-  static uint32_t samples[CASE_PIXELS];
+  static uint32_t samples[CASE_PIXELS_MOST];
   mixed_create(*state, &m, 1, 1, 530);
   m.meshes[0].options.tolerance = 1e-5;
   const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba, .depth = other.depth, .samples = samples };
@@ -308,7 +308,7 @@ static void halves_of_a_mesh_draw_the_whole(void** state)
   }
   expect_drawn(state, &drawn);
   print_message("             halves: %g\n", (double)largest_difference(&drawn, &other));
-  assert_true(case_lit(&drawn) > 500);
+  assert_true(case_lit(&drawn) > case_share(500));
   assert_true(largest_difference(&drawn, &other) < 1e-5f);
   mixed_destroy(&m);
 }
@@ -316,7 +316,7 @@ static void halves_of_a_mesh_draw_the_whole(void** state)
 /* Opaque geometry, near and far planes, clip planes and boxes, a camera within, jitter. */
 static void what_bounds_a_ray_bounds_it_in_meshes(void** state)
 {
-  static float opaque[CASE_PIXELS];
+  static float opaque[CASE_PIXELS_MOST];
   mixed_create(*state, &m, 1, 2, 540);
   for (int i = 0; i < CASE_PIXELS; ++i) {
     opaque[i] = i % 7 == 0 ? 1.0f : (float)(i % CASE_WIDTH) / CASE_WIDTH;

@@ -19,7 +19,7 @@ static void make_case(stratus_context* context, picture_case* c)
     c->options.skipping.structure = STRATUS_STRUCTURE_DISTANCE;
     case_render(context, c, &second);
     if (second.report.skipped > 0 && second.report.samples > 0 && second.report.occupied_blocks < second.report.blocks &&
-      case_lit(&first) > 20) {
+      case_lit(&first) > case_share(20)) {
       break;
     }
     case_destroy(c);

@@ -47,7 +47,7 @@ static double psnr_of(stratus_context* context, const picture_case* c, const flo
 static void the_error_falls_with_the_option(void** state)
 {
   static const double errors[3] = { 1.0 / 16, 1.0 / 256, 1.0 / 16384 };
-  static float reference[4 * CASE_PIXELS];
+  static float reference[4 * CASE_PIXELS_MOST];
   static const double wanted[2][KINDS] = { { 75, 66, 66, 66 }, { 77, 69, 70, 64 } };
   for (int kind = 0; kind < 2 * KINDS; kind += few_run() ? 7 : 1) {
     picture_case c;
@@ -207,7 +207,7 @@ static void step_and_jitter_change_no_bit(void** state)
 
 static void planes_and_regions_cut_cells(void** state)
 {
-  static float reference[4 * CASE_PIXELS];
+  static float reference[4 * CASE_PIXELS_MOST];
   for (int what = 0; what < 3; ++what) {
     picture_case c;
     char name[32];

@@ -8,7 +8,7 @@
 #define STEP 0.05
 
 static picture drawn, single;
-static float of[STRATUS_SEVERAL_MAX][4 * CASE_PIXELS], depths[STRATUS_SEVERAL_MAX][CASE_PIXELS];
+static float of[STRATUS_SEVERAL_MAX][4 * CASE_PIXELS_MOST], depths[STRATUS_SEVERAL_MAX][CASE_PIXELS_MOST];
 
 /* Volumes of floats of one range. */
 static void create(stratus_context* context, several_case* m, int count, uint32_t seed)

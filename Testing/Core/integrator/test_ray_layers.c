@@ -24,10 +24,10 @@ typedef struct placed_layer {
 } placed_layer;
 
 static picture drawn, other;
-static reference_layer found[3][CASE_PIXELS * MOST];
-static int counts[3][CASE_PIXELS];
-static float expected[4 * CASE_PIXELS], expected_depth[CASE_PIXELS], opaque[CASE_PIXELS];
-static double reach[CASE_PIXELS]; /* where rays end */
+static reference_layer found[3][CASE_PIXELS_MOST * MOST];
+static int counts[3][CASE_PIXELS_MOST];
+static float expected[4 * CASE_PIXELS_MOST], expected_depth[CASE_PIXELS_MOST], opaque[CASE_PIXELS_MOST];
+static double reach[CASE_PIXELS_MOST]; /* where rays end */
 
 static int nearer(const void* a, const void* b)
 {

@@ -11,10 +11,10 @@
 #define REL 2e-5 /* of an integral or a length, by its largest on any ray; measured: 4e-6 */
 
 static picture drawn;
-static float expected[4 * CASE_PIXELS], expected_depth[CASE_PIXELS];
-static float numbers[STRATUS_QUANTITY_COUNT][CASE_PIXELS], others[STRATUS_QUANTITY_COUNT][CASE_PIXELS];
+static float expected[4 * CASE_PIXELS_MOST], expected_depth[CASE_PIXELS_MOST];
+static float numbers[STRATUS_QUANTITY_COUNT][CASE_PIXELS_MOST], others[STRATUS_QUANTITY_COUNT][CASE_PIXELS_MOST];
 
-static stratus_quantities want_all(float of[STRATUS_QUANTITY_COUNT][CASE_PIXELS])
+static stratus_quantities want_all(float of[STRATUS_QUANTITY_COUNT][CASE_PIXELS_MOST])
 {
   stratus_quantities wanted = stratus_quantities_default();
   wanted.width = CASE_WIDTH;
@@ -168,7 +168,7 @@ static bool cut_of(const picture_case* c, int pixel, double origin[3], double al
 
 /* All numbers of a linear field; its opacity is the same everywhere, so that the transmittance is exponential. mesh: drawn as one. */
 static void expect_linear(
-  const picture_case* c, const double slope[3], double base, double opacity, float of[STRATUS_QUANTITY_COUNT][CASE_PIXELS])
+  const picture_case* c, const double slope[3], double base, double opacity, float of[STRATUS_QUANTITY_COUNT][CASE_PIXELS_MOST])
 {
   double worst[STRATUS_QUANTITY_COUNT] = { 0.0 };
   int lit = 0, deep = 0;

@@ -3,6 +3,7 @@
 #include "stratus.h"
 
 #include "partition_case.h"
+#include "testing.h"
 
 /* Checks that the border is the box's, that no face is shared by three cells or folded, and that no two points are equal. */
 static void assert_box_conforms(stratus_context* context, const stratus_partition_result* cut, const int n[3], double offset)
@@ -45,7 +46,7 @@ static void pieces_meet_and_fill_at_every_depth_and_rule(void** state)
   int64_t added = 0, leaves = 0;
   (void)state;
   stratus_context* context = mesh_context(2);
-  for (int repeat = 0; repeat < 16; ++repeat) {
+  for (int repeat = 0; repeat < 16; repeat += few_run() ? 7 : 1) {
     mesh_case mesh = mesh_grid(n, repeat % 4 == 3 ? 0.0 : 0.19, (uint32_t)repeat);
     stratus_partition_options options = stratus_partition_options_default();
     stratus_partition_result cut;
@@ -65,7 +66,7 @@ static void pieces_meet_and_fill_at_every_depth_and_rule(void** state)
     stratus_partition_destroy(partition);
     mesh_case_free(&mesh);
   }
-  assert_true(added > 1000 && leaves > 100);
+  assert_true(added > (few_run() ? 180 : 1000) && leaves > (few_run() ? 18 : 100));
   stratus_context_destroy(context);
 }
 
@@ -111,7 +112,7 @@ static void what_is_within_rounding_of_a_plane_lies_on_it(void** state)
   int whole = 0, cut_too = 0;
   (void)state;
   stratus_context* context = mesh_context(1);
-  for (int repeat = 0; repeat < 24; ++repeat) {
+  for (int repeat = 0; repeat < 24; repeat += few_run() ? 5 : 1) {
     const double offset = offsets[repeat / 8];
     mesh_case mesh = quadratic_cubes(n, offset, (uint32_t)repeat + 1);
     stratus_partition_options options = stratus_partition_options_default();
@@ -178,7 +179,7 @@ static void leaves_without_cells_take_part(void** state)
   options.imbalance = INFINITY;
   options.depth = 7;
   options.leaf_cells = 1;
-  for (int round = 0; round < 600; ++round) {
+  for (int round = 0; round < (few_run() ? 150 : 600); ++round) {
     mesh_case mesh = mesh_case_allocate(13, 13);
     stratus_partition_result cut;
     options.rule = round % 2 ? STRATUS_PARTITION_PAPER : STRATUS_PARTITION_MEDIAN;

@@ -15,7 +15,7 @@ static transfer_2d_case function;
 
 static double psnr(const char* what, stratus_context* context, const picture_case* c)
 {
-  static float reference[4 * CASE_PIXELS];
+  static float reference[4 * CASE_PIXELS_MOST];
   reference_scene scene = case_scene(c);
   double reference_db = 0.0;
   scene.shading = c->options.light.shade ? &c->options.light.shading : NULL;
@@ -23,7 +23,7 @@ static double psnr(const char* what, stratus_context* context, const picture_cas
   assert_int_equal(reference_converged(&scene, CASE_WIDTH, CASE_HEIGHT, 62.0, reference, NULL, &reference_db), 0);
   const double db = reference_psnr(drawn.rgba, reference, CASE_PIXELS);
   print_message("             %s: %.1f dB, reference %.0f dB, %d pixels\n", what, db, reference_db, case_lit(&drawn));
-  assert_true(case_lit(&drawn) > 20);
+  assert_true(case_lit(&drawn) > case_share(20));
   return db;
 }
 
@@ -131,7 +131,7 @@ static void equal_rows_draw_the_picture_of_the_function_of_the_value(void** stat
   case_render(*state, &c, &other);
   const double db = reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS);
   print_message("             %.1f dB, %d pixels\n", db, case_lit(&drawn));
-  assert_true(case_lit(&drawn) > 100 && db > 75.0); /* the other has a table of 4096 entries and more */
+  assert_true(case_lit(&drawn) > case_share(100) && db > 75.0); /* the other has a table of 4096 entries and more */
   case_destroy(&c);
 }
 
@@ -191,7 +191,7 @@ static void no_structure_thread_or_instruction_set_changes_a_bit(void** state)
 static void the_tolerance_is_kept(void** state)
 {
   static const double tolerances[] = { 0.01, 0.001 };
-  static float reference[4 * CASE_PIXELS];
+  static float reference[4 * CASE_PIXELS_MOST];
   int met = 0, beyond = 0, pictures = 0;
   for (uint32_t seed = 1; seed <= 12; seed += few_run() ? 5 : 1, pictures += 2) {
     picture_case c;

@@ -9,7 +9,7 @@
 #define WIDTH CASE_WIDTH
 #define HEIGHT CASE_HEIGHT
 
-static float images[3][4 * CASE_PIXELS], errors[2][4 * CASE_PIXELS];
+static float images[3][4 * CASE_PIXELS_MOST], errors[2][4 * CASE_PIXELS_MOST];
 
 /* The known answers of Salmon et al.'s library, Random123. */
 static void random_numbers_are_those_of_philox(void** state)
@@ -167,7 +167,7 @@ static void alpha_is_that_of_the_double_reference(void** state)
   }
   print_message("             %.0f pixels: mean square %.4f of the expected one, bias %+.2f standard errors\n", count, sum / count,
     bias / sqrt(variance));
-  assert_true(count > 2000.0);
+  assert_true(count > case_share(2000));
   assert_true(fabs(sum / count - 1.0) < PATH_SIGMAS * sqrt(2.5 / count)); /* a square's variance is 2 + (1 - 6 square) / square / samples */
   assert_true(fabs(bias) < PATH_SIGMAS * sqrt(variance));
 }
@@ -445,9 +445,9 @@ static void rays_along_an_opaque_surface_are_cheap(void** state)
 /* The image's other buffers. */
 static void depth_samples_and_bytes_are_the_image_s(void** state)
 {
-  static float depth[CASE_PIXELS];
-  static uint32_t samples[CASE_PIXELS];
-  static uint8_t bytes[4 * CASE_PIXELS];
+  static float depth[CASE_PIXELS_MOST];
+  static uint32_t samples[CASE_PIXELS_MOST];
+  static uint8_t bytes[4 * CASE_PIXELS_MOST];
   stratus_path_tracer* tracer = NULL;
   picture_case c;
   stratus_path_options options = make_cloud(*state, &c, 9);

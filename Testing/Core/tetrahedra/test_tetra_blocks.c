@@ -24,7 +24,7 @@ typedef struct blocks_case {
 
 static blocks_case c;
 static tetra_picture ours, theirs;
-static double reference[4 * TETRA_PIXELS];
+static double reference[4 * TETRA_PIXELS_MOST];
 
 static int64_t at(const int32_t n[3], int i, int j, int k)
 {

@@ -13,7 +13,7 @@
 #define ERROR_MOST (0.02 / 255) /* root mean square of all others, in which normals turn by the rounding of points to floats */
 
 static tetra_picture picture;
-static double reference[4 * TETRA_PIXELS], depth[TETRA_PIXELS];
+static double reference[4 * TETRA_PIXELS_MOST], depth[TETRA_PIXELS_MOST];
 
 /* Where a stretch first shows, 0..1 being all of it; above 1: it does not. Between the points of its function an opacity is linear. */
 static double first_shown(const tetra_case* c, const tetra_stretch* s)
@@ -282,7 +282,7 @@ static void hits_are_right(void** state)
 static void lattices_and_opaque_geometry(void** state)
 {
   static tetra_picture whole;
-  static float opaque[TETRA_PIXELS];
+  static float opaque[TETRA_PIXELS_MOST];
   for (uint32_t seed = 0; seed < 4; ++seed) {
     tetra_case c;
     make_case(*state, &c, 2 * seed + 1);

@@ -19,7 +19,7 @@ typedef struct labelled {
 } labelled;
 
 static tetra_picture picture, other;
-static double reference[4 * TETRA_PIXELS];
+static double reference[4 * TETRA_PIXELS_MOST];
 
 /* Label 1 is a narrow peak, label 2 opaque from .7 on, and label 3 faint. */
 static void create(stratus_context* context, labelled* l, double missing, uint32_t seed)

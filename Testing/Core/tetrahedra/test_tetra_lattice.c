@@ -21,7 +21,7 @@ typedef struct lattice_case {
 
 static lattice_case c;
 static tetra_picture ours, theirs;
-static double reference[4 * TETRA_PIXELS];
+static double reference[4 * TETRA_PIXELS_MOST];
 
 static int point_at(int i, int j, int k)
 {
@@ -226,7 +226,7 @@ static void takes_the_same_ways(stratus_context* context, const tetra_case* cell
   tetra_method = STRATUS_TETRA_METHOD_MARCH;
   for (int m = 0; m < 3; ++m) {
     tetra_case one = *cells, other = *lattice;
-    double largest, listed[4 * TETRA_PIXELS];
+    double largest, listed[4 * TETRA_PIXELS_MOST];
     int differ = 0;
     one.options.mode = other.options.mode = modes[m];
     one.options.method = other.options.method = STRATUS_TETRA_METHOD_MARCH;
@@ -383,7 +383,7 @@ static void random_lattices(void** state)
   int mixed = 0;
   for (uint32_t seed = 0; seed < 24; ++seed) {
     tetra_case listed, lattice;
-    double largest, right[4 * TETRA_PIXELS];
+    double largest, right[4 * TETRA_PIXELS_MOST];
     uint32_t s = seed;
     tetra_method = seed & 1 ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
     tetra_create(&listed, 4, seed % 3 == 2 ? 0.5 : 0.15, 0.0, seed);

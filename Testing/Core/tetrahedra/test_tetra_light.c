@@ -7,7 +7,7 @@
 #include "testing.h"
 
 static tetra_picture picture, other;
-static double reference[4 * TETRA_PIXELS];
+static double reference[4 * TETRA_PIXELS_MOST];
 static const double thin[6] = { 0.1, 0.0, 0.5, 0.6, 1.2, 1.0 };
 
 /* Light from the eye, from two sides, or a lamp nearby. */

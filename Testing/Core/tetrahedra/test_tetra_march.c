@@ -11,7 +11,7 @@
 #define LARGEST_MOST 0.5
 
 static tetra_picture picture;
-static double reference[4 * TETRA_PIXELS], reference_depth[TETRA_PIXELS];
+static double reference[4 * TETRA_PIXELS_MOST], reference_depth[TETRA_PIXELS_MOST];
 
 static void check(stratus_context* context, const tetra_case* c, const char* what)
 {
@@ -62,7 +62,7 @@ static void eye_in_a_cell_on_a_face_and_on_a_point(void** state)
 
 static void ends_at_what_is_opaque(void** state)
 {
-  static float opaque[TETRA_PIXELS];
+  static float opaque[TETRA_PIXELS_MOST];
   for (int parallel = 0; parallel < 2; ++parallel) {
     tetra_case c;
     uint32_t s = 17;

@@ -6,7 +6,7 @@
 #include "tetra_caster.h"
 
 static tetra_picture picture;
-static double reference[4 * TETRA_PIXELS], depth[TETRA_PIXELS];
+static double reference[4 * TETRA_PIXELS_MOST], depth[TETRA_PIXELS_MOST];
 
 static void set_contours(tetra_case* c)
 {

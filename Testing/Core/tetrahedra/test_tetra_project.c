@@ -12,7 +12,7 @@
 #define DIFFERENCE_MOST 0.01
 
 static tetra_picture marched, projected;
-static double reference[4 * TETRA_PIXELS];
+static double reference[4 * TETRA_PIXELS_MOST];
 
 static double difference(void)
 {
@@ -96,7 +96,7 @@ static void random_axes(uint32_t* s, double axes[3][3])
  * for floats. Some cameras cut the mesh by a near plane, a far plane, or both and opaque objects between them. */
 static void look_at_random(tetra_case* c, int n, int parallel, uint32_t seed)
 {
-  static float opaque[TETRA_PIXELS];
+  static float opaque[TETRA_PIXELS_MOST];
   uint32_t s = seed * 48271u + 11u;
   double axes[3][3];
   stratus_camera* k = &c->camera;

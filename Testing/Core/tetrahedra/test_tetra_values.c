@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Values that change on a fixed mesh, as in the steps of a simulation: neighbours and the order of cells stay while points and cells have
  * equal content, in any memory, and the pictures equal those from a new caster. */
+#define CASE_FULL_SIZE
 #include "tetra_case.h"
 
 #include "faulty_allocator.h"
