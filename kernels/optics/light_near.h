@@ -3,35 +3,59 @@
  * hides itself: so a ray goes from the place towards the light, a few steps of half a voxel, and the map is read where it ends.
  * Included by ray_cast.h once for each STRATUS_TYPE. */
 
-/* The optical depth of a step to light i, of near_length sample distances, between two values. */
+#ifndef NEAR_OWN
+#define NEAR_OWN 2.001f /* steps of half a voxel; the rounding of a step counts for nothing */
+#endif
+
+/* The optical depth between two values, of `part` of a step to light i, which has near_length sample distances. */
 INLINE vfloat RAY_NAME(near_depth)(
-  CONSTANT stratus_ray_cast_arguments* a, int i, GLOBAL const void* table, vfloat first, vfloat last, vmask mask)
+  CONSTANT stratus_ray_cast_arguments* a, int i, GLOBAL const void* table, vfloat first, vfloat last, vfloat part, vmask mask)
 {
+  const vfloat zero = v_set(0.0f), most = v_set(80.0f);
 #if STRATUS_PREINTEGRATED || RAY_LIT
   GLOBAL const int* sums = (GLOBAL const int*)table;
   const vint from = table_entry(&a->table, sums, first), to = table_entry(&a->table, sums, last);
   const vint low = vi_min(from, to), beyond = vi_max(from, to) + vi_set(1);
   const vfloat tau = tau_between(sums, low, beyond, mask), width = v_max(width_between(&a->table, sums, low, beyond, mask), v_set(1.0f));
-  vfloat part = v_set(a->light.near_length[i] * a->table.tau_scale);
+  vfloat within = part;
   if (RAY_RARE(RAY_CUT, a->table.cut)) { /* values beyond the table are transparent */
-    vfloat before, within;
+    vfloat before, inside;
     part_within(&a->table, v_clamp(v_fma(first, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f),
-      v_clamp(v_fma(last, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f), &before, &within);
-    part = part * within;
+      v_clamp(v_fma(last, v_set(a->table.scale), v_set(a->table.offset)), -1e30f, 1e30f), &before, &inside);
+    within = within * inside;
   }
-  vfloat depth = tau * part * v_reciprocal(width);
-  if (RAY_RARE(RAY_OPAQUE, a->table.has_opaque)) {
+  vfloat depth = tau * v_set(a->light.near_length[i] * a->table.tau_scale) * within * v_reciprocal(width);
+  if (RAY_RARE(RAY_OPAQUE, a->table.has_opaque)) { /* however short the step is */
     vint entry;
-    const vmask opaque = opaque_on_the_way(&a->table, sums + 4 * (a->table.entries + 1), from, to, mask, &entry);
-    depth = v_select(opaque, v_set(80.0f), depth);
+    const vmask met = mask & v_lt(zero, within);
+    const vmask opaque = opaque_on_the_way(&a->table, sums + 4 * (a->table.entries + 1), from, to, met, &entry);
+    depth = v_select(opaque, most, depth);
   }
 #else
   const vint entry = table_entry(&a->table, table, v_set(0.5f) * (first + last));
   vfloat depths[4];
   gather_four((GLOBAL const float*)table + 4 * a->table.entries, entry, mask, depths);
-  const vfloat depth = v_set(a->light.near_length[i]) * depths[0];
+  const vfloat depth = v_set(a->light.near_length[i]) * part * depths[0];
 #endif
-  return v_select(mask, v_min(depth, v_set(80.0f)), v_set(0.0f));
+  return v_select(mask, v_min(depth, most), zero);
+}
+
+/* Lanes whose value has opacity 1. */
+INLINE vmask RAY_NAME(near_opaque)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* table, vfloat value, vmask mask)
+{
+#if STRATUS_PREINTEGRATED || RAY_LIT
+  if (RAY_RARE(RAY_OPAQUE, a->table.has_opaque)) {
+    GLOBAL const int* sums = (GLOBAL const int*)table;
+    vint first;
+    const vint entry = table_entry(&a->table, sums, value);
+    return opaque_on_the_way(&a->table, sums + 4 * (a->table.entries + 1), entry, entry, mask, &first);
+  }
+  return m_none();
+#else
+  vfloat depths[4];
+  gather_four((GLOBAL const float*)table + 4 * a->table.entries, table_entry(&a->table, table, value), mask, depths);
+  return mask & v_le(v_set(1e29f), depths[0]);
+#endif
 }
 
 /* Cuts the part *from..*to of the way from x to the planes within which matter is seen. */
@@ -54,24 +78,31 @@ INLINE void RAY_NAME(near_bounds)(CONSTANT stratus_ray_cast_arguments* a, const 
   }
 }
 
-/* The part of light i that passes the matter on `way` from the places x. */
+/* The part of light i that passes the matter on `way` from the places x. Opaque matter shows its surface: a place in it, which may be a
+ * little below the surface, is lit if the light leaves the opaque matter within NEAR_OWN steps. */
 INLINE vfloat RAY_NAME(light_passing_near)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const void* table, const stratus_packet* k, int i, const vfloat x[3], const vfloat way[3], vmask mask)
 {
-  const vfloat share = v_set(1.0f / (float)a->light.near_steps[i]), zero = v_set(0.0f);
+  const vfloat zero = v_set(0.0f), steps = v_set((float)a->light.near_steps[i]), share = v_reciprocal(steps);
   vfloat from = zero, to = v_set(1.0f), depth = zero, front = zero;
   RAY_NAME(near_bounds)(a, x, way, &from, &to);
   const vmask any = mask & v_lt(from, to);
   const vfloat part = v_select(any, to - from, zero);
+  vmask own = any; /* all matter so far is opaque */
   from = v_select(any, from, zero);
   for (int n = 0; n <= a->light.near_steps[i]; ++n) {
     const vfloat s = v_fma(v_set((float)n) * share, part, from);
     const vfloat y[3] = { v_fma(s, way[0], x[0]), v_fma(s, way[1], x[1]), v_fma(s, way[2], x[2]) };
     const vfloat value = RAY_NAME(ray_value)(a, values, hidden, k->grid, y, any);
+    const vmask ends = v_finite(value);
     if (n > 0) {
-      const vmask valid = any & v_finite(front) & v_finite(value);
+      const vmask valid = any & v_finite(front) & ends;
       const vfloat first = v_select(valid, front, zero), last = v_select(valid, value, zero);
-      depth = depth + part * RAY_NAME(near_depth)(a, i, table, first, last, valid);
+      const vfloat step = RAY_NAME(near_depth)(a, i, table, first, last, part, valid);
+      depth = depth + v_select(own & v_le(s * steps, v_set(NEAR_OWN)), zero, step);
+    }
+    if (m_any(own)) {
+      own = RAY_NAME(near_opaque)(a, table, v_select(ends, value, zero), own & ends);
     }
     front = value;
   }

@@ -137,6 +137,78 @@ static void dense_matter_shadows_itself_and_what_is_behind(void** state)
   stratus_context_destroy(context);
 }
 
+/* A place of the ball's or the plate's surface: returns 1 if light from `to` reaches it, 0 if not, -1 where the edge of a shadow is near or
+ * the light grazes. normal: of the place. */
+static int is_lit(const double place[3], const double normal[3], const double to[3], bool on_ball)
+{
+  double q[3], along = 0.0, square = 0.0, cosine = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    q[a] = place[a] - (const double[3]){ 15, 13, 18 }[a];
+    along -= q[a] * to[a];
+    cosine += normal[a] * to[a];
+  }
+  for (int a = 0; a < 3; ++a) {
+    const double off = q[a] + along * to[a];
+    square += off * off;
+  }
+  if (on_ball || cosine < 0.3) {
+    return cosine > 0.3 ? 1 : cosine < -0.3 ? 0 : -1;
+  }
+  return fabs(sqrt(square) - 7.6) < 1.2 ? -1 : square > 7.6 * 7.6;
+}
+
+/* Opaque matter is lit as a surface is: wholly or not at all, whichever rule draws it, also where the crop box cuts it. */
+static void opaque_surfaces_are_lit(void** state)
+{
+  static double opacity[8] = { 0.0, 0.0, 0.6, 0.0, 0.6, 1.0, 1.0, 1.0 };
+  const double to[3] = { 0.6, 0.0, 0.8 };
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  make_ball(context, &c);
+  c.transfer.opacity = opacity;
+  c.options.light.shading.lights[0] = (stratus_light){ .vector = { to[0], to[1], to[2] }, .color = { 1, 1, 1 } };
+  c.camera.parallel = 1; /* from above */
+  memcpy(c.camera.eye, (const double[3]){ 14.5, 12.5, 40.0 }, sizeof c.camera.eye);
+  memcpy(c.camera.forward, (const double[3]){ 0, 0, -1 }, sizeof c.camera.forward);
+  memcpy(c.camera.right, (const double[3]){ 13, 0, 0 }, sizeof c.camera.right);
+  memcpy(c.camera.up, (const double[3]){ 0, 11, 0 }, sizeof c.camera.up);
+  c.camera.near_k = 0.0;
+  c.camera.far_k = 40.0;
+  for (int i = 0; i < 2 * 3; ++i) {
+    const bool cut = i % 2;
+    const double crop[6] = { 0.0, 29.0, 0.0, 25.0, 0.0, 20.3 };
+    int wrong = 0, lit = 0, dark = 0;
+    c.options.sampling.rule =
+      (const stratus_sampling[3]){ STRATUS_SAMPLING_AUTO, STRATUS_SAMPLING_PREINTEGRATED, STRATUS_SAMPLING_MIDPOINT }[i / 2];
+    c.options.clipping.crop = cut;
+    memcpy(c.options.clipping.crop_bounds, crop, sizeof crop);
+    case_render(context, &c, &drawn);
+    for (int p = 0; p < CASE_PIXELS; ++p) {
+      const double x = 14.5 + 13.0 * (2.0 * (p % CASE_WIDTH + 0.5) / CASE_WIDTH - 1.0);
+      const double y = 12.5 + 11.0 * (2.0 * (p / CASE_WIDTH + 0.5) / CASE_HEIGHT - 1.0);
+      const double square = (x - 15) * (x - 15) + (y - 13) * (y - 13), rise = sqrt(fmax(7.6 * 7.6 - square, 0.0));
+      const bool on_ball = square < 7.3 * 7.3, flat = !on_ball || (cut && 18.0 + rise > 20.3);
+      const double place[3] = { x, y, on_ball ? fmin(18.0 + rise, cut ? 20.3 : 99.0) : 4.6 };
+      const double normal[3] = { flat ? 0.0 : (x - 15) / 7.6, flat ? 0.0 : (y - 13) / 7.6, flat ? 1.0 : rise / 7.6 };
+      const int expected = is_lit(place, normal, to, on_ball);
+      const bool edge = (square > 7.3 * 7.3 && square < 7.9 * 7.9) || (cut && fabs(18.0 + rise - 20.3) < 0.5);
+      if (expected < 0 || edge) {
+        continue;
+      }
+      lit += expected;
+      dark += !expected;
+      wrong += fabs((double)drawn.rgba[4 * p] - expected) > 0.1;
+    }
+    print_message("             %s%s: %d lit, %d dark, %d wrong\n", stratus_sampling_name(c.options.sampling.rule), cut ? ", cut" : "", lit,
+      dark, wrong);
+    assert_true(lit > 500 && dark > 50);
+    assert_int_equal(wrong, 0);
+  }
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
 /* What clip planes, crop boxes and masks hide casts no shadow, near and far. */
 static void hidden_matter_casts_no_shadow(void** state)
 {
@@ -619,6 +691,7 @@ int test_ray_light(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(matter_shadows_itself_as_the_reference_says),
     cmocka_unit_test(dense_matter_shadows_itself_and_what_is_behind),
+    cmocka_unit_test(opaque_surfaces_are_lit),
     cmocka_unit_test(hidden_matter_casts_no_shadow),
     cmocka_unit_test(extremes_of_light),
     cmocka_unit_test(scattering_is_that_of_paths),
