@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <cstdlib>
 #include <iterator>
 #include <limits>
@@ -649,6 +650,16 @@ void check_path(const options& o)
   }
 }
 
+// As VTK's mappers, modes that are not lit ignore how matter scatters light, but not without a word.
+void warn_of_ignored(const options& o)
+{
+  const char* const ignored = o.scatter ? "--scatter" : o.shadows ? "--shadows" : nullptr;
+  if (ignored && !o.path && o.mode != STRATUS_MODE_COMPOSITE && o.mode != STRATUS_MODE_ISOSURFACE) {
+    std::fprintf(
+      stderr, "stratus: warning: %s has no effect in mode %s, only in composite and isosurface\n", ignored, stratus_mode_name(o.mode));
+  }
+}
+
 void check_suns(const options& o)
 {
   if (!o.sun_at.empty() && !o.sun_time.empty()) {
@@ -794,6 +805,7 @@ options parse(int argc, char* argv[])
   }
   o.scatter = o.scatter || (o.cloud && !o.path); // the path tracer scatters by itself
   check_complete(o);
+  warn_of_ignored(o);
   return o;
 }
 } // namespace cli
