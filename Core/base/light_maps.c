@@ -4,11 +4,11 @@
  * interpolated. */
 #include "light_maps.h"
 
+#include "device_frame.h"
 #include "matrix.h"
 #include "tiles.h"
 #include "vector.h"
 
-#include <stdatomic.h>
 #include <string.h>
 
 /* Nodes along the longest side of the first map and of the last. */
@@ -57,8 +57,8 @@ struct stratus_light_maps {
   int count;
   int32_t* words;
   size_t words_count;
-  uint64_t serial;
-  double error; /* the largest of all maps */
+  stratus_device_slot* slot; /* the words on the context's device, once they were sent */
+  double error;              /* the largest of all maps */
 };
 
 static size_t map_words(const map* m)
@@ -469,9 +469,8 @@ cleanup:
 stratus_status stratus_light_maps_build(
   stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_maps** maps)
 {
-  static atomic_uint_fast64_t serials;
   int32_t* words[STRATUS_LIGHTS_MAX] = { NULL };
-  void *memory = NULL, *all = NULL;
+  void *memory = NULL, *all = NULL, *slot = NULL;
   stratus_light_maps* made = NULL;
   stratus_status status;
   TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *made, &memory));
@@ -486,19 +485,21 @@ stratus_status stratus_light_maps_build(
     made->error = fmax(made->error, error);
     TRY_CLEANUP(stratus_progress(context, "light", (i + 1.0) / count));
   }
+  TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *made->slot, &slot));
   TRY_CLEANUP(stratus_allocate(context, made->words_count, sizeof(int32_t), &all));
+  made->slot = slot;
   made->words = all;
   for (int i = 0; i < count; ++i) {
     memcpy(made->words + made->of[i].at, words[i], map_words(&made->of[i]) * sizeof(int32_t));
   }
-  made->serial = 1 + atomic_fetch_add(&serials, 1);
   stratus_light_maps_destroy(*maps);
   *maps = made;
-  memory = NULL;
+  memory = slot = NULL;
 cleanup:
   for (int i = 0; i < count; ++i) {
     stratus_release(context, words[i]);
   }
+  stratus_release(context, slot);
   stratus_release(context, memory);
   return status;
 }
@@ -506,6 +507,8 @@ cleanup:
 void stratus_light_maps_destroy(stratus_light_maps* maps)
 {
   if (maps) {
+    stratus_slot_drop(maps->slot); /* the device may read the words in place */
+    stratus_release(maps->context, maps->slot);
     stratus_release(maps->context, maps->words);
     stratus_release(maps->context, maps);
   }
@@ -636,21 +639,26 @@ size_t stratus_light_maps_bytes(const stratus_light_maps* maps)
   return maps ? maps->words_count * sizeof(int32_t) : 0;
 }
 
-uint64_t stratus_light_maps_serial(const stratus_light_maps* maps)
-{
-  return maps ? maps->serial : 0;
-}
-
 double stratus_light_maps_error(const stratus_light_maps* maps)
 {
   return maps ? maps->error : 0.0;
 }
 
-int stratus_light_maps_near(const stratus_light_maps* maps)
+double stratus_light_maps_near(const stratus_light_maps* maps)
 {
-  int most = 0;
+  double most = 0.0;
   for (int i = 0; maps && i < maps->count; ++i) {
-    most = maps->of[i].near_steps > most ? maps->of[i].near_steps : most;
+    most = fmax(most, maps->of[i].near);
   }
   return most;
+}
+
+stratus_status stratus_light_maps_on_device(const stratus_light_maps* maps, struct _cl_mem** memory, bool* sent)
+{
+  *sent = !maps->slot->memory;
+  if (*sent) {
+    TRY(stratus_slot_keep(maps->context, maps->slot, maps->words, stratus_light_maps_bytes(maps)));
+  }
+  *memory = maps->slot->memory;
+  return STRATUS_OK;
 }

@@ -8,6 +8,7 @@
 #include "stratus/ray_cast.h"
 
 typedef struct stratus_light_maps stratus_light_maps;
+struct _cl_mem;
 
 /* The matter that absorbs light. */
 typedef struct stratus_light_matter {
@@ -51,12 +52,14 @@ uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* tr
 void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_light* lights, const double to_world[16], double unit,
   double sample_distance, stratus_light_arguments* a);
 
-/* The words of all maps, NULL without maps; their bytes; a number that no other maps of this process have, 0 without; the largest expected
- * error; and the most steps on which near matter is passed on the way to a light. */
+/* The words of all maps, NULL without maps; their bytes; the largest expected error; and the longest way, in the world, on which near
+ * matter is passed. */
 const int32_t* stratus_light_maps_words(const stratus_light_maps* maps);
 size_t stratus_light_maps_bytes(const stratus_light_maps* maps);
-uint64_t stratus_light_maps_serial(const stratus_light_maps* maps);
 double stratus_light_maps_error(const stratus_light_maps* maps);
-int stratus_light_maps_near(const stratus_light_maps* maps);
+double stratus_light_maps_near(const stratus_light_maps* maps);
+/* Gives the buffer of the words on the context's device, an OpenCL memory object. All casters read this one. It belongs to the maps. *sent:
+ * the device had no copy before. */
+stratus_status stratus_light_maps_on_device(const stratus_light_maps* maps, struct _cl_mem** memory, bool* sent);
 
 #endif

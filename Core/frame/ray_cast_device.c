@@ -104,10 +104,11 @@ static stratus_status upload(stratus_ray_caster* caster, const stratus_ray_cast_
     TRY(replace(caster, GRID, frame->grid, frame->grid ? caster->field.grid.bytes : 0));
     d->grid_serial = grid_serial;
   }
-  const uint64_t lights_serial = stratus_light_maps_serial(caster->optics.lights);
-  if (!d->slots[LIGHTS].memory || d->lights_serial != lights_serial) {
-    TRY(replace(caster, LIGHTS, frame->lights, stratus_light_maps_bytes(caster->optics.lights)));
-    d->lights_serial = lights_serial;
+  d->lights = NULL;
+  if (caster->optics.lights) {
+    bool sent = false;
+    TRY(stratus_light_maps_on_device(caster->optics.lights, &d->lights, &sent));
+    caster->uploads += sent;
   }
   return STRATUS_OK;
 }
@@ -177,7 +178,8 @@ static stratus_status find_kernel(stratus_ray_caster* caster, const stratus_ray_
 static stratus_status draw(
   stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, cl_kernel kernel, bool packets, void* counts, size_t counts_bytes)
 {
-  static const buffer_name others[] = { HIDDEN, MAP, ROUGH, GRID, LIGHTS, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
+  static const buffer_name others[] = { HIDDEN, MAP, ROUGH, GRID, ARGUMENTS, TABLE, OPAQUE, RGBA, RGBA8, DEPTH, SAMPLES, COUNTS };
+  enum { OF_LIGHTS = 4 }; /* the maps of light; without maps some buffer, because an argument must be one */
   stratus_context* context = caster->context;
   stratus_ray_device* d = caster->device;
   stratus_device_slot* slots = caster->device->slots;
@@ -199,7 +201,8 @@ static stratus_status draw(
     TRY(stratus_device_argument(context, kernel, n++, sizeof(cl_mem), s < PAGE_SLABS ? &d->pages.slabs[s].memory : &d->pages.table.memory));
   }
   for (size_t i = 0; i < COUNT_OF(others); ++i) {
-    TRY(stratus_device_argument(context, kernel, n++, sizeof(cl_mem), &slots[others[i]].memory));
+    const cl_mem* memory = i == OF_LIGHTS && d->lights ? &d->lights : &slots[others[i]].memory;
+    TRY(stratus_device_argument(context, kernel, n++, sizeof(cl_mem), memory));
   }
   const size_t side = packets ? STRATUS_RAY_DEVICE_TILE : 1, group = packets ? 1 : STRATUS_RAY_DEVICE_GROUP;
   const size_t global[2] = { (width + side - 1) / side, (height + side - 1) / side }, local[2] = { group, group };
@@ -272,7 +275,9 @@ static void find_margin(const stratus_ray_caster* caster, stratus_ray_variant va
   const bool segments = variant == STRATUS_VARIANT_PREINTEGRATED || variant == STRATUS_VARIANT_SHADING_PREINTEGRATED;
   margin[0] = lit ? 2 : 0; /* central differences, at a place that may be rounded into the next cell */
   margin[1] = lit ? 3 : 0;
-  const int near = (stratus_light_maps_near(caster->optics.lights) + 1) / 2; /* towards the light, steps are half a voxel at most */
+  /* towards the light, along whichever axis of the grid that is */
+  const int near =
+    (int)ceil(fmin(stratus_ray_voxels_within(&caster->field.traversed, stratus_light_maps_near(caster->optics.lights)), 1e9));
   margin[0] += near;
   margin[1] += near;
   if (segments) { /* a segment that shows anything may end in a transparent block, whose value there counts */

@@ -19,7 +19,6 @@ typedef enum buffer_name {
   MAP,
   ROUGH,
   GRID,
-  LIGHTS,
   TABLE,
   LAYERS, /* of several volumes: stratus_ray_optics.layers */
   ARGUMENTS,
@@ -38,9 +37,10 @@ struct stratus_ray_device {
   stratus_device_slot slots[BUFFERS];
   stratus_ray_pages pages;
   bool in_pages; /* the values are in pages, and there is no buffer VALUES */
-  uint64_t data_serial, table_serial, map_serial, rough_serial, grid_serial, lights_serial, layers_of;
+  uint64_t data_serial, table_serial, map_serial, rough_serial, grid_serial, layers_of;
   double layers_step;
   const float* layers; /* what LAYERS holds, of that table and step */
+  cl_mem lights;       /* the maps of light of the frame, which own it; NULL: none */
 };
 
 /* ray_cast_device.c: return the RAY_HAS bits, the rare features that this frame uses. */

@@ -99,6 +99,14 @@ static double voxels_a_sample(const stratus_volume* volume, const double world_t
   return voxels;
 }
 
+double stratus_ray_voxels_within(const stratus_volume* volume, double length)
+{
+  double index_to_world[16], world_to_index[16];
+  stratus_volume_index_to_world(volume, index_to_world);
+  return stratus_matrix_invert_affine(index_to_world, world_to_index) ? voxels_a_sample(volume, world_to_index, length, false)
+                                                                      : VOXELS_A_SAMPLE_MOST;
+}
+
 double stratus_ray_voxels_a_sample(const stratus_ray_caster* caster)
 {
   double index_to_world[16], world_to_index[16];

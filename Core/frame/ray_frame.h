@@ -10,6 +10,8 @@
 
 /* Returns the length of a sample in voxels, along the axis where it is longest. */
 double stratus_ray_voxels_a_sample(const stratus_ray_caster* caster);
+/* Returns the most voxels that a straight way of this world length passes along an axis of the grid, whatever its direction. */
+double stratus_ray_voxels_within(const stratus_volume* volume, double length);
 
 /* Sets the arguments by which pixels, the camera's vectors in the world and the sample distance make the lattice. */
 void stratus_ray_frame_lattice(

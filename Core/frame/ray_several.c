@@ -58,10 +58,11 @@ static stratus_status draw_on_host(stratus_context* context, const stratus_sever
 /* Draws on the device, which may have borrowed memory of meshes afterwards. *drawn stays false if it cannot draw one of the volumes. */
 static stratus_status send_and_draw(stratus_several* s, const stratus_several_frame* frame, stratus_ray_counts* counts, bool* drawn)
 {
-  const char* why_not = NULL;
+  const bool fits = stratus_light_maps_bytes(frame->maps) <= stratus_device_largest_allocation(s->context->device);
+  const char* why_not = fits ? NULL : "the maps of light are larger than the device's largest allocation";
   for (int n = 0; n < s->count; ++n) {
     stratus_several_input* in = &s->inputs[n];
-    if (in->part >= 0) {
+    if (in->part >= 0 && !why_not) {
       const stratus_several_part* part = &frame->volumes[in->part];
       const double start = stratus_now_ms();
       if (part->mesh) {
@@ -185,7 +186,7 @@ static stratus_status render(stratus_several* s, stratus_ray_cast_arguments* arg
   int window[4] = { 0, 0, 0, 0 };
   float termination = 1.0f;
   TRY(stratus_ray_light_update_several(s->given, s->count, false, s->camera, stratus_ray_caster_render_several, &s->light));
-  s->lights = stratus_light_maps_words(s->given->tetra ? s->given->tetra->lights : s->given->caster->optics.lights);
+  s->maps = s->given->tetra ? s->given->tetra->lights : s->given->caster->optics.lights;
   for (int n = 0; n < s->count; ++n) {
     TRY(stratus_several_update(s, &s->inputs[n]));
   }
@@ -205,7 +206,8 @@ static stratus_status render(stratus_several* s, stratus_ray_cast_arguments* arg
   } else {
     arguments[0].termination = termination;
     frame.picture = frame.volumes[0].frame;
-    frame.picture.lights = s->lights;
+    frame.picture.lights = stratus_light_maps_words(s->maps);
+    frame.maps = s->maps;
     TRY(draw(s, &frame, &counts));
     if (s->inputs[0].options.skipping.audit) {
       TRY(audit(s, &frame, plain, &differing));

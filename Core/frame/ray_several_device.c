@@ -104,16 +104,15 @@ static stratus_status send_arguments(several_device* d, const stratus_ray_cast_a
   return d->meshes ? stratus_slot_send(d->context, d->slots + MESHES, CL_MEM_READ_ONLY, meshes, count * sizeof *meshes) : STRATUS_OK;
 }
 
-/* The maps of light, which every input has. */
-static const stratus_device_slot* light_slot(const several_device* d)
+/* Passes the kernel the maps of light, which all inputs share. */
+static stratus_status pass_lights(several_device* d)
 {
-  const stratus_device_slot* found = NULL;
-  for (int n = 0; n < d->frame->count; ++n) {
-    const stratus_several_part* part = &d->frame->volumes[n];
-    const stratus_device_slot* slot = part->mesh ? part->tetra->device->slots + TETRA_LIGHTS : part->caster->device->slots + LIGHTS;
-    found = slot->memory && (!part->mesh || part->mesh->lights) ? slot : found;
+  cl_mem memory = d->slots[ARGUMENTS].memory; /* without maps, some buffer */
+  bool sent;
+  if (d->frame->maps) {
+    TRY(stratus_light_maps_on_device(d->frame->maps, &memory, &sent));
   }
-  return found;
+  return stratus_device_argument(d->context, d->kernel, d->next++, sizeof(cl_mem), &memory);
 }
 
 /* counts: 4 zeros for each part of the picture. */
@@ -137,7 +136,7 @@ static stratus_status draw(several_device* d, void* counts, size_t counts_bytes)
   TRY(pass(d, slots + PARTS));
   TRY(stratus_device_argument(context, d->kernel, d->next++, sizeof volumes, &volumes));
   TRY(pass_volumes(d));
-  TRY(pass(d, light_slot(d)));
+  TRY(pass_lights(d));
   for (size_t i = 0; i < COUNT_OF(pictures); ++i) {
     TRY(pass(d, slots + pictures[i]));
   }

@@ -27,8 +27,8 @@ typedef struct stratus_several {
   const stratus_camera* camera;
   const stratus_image* image;
   const stratus_ray_cast_input* given;
-  const int32_t* lights;         /* the maps of light that all share; NULL: none */
-  stratus_ray_cast_report light; /* its members of light are set */
+  const stratus_light_maps* maps; /* of light, that all share; NULL: none */
+  stratus_ray_cast_report light;  /* its members of light are set */
   int count;
   double step;     /* of the lattice */
   char where[160]; /* why the host draws though there is a device; else empty */

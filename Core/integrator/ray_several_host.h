@@ -22,7 +22,8 @@ typedef struct stratus_several_part {
 } stratus_several_part;
 
 typedef struct stratus_several_frame {
-  stratus_ray_cast_frame picture; /* output of the rays; the arguments are the first volume's */
+  stratus_ray_cast_frame picture;        /* output of the rays; the arguments are the first volume's */
+  const struct stratus_light_maps* maps; /* of light, that all share; NULL: none */
   int count;
   stratus_several_part volumes[STRATUS_SEVERAL_MAX];
 } stratus_several_frame;

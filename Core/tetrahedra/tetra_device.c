@@ -146,7 +146,10 @@ stratus_status stratus_tetra_device_launch(stratus_context* context, stratus_tet
     stratus_device_has_double(context->device) ? "" : " -DSTRATUS_REAL_PAIR=1");
   TRY(stratus_device_kernel(context, source, defines, name, &kernel));
   for (unsigned i = 0; i < parameters; ++i) {
-    TRY(stratus_device_argument(context, kernel, i, sizeof(cl_mem), &device->slots[order[i]].memory));
+    const cl_mem* memory = order[i] < TETRA_SLOTS ? &device->slots[order[i]].memory
+      : device->lights                            ? &device->lights
+                                                  : &device->slots[TETRA_ARGUMENTS].memory; /* some buffer, which is not read */
+    TRY(stratus_device_argument(context, kernel, i, sizeof(cl_mem), memory));
   }
   return stratus_device_run(context, kernel, 2, global, local);
 }

@@ -19,7 +19,6 @@ typedef enum stratus_tetra_slot {
   TETRA_SUMS,
   TETRA_COLORS,
   TETRA_FACTORS,
-  TETRA_LIGHTS,
   TETRA_COMPONENT_SUMS,
   TETRA_RUNNING_SUMS, /* among several volumes: the table's own */
   /* of a frame */
@@ -46,8 +45,9 @@ typedef enum stratus_tetra_slot {
 
 typedef struct stratus_tetra_device {
   stratus_device_slot slots[TETRA_SLOTS];
-  uint64_t march_mesh, march_values, project_mesh, project_values, table, running, gradients, lights,
-    components; /* build numbers of the slots' contents */
+  uint64_t march_mesh, march_values, project_mesh, project_values, table, running, gradients,
+    components;  /* build numbers of the slots' contents */
+  cl_mem lights; /* the maps of light of the frame, which own it; NULL: none */
 } stratus_tetra_device;
 
 /* Identifies the mesh, its values and the table of a frame by build numbers > 0 that rise, so that the device copies them only once. A

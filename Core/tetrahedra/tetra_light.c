@@ -235,8 +235,7 @@ static void set_lights(
     }
     stratus_light_maps_arguments(maps, lights, to_world, unit, 0.0, &a->light);
     frame->lights = stratus_light_maps_words(maps);
-    frame->lights_bytes = stratus_light_maps_bytes(maps);
-    frame->lights_serial = stratus_light_maps_serial(maps);
+    frame->maps = maps;
     set_bend(a);
   }
 }

@@ -49,9 +49,10 @@ static stratus_status send(device_march* m, const stratus_tetra_device_source* s
   if (frame->lit) {
     const size_t bytes = frame->factor_count * sizeof *frame->factors;
     TRY(stratus_slot_send(m->context, m->slots + TETRA_FACTORS, CL_MEM_READ_ONLY, frame->factors, bytes));
-    if (!m->slots[TETRA_LIGHTS].memory || d->lights != frame->lights_serial) {
-      TRY(stratus_slot_keep(m->context, m->slots + TETRA_LIGHTS, frame->lights, frame->lights_bytes));
-      d->lights = frame->lights_serial;
+    d->lights = NULL;
+    if (frame->maps) {
+      bool sent;
+      TRY(stratus_light_maps_on_device(frame->maps, &d->lights, &sent));
     }
   }
   TRY(stratus_tetra_device_send(m->context, d, source, frame, frame->places));
@@ -95,7 +96,7 @@ static stratus_status march(device_march* m, size_t entries, uint32_t* sums)
   static const stratus_tetra_slot order[] = { TETRA_ARGUMENTS, TETRA_CELLS, TETRA_CELL_VALUES, TETRA_SUMS, TETRA_COLORS, TETRA_POINTS,
     TETRA_LINES, TETRA_ENDS, TETRA_FACES, TETRA_BIN_BEGIN, TETRA_BINS, TETRA_FIRST, TETRA_ENTRIES, TETRA_FOUND, TETRA_RGBA, TETRA_RGBA8,
     TETRA_DEPTH, TETRA_SAMPLES, TETRA_COUNTS, TETRA_GRADIENTS, TETRA_FACTORS, TETRA_COMPONENT_PLACES, TETRA_COMPONENT_SUMS,
-    TETRA_LIGHTS }; /* the last five only of a lit frame */
+    TETRA_SLOTS }; /* the last five only of a lit frame; TETRA_SLOTS: its maps of light */
   const stratus_image* image = &m->frame->image;
   const size_t sums_bytes = m->tiles * 4 * sizeof *sums;
   TRY(reserve_entries(m, entries));

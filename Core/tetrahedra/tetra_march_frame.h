@@ -53,13 +53,12 @@ typedef struct stratus_tetra_frame {
   const float* ends;         /* z of opaque geometry in each pixel; NULL: none */
   const int32_t* march_sums; /* stratus_tetra_sums() */
   const stratus_table* table;
-  bool lit;               /* light and opacity depend on the gradient */
-  const float* gradients; /* stratus_tetra_gradients.vectors; NULL unless lit */
-  int gradient_sets;      /* of a vector for each point */
-  const int32_t* lights;  /* the maps of lights (kernels/base/light_map.h); NULL: none */
-  size_t lights_bytes;
-  uint64_t lights_serial;
-  const float* factors; /* gradient opacities; NULL: there is none */
+  bool lit;                              /* light and opacity depend on the gradient */
+  const float* gradients;                /* stratus_tetra_gradients.vectors; NULL unless lit */
+  int gradient_sets;                     /* of a vector for each point */
+  const int32_t* lights;                 /* the maps of lights (kernels/base/light_map.h); NULL: none */
+  const struct stratus_light_maps* maps; /* the same */
+  const float* factors;                  /* gradient opacities; NULL: there is none */
   size_t factor_count;
   const float* components; /* stratus_tetra_components.places; NULL: values have one component, and cells no labels */
   size_t component_floats;
