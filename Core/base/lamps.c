@@ -17,8 +17,7 @@ void stratus_lamps_set(const stratus_camera* camera, const stratus_shading* shad
   }
 }
 
-/* Return the fraction of the light that reaches a point. `to` leads from the point to the light, whose distance is `distance`. */
-static double reaching(const stratus_light* light, const double to[3], double distance)
+double stratus_lamp_reaching(const stratus_light* light, const double to[3], double distance)
 {
   const double* a = light->attenuation;
   double part = a[0] == 0.0 && a[1] == 0.0 && a[2] == 0.0 ? 1.0 : 1.0 / fmax(a[0] + distance * (a[1] + distance * a[2]), 1e-35);
@@ -52,7 +51,7 @@ void stratus_lamps_shine(
     const double mirrored =
       stratus_vector_dot(to, direction) - 2.0 * cosine * stratus_vector_dot(normal, direction); /* R . V, with V = -direction */
     const double shine = shading->specular > 0.0 && mirrored > 0.0 ? shading->specular * pow(mirrored, shading->specular_power) : 0.0;
-    const double part = lamps->lights[i].positional ? reaching(&lamps->lights[i], to, distance) : 1.0;
+    const double part = lamps->lights[i].positional ? stratus_lamp_reaching(&lamps->lights[i], to, distance) : 1.0;
     const double* specular_color = lamps->lights[i].separate_specular ? lamps->lights[i].specular_color : lamps->lights[i].color;
     for (int c = 0; c < 3; ++c) {
       light[c] += part * shading->diffuse * cosine * lamps->lights[i].color[c];

@@ -58,7 +58,10 @@ struct stratus_light_maps {
   int32_t* words;
   size_t words_count;
   stratus_device_slot* slot; /* the words on the context's device, once they were sent */
-  double error;              /* the largest of all maps */
+  stratus_light_scatter scatter;
+  size_t scatter_at; /* in words */
+  double goes_on;    /* as in drawing */
+  double error;      /* the largest of all maps */
 };
 
 static size_t map_words(const map* m)
@@ -213,6 +216,7 @@ static float passing(const map* m, const int32_t* words, int face, const double 
 typedef struct drawing {
   stratus_context* context;
   const stratus_light_matter* matter;
+  double goes_on; /* the part of the extinction that light passes as if it were not there */
   map* map;
   /* of a face: the light that passes to each node at the layers' near sides, one layer after the other, and at the last's far side */
   uint16_t* planes;
@@ -228,6 +232,13 @@ static float opacity_at(const drawing* d, size_t node)
   return fminf(fmaxf(d->rgba[4 * node + 3], 0.0f), 1.0f);
 }
 
+/* The part of light that passes the layer there. */
+static float passes(const drawing* d, size_t node)
+{
+  const float passed = 1.0f - opacity_at(d, node);
+  return d->goes_on > 0.0 && passed < 1.0f ? powf(passed, (float)(1.0 - d->goes_on)) : passed;
+}
+
 /* The part that passes to a depth, in layers, of a node. */
 static float passed_to(const drawing* d, size_t node, double depth)
 {
@@ -241,7 +252,7 @@ static void add_difference(const drawing* d, int face, int x, int y, int layer, 
 {
   const int *n = d->map->size, *c = d->coarse->size;
   const size_t node = (size_t)y * (size_t)n[0] + (size_t)x;
-  const float here = d->passed[node] * (1.0f - 0.5f * opacity_at(d, node));
+  const float here = d->passed[node] * 0.5f * (1.0f + passes(d, node));
   double place[3] = { (double)x / (n[0] - 1) * (c[0] - 1), (double)y / (n[1] - 1) * (c[1] - 1), 0.0 };
   for (int m = 0; m < (d->matter->step > 0.0 ? NEARS : 1); ++m) {
     const double depth = layer + 0.5 - near_lengths[m] * d->near_layers;
@@ -350,12 +361,12 @@ static stratus_status draw_face(drawing* d, int face, int32_t* words)
     }
     camera.near_k = near + layer * layer_depth;
     camera.far_k = near + (layer + 1) * layer_depth;
-    TRY(d->matter->draw(d->matter->of, &camera, &image));
+    TRY(d->matter->draw(d->matter->of, &camera, &image, false));
     if (d->coarse) {
       compare_layer(d, face, layer);
     }
     for (size_t i = 0; i < nodes; ++i) {
-      d->passed[i] *= 1.0f - opacity_at(d, i);
+      d->passed[i] *= passes(d, i);
       plane[i] = (uint16_t)(d->passed[i] * 65535.0f + 0.5f);
     }
   }
@@ -402,8 +413,8 @@ static double near_length(const stratus_light_matter* matter, const map* m, doub
 /* Draws maps of a light, each finer than the one before, until the error that is expected of one keeps the tolerance: of the map alone, or
  * of it where near matter is passed by rays. The difference of two maps is the coarser one's error less the finer one's, and errors fall
  * from map to map as the differences do. */
-static stratus_status build_map(
-  stratus_context* context, const stratus_light_matter* matter, const stratus_light* light, map* m, int32_t** words, double* error)
+static stratus_status build_map(stratus_context* context, const stratus_light_matter* matter, double goes_on, const stratus_light* light,
+  map* m, int32_t** words, double* error)
 {
   double sides[3], last[NEARS] = { 0.0 }, near = 0.0;
   const double most = SHARE * matter->tolerance;
@@ -415,7 +426,7 @@ static stratus_status build_map(
   place_map(light, matter->bounds, &maps[0], sides);
   *error = 0.0;
   for (int nodes = NODES_FIRST; nodes <= NODES_LAST; nodes *= 2) {
-    drawing d = { .context = context, .matter = matter, .map = &maps[now] };
+    drawing d = { .context = context, .matter = matter, .goes_on = goes_on, .map = &maps[now] };
     double differences[NEARS], finest = INFINITY;
     if (nodes > NODES_FIRST) {
       maps[now] = maps[1 - now];
@@ -466,8 +477,8 @@ cleanup:
 
 /* ---- all maps */
 
-stratus_status stratus_light_maps_build(
-  stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_maps** maps)
+stratus_status stratus_light_maps_build(stratus_context* context, const stratus_light_matter* matter, const stratus_shading* shading,
+  const stratus_light* lights, int count, stratus_light_maps** maps)
 {
   int32_t* words[STRATUS_LIGHTS_MAX] = { NULL };
   void *memory = NULL, *all = NULL, *slot = NULL;
@@ -477,18 +488,29 @@ stratus_status stratus_light_maps_build(
   made = memory;
   made->context = context;
   made->count = count;
+  if (shading->multiple) {
+    TRY_CLEANUP(stratus_light_scatter_build(
+      context, matter->draw, matter->of, matter->bounds, shading, lights, count, matter->tolerance, &made->scatter));
+    made->goes_on = stratus_light_forward(&made->scatter, shading);
+    made->error = made->scatter.error;
+  }
   for (int i = 0; i < count; ++i) {
     double error;
-    TRY_CLEANUP(build_map(context, matter, &lights[i], &made->of[i], &words[i], &error));
+    TRY_CLEANUP(build_map(context, matter, made->goes_on, &lights[i], &made->of[i], &words[i], &error));
     made->of[i].at = made->words_count;
     made->words_count += map_words(&made->of[i]);
     made->error = fmax(made->error, error);
     TRY_CLEANUP(stratus_progress(context, "light", (i + 1.0) / count));
   }
   TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *made->slot, &slot));
+  made->scatter_at = made->words_count;
+  made->words_count += stratus_light_scatter_words(&made->scatter);
   TRY_CLEANUP(stratus_allocate(context, made->words_count, sizeof(int32_t), &all));
   made->slot = slot;
   made->words = all;
+  if (made->scatter.words) {
+    memcpy(made->words + made->scatter_at, made->scatter.words, stratus_light_scatter_words(&made->scatter) * sizeof(int32_t));
+  }
   for (int i = 0; i < count; ++i) {
     memcpy(made->words + made->of[i].at, words[i], map_words(&made->of[i]) * sizeof(int32_t));
   }
@@ -496,6 +518,9 @@ stratus_status stratus_light_maps_build(
   *maps = made;
   memory = slot = NULL;
 cleanup:
+  if (memory) {
+    stratus_light_scatter_release(context, &made->scatter);
+  }
   for (int i = 0; i < count; ++i) {
     stratus_release(context, words[i]);
   }
@@ -509,6 +534,7 @@ void stratus_light_maps_destroy(stratus_light_maps* maps)
   if (maps) {
     stratus_slot_drop(maps->slot); /* the device may read the words in place */
     stratus_release(maps->context, maps->slot);
+    stratus_light_scatter_release(maps->context, &maps->scatter);
     stratus_release(maps->context, maps->words);
     stratus_release(maps->context, maps);
   }
@@ -535,6 +561,39 @@ uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* tr
   return key;
 }
 
+uint64_t stratus_light_key_of_scattering(uint64_t key, const stratus_shading* shading, const stratus_light* lights, int count)
+{
+  if (!shading->multiple) {
+    return key;
+  }
+  key = stratus_light_key(key, &shading->diffuse, sizeof shading->diffuse);
+  key = stratus_light_key(key, &shading->anisotropy, sizeof shading->anisotropy);
+  key = stratus_light_key(key, shading->sky_zenith, sizeof shading->sky_zenith);
+  key = stratus_light_key(key, shading->sky_horizon, sizeof shading->sky_horizon);
+  key = stratus_light_key(key, shading->up, sizeof shading->up);
+  for (int i = 0; i < count; ++i) {
+    const double numbers[2] = { lights[i].cone_angle, lights[i].cone_exponent };
+    key = stratus_light_key(key, lights[i].color, sizeof lights[i].color);
+    key = stratus_light_key(key, lights[i].attenuation, sizeof lights[i].attenuation);
+    key = stratus_light_key(key, lights[i].axis, sizeof lights[i].axis);
+    key = stratus_light_key(key, numbers, sizeof numbers);
+  }
+  return key;
+}
+
+uint64_t stratus_light_key_of_albedo(
+  uint64_t key, const stratus_transfer* transfers, int count, const stratus_material* materials, int components)
+{
+  for (int i = 0; i < count; ++i) {
+    key = stratus_light_key(key, transfers[i].color, 4 * transfers[i].color_count * sizeof *transfers[i].color);
+  }
+  for (int c = 0; materials && c < components; ++c) {
+    const double numbers[2] = { materials[c].shade, materials[c].diffuse };
+    key = stratus_light_key(key, numbers, sizeof numbers);
+  }
+  return key;
+}
+
 void stratus_light_state_drop(stratus_light_state* state)
 {
   stratus_light_maps_destroy(state->maps);
@@ -555,17 +614,18 @@ bool stratus_light_state_is_stale(const stratus_light_state* state, uint64_t key
   return !serves;
 }
 
-stratus_status stratus_light_state_build(
-  stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_state* state)
+stratus_status stratus_light_state_build(stratus_context* context, const stratus_light_matter* matter, const stratus_shading* shading,
+  const stratus_light* lights, int count, stratus_light_state* state)
 {
-  TRY(stratus_light_maps_build(context, matter, lights, count, &state->maps));
+  TRY(stratus_light_maps_build(context, matter, shading, lights, count, &state->maps));
   state->key = 0;
   ++state->builds;
   return STRATUS_OK;
 }
 
 /* Sets how near matter is passed on the way to light i. */
-static void near_arguments(const map* m, int i, const double to_places[16], double unit, double sample_distance, stratus_light_arguments* a)
+static void near_arguments(
+  const map* m, int i, const double to_places[16], double unit, double sample_distance, double goes_on, stratus_light_arguments* a)
 {
   double way[3], world[3];
   memcpy(way, m->light.vector, sizeof way);
@@ -582,7 +642,7 @@ static void near_arguments(const map* m, int i, const double to_places[16], doub
   }
   a->near = 1;
   a->near_steps[i] = m->near_steps;
-  a->near_length[i] = (float)(m->near / m->near_steps / sample_distance);
+  a->near_length[i] = (float)(m->near / m->near_steps / sample_distance * (1.0 - goes_on));
   a->near_reach[i] = (float)(m->near / unit);
 }
 
@@ -592,6 +652,7 @@ void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_
   double to_places[16];
   const bool near = maps && sample_distance > 0.0 && stratus_matrix_invert_affine(to_world, to_places);
   a->near = 0;
+  stratus_light_scatter_arguments(maps && maps->scatter.words ? &maps->scatter : NULL, maps ? maps->scatter_at : 0, to_world, a);
   for (int i = 0; i < a->count; ++i) {
     const map* m = maps && i < maps->count ? &maps->of[i] : NULL;
     a->map_at[i] = -1;
@@ -600,7 +661,7 @@ void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_
       continue;
     }
     if (near && m->near_steps > 0) {
-      near_arguments(m, i, to_places, unit, sample_distance, a);
+      near_arguments(m, i, to_places, unit, sample_distance, maps->goes_on, a);
     }
     const frame* f = &m->frame;
     double scale[3], shift[3];

@@ -5,6 +5,7 @@
 
 #include "base.h"
 #include "light_arguments.h"
+#include "light_scatter.h"
 #include "stratus/ray_cast.h"
 
 typedef struct stratus_light_maps stratus_light_maps;
@@ -12,8 +13,7 @@ struct _cl_mem;
 
 /* The matter that absorbs light. */
 typedef struct stratus_light_matter {
-  /* draws the matter without light; only the opacity of the image is read */
-  stratus_status (*draw)(void* of, const stratus_camera* camera, const stratus_image* image);
+  stratus_light_draw* draw;
   void* of;
   double bounds[6]; /* world coordinates: xmin xmax ymin ymax zmin zmax */
   /* steps at which a renderer can pass the matter next to a place by itself; 0: it cannot */
@@ -21,11 +21,12 @@ typedef struct stratus_light_matter {
   double tolerance; /* of the part of light that passes, root mean square over the matter; 0: as fine as maps can be */
 } stratus_light_matter;
 
-/* Build the maps of all lights, given in the world. A map has the least of 32, 64, 128 and 256 nodes along its longest side whose expected
- * error keeps the tolerance, if need be with near matter passed by rays, and at most 64 MiB: each face of a cube of maps has at most 128.
- * *maps: NULL or maps to replace; after a failure it is as before. */
-stratus_status stratus_light_maps_build(
-  stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_maps** maps);
+/* Build the maps of all lights, given in the world, and where the shading asks for it the grid of light that is scattered more than once. A
+ * map has the least of 32, 64, 128 and 256 nodes along its longest side whose expected error keeps the tolerance, if need be with near
+ * matter passed by rays, and at most 64 MiB: each face of a cube of maps has at most 128. *maps: NULL or maps to replace; after a failure
+ * it is as before. */
+stratus_status stratus_light_maps_build(stratus_context* context, const stratus_light_matter* matter, const stratus_shading* shading,
+  const stratus_light* lights, int count, stratus_light_maps** maps);
 void stratus_light_maps_destroy(stratus_light_maps* maps);
 
 /* The maps of a scene that is drawn again and again. */
@@ -38,13 +39,18 @@ typedef struct stratus_light_state {
 /* Whether there are no maps of matter with this key and of exactly these lights' ways; their colours do not matter. */
 bool stratus_light_state_is_stale(const stratus_light_state* state, uint64_t key, const stratus_light* lights, int count);
 /* Builds the maps anew. The key is then 0, until the caller sets it. */
-stratus_status stratus_light_state_build(
-  stratus_context* context, const stratus_light_matter* matter, const stratus_light* lights, int count, stratus_light_state* state);
+stratus_status stratus_light_state_build(stratus_context* context, const stratus_light_matter* matter, const stratus_shading* shading,
+  const stratus_light* lights, int count, stratus_light_state* state);
 void stratus_light_state_drop(stratus_light_state* state);
 /* A key that follows from another and from bytes. The first is 0. */
 uint64_t stratus_light_key(uint64_t key, const void* bytes, size_t count);
 /* The same of transfer functions, their points included. */
 uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* transfers, int count);
+/* The same of lights and the sky, if light is scattered more than once; and of what matter scatters. materials: of `components`; NULL: none
+ * of their own. */
+uint64_t stratus_light_key_of_scattering(uint64_t key, const stratus_shading* shading, const stratus_light* lights, int count);
+uint64_t stratus_light_key_of_albedo(
+  uint64_t key, const stratus_transfer* transfers, int count, const stratus_material* materials, int components);
 
 /* Sets the maps of the lights that have one, and none for the others. maps: NULL: there is none. lights: in the world, as many as the
  * arguments have. to_world: 4x4, from the places that rays have to the world. unit: of the arguments' `place`, in the world.

@@ -14,7 +14,7 @@ _Static_assert(STRATUS_LIGHTS_MAX == 8, "as many as the arguments hold");
 
 stratus_shading stratus_shading_default(void)
 {
-  return (stratus_shading){ .on = 1, .ambient = 0.1, .diffuse = 0.9, .specular_power = 10.0, .light_count = -1 };
+  return (stratus_shading){ .on = 1, .ambient = 0.1, .diffuse = 0.9, .specular_power = 10.0, .light_count = -1, .up = { 0.0, 0.0, 1.0 } };
 }
 
 static stratus_status check_light(stratus_context* context, const stratus_light* light, int number)
@@ -64,6 +64,32 @@ static stratus_status check_light(stratus_context* context, const stratus_light*
   return STRATUS_OK;
 }
 
+static double length_of(const double v[3])
+{
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static stratus_status check_multiple(stratus_context* context, const stratus_shading* shading)
+{
+  bool even = true;
+  if (!(shading->scattering > 0.0)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "multiple scattering with scattering %g, must be above 0", shading->scattering);
+  }
+  for (int c = 0; c < 3; ++c) {
+    const double zenith = shading->sky_zenith[c], horizon = shading->sky_horizon[c];
+    if (!(zenith >= 0.0 && zenith <= STRATUS_LIGHT_MAX && horizon >= 0.0 && horizon <= STRATUS_LIGHT_MAX)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the sky's colour is %g at the zenith and %g at the horizon, must be 0..%g",
+        zenith, horizon, STRATUS_LIGHT_MAX);
+    }
+    even = even && zenith == horizon;
+  }
+  if (!even && !(length_of(shading->up) > 0.0 && isfinite(length_of(shading->up)))) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "the sky's zenith is at (%g, %g, %g), must be finite and have a length",
+      shading->up[0], shading->up[1], shading->up[2]);
+  }
+  return STRATUS_OK;
+}
+
 stratus_status stratus_shading_check(stratus_context* context, const stratus_shading* shading)
 {
   const double factors[4] = { shading->ambient, shading->diffuse, shading->specular, shading->specular_power };
@@ -76,6 +102,9 @@ stratus_status stratus_shading_check(stratus_context* context, const stratus_sha
   if (!(shading->scattering >= 0.0 && shading->scattering <= 1.0) || !(fabs(shading->anisotropy) <= STRATUS_ANISOTROPY_MOST)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "scattering %g must be 0..1, and anisotropy %g -%g..%g", shading->scattering,
       shading->anisotropy, STRATUS_ANISOTROPY_MOST, STRATUS_ANISOTROPY_MOST);
+  }
+  if (shading->multiple) {
+    TRY(check_multiple(context, shading));
   }
   if (shading->light_count < -1 || shading->light_count > STRATUS_LIGHTS_MAX) {
     return stratus_fail(
@@ -121,11 +150,6 @@ int stratus_lights_in_world(const stratus_camera* camera, const stratus_shading*
     lights[0].vector[axis] = camera->parallel ? -camera->forward[axis] : camera->eye[axis];
   }
   return 1;
-}
-
-static double length_of(const double v[3])
-{
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 /* Converts a light to floats: a direction of length 1, or a position relative to the origin in units of `unit`. */
@@ -175,6 +199,8 @@ void stratus_lights_set(const stratus_camera* camera, const stratus_shading* sha
   a->phase[1] = (float)(1.0 + g * g);
   a->phase[2] = (float)(2.0 * g);
   a->count = stratus_lights_in_world(camera, shading, lights);
+  a->scatter_at = -1;
+  a->scatter_way = (float)g;
   for (int i = 0; i < a->count; ++i) {
     set_light(&lights[i], origin, unit, i, a);
     a->map_at[i] = -1;
@@ -186,5 +212,15 @@ bool stratus_lights_cast_shadows(const stratus_shading* shading, bool shade, con
   for (int c = 0; materials && c < count; ++c) {
     shade = (c > 0 && shade) || materials[c].shade;
   }
-  return shade && shading->shadows;
+  return shade && (shading->shadows || shading->multiple);
+}
+
+stratus_shading stratus_lights_of_albedo(const stratus_shading* shading)
+{
+  return (stratus_shading){ .on = 1, .ambient = shading->diffuse, .scattering = 1.0 };
+}
+
+stratus_material stratus_lights_albedo_of(const stratus_material* material)
+{
+  return (stratus_material){ .shade = 1, .ambient = material->shade ? material->diffuse : 0.0 };
 }

@@ -21,6 +21,14 @@ void stratus_lights_set(const stratus_camera* camera, const stratus_shading* sha
  * none of their own. */
 bool stratus_lights_cast_shadows(const stratus_shading* shading, bool shade, const stratus_material* materials, int count);
 
+/* Lights by which matter that is drawn shows its albedo, its colour times the diffuse number: as ambient light. Matter that is not lit
+ * scatters nothing. */
+stratus_shading stratus_lights_of_albedo(const stratus_shading* shading);
+stratus_material stratus_lights_albedo_of(const stratus_material* material);
+
+/* lamps.c: the fraction of a positional light that reaches a point. `to`, of length 1, leads from the point to the light, at `distance`. */
+double stratus_lamp_reaching(const stratus_light* light, const double to[3], double distance);
+
 /* The lights of first hits, which are solids. */
 typedef struct stratus_lamps {
   const stratus_shading* shading;

@@ -102,7 +102,7 @@ static stratus_ray_choice_inputs choice_inputs(
     in.materials[0].specular_power = shading->specular_power;
     in.one_sided = shading->one_sided != 0;
     in.lights = shading->light_count;
-    in.shadows = shading->shadows != 0;
+    in.shadows = (shading->shadows != 0) + 2 * (shading->multiple != 0);
     in.scattering = shading->scattering;
     in.anisotropy = shading->anisotropy;
   }

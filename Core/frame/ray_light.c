@@ -40,6 +40,20 @@ static stratus_ray_cast_options dark_options(const stratus_ray_cast_options* opt
   return dark;
 }
 
+/* Makes options of matter without light show its albedo: as its ambient light. materials: receives the materials of its components, if they
+ * have their own. */
+static void show_albedo(
+  const stratus_ray_cast_options* options, int components, stratus_material materials[4], stratus_ray_cast_options* dark)
+{
+  dark->light = options->light;
+  dark->light.shade = 1;
+  dark->light.shading = stratus_lights_of_albedo(&options->light.shading);
+  for (int c = 0; options->light.materials && c < components; ++c) {
+    materials[c] = stratus_lights_albedo_of(&options->light.materials[c]);
+    dark->light.materials = materials;
+  }
+}
+
 /* The caster that draws a volume's matter. */
 static stratus_status dark_caster(stratus_ray_caster* caster, stratus_ray_caster** dark)
 {
@@ -90,10 +104,10 @@ static uint64_t key_of_data(uint64_t key, const stratus_volume* v)
   return key;
 }
 
-/* Adds all that decides where a volume's matter is to a key. The key depends on no caster, so that pictures of several inputs have one.
- * Bytes under the same address are the same unless their revision has changed. */
+/* Adds all that decides where a volume's matter is, and with `albedo` how it scatters, to a key. The key depends on no caster, so that
+ * pictures of several inputs have one. Bytes under the same address are the same unless their revision has changed. */
 static uint64_t key_of_volume(
-  uint64_t key, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
+  uint64_t key, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options, bool albedo)
 {
   const stratus_ray_optics_options* optics = &options->optics;
   const stratus_ray_clipping_options* clip = &options->clipping;
@@ -109,8 +123,14 @@ static uint64_t key_of_volume(
   key = stratus_light_key(key, clip->clip_planes, (size_t)clip->clip_plane_count * sizeof clip->clip_planes[0]);
   key = stratus_light_key(key, clip->crop_bounds, clip->crop ? sizeof clip->crop_bounds : 0);
   key = stratus_light_key(key, optics->contours, surfaces ? (size_t)optics->contour_count * sizeof optics->contours[0] : 0);
-  return optics->transfer_2d ? key_of_function(key, optics->transfer_2d)
-                             : stratus_light_key_of_transfers(key, transfer, stratus_ray_shading_media(volume, options));
+  if (optics->transfer_2d) {
+    return key_of_function(key, optics->transfer_2d);
+  }
+  const int functions = stratus_ray_shading_media(volume, options);
+  if (albedo) {
+    key = stratus_light_key_of_albedo(key, transfer, functions, options->light.materials, stratus_volume_components(volume));
+  }
+  return stratus_light_key_of_transfers(key, transfer, functions);
 }
 
 /* ---- one volume */
@@ -120,14 +140,20 @@ typedef struct one_volume {
   stratus_ray_caster* caster;
   const stratus_volume* volume;
   const stratus_transfer* transfer;
+  const stratus_ray_cast_options* lit;
   stratus_ray_cast_options options;
 } one_volume;
 
-static stratus_status draw_volume(void* of, const stratus_camera* camera, const stratus_image* image)
+static stratus_status draw_volume(void* of, const stratus_camera* camera, const stratus_image* image, bool colors)
 {
   const one_volume* m = of;
   stratus_ray_cast_report report;
-  return m->draw(m->caster, m->volume, m->transfer, camera, &m->options, image, &report);
+  stratus_ray_cast_options options = m->options;
+  stratus_material materials[4];
+  if (colors) {
+    show_albedo(m->lit, stratus_volume_components(m->volume), materials, &options);
+  }
+  return m->draw(m->caster, m->volume, m->transfer, camera, &options, image, &report);
 }
 
 stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
@@ -142,20 +168,22 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
     return STRATUS_OK;
   }
   const double start = stratus_now_ms();
-  one_volume m = { .draw = draw, .volume = volume, .transfer = transfer, .options = dark_options(options) };
+  one_volume m = { .draw = draw, .volume = volume, .transfer = transfer, .lit = options, .options = dark_options(options) };
   stratus_light_matter matter = { .draw = draw_volume, .of = &m, .tolerance = options->sampling.tolerance };
   const bool regions = options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE;
   if (stratus_volume_components(volume) == 1 && options->mode == STRATUS_MODE_COMPOSITE && options->mask.label_count == 0 &&
     !options->optics.transfer_2d && transfer->gradient_count == 0 && !regions) { /* near rays know no gradient opacity */
     matter.step = stratus_ray_voxel_length(volume) / NEAR_STEPS_A_VOXEL;
   }
-  const uint64_t key = key_of_volume(0, volume, transfer, options);
   const int count = stratus_lights_in_world(camera, &options->light.shading, lights);
+  const bool multiple = options->light.shading.multiple != 0;
+  const uint64_t key =
+    key_of_volume(stratus_light_key_of_scattering(0, &options->light.shading, lights, count), volume, transfer, options, multiple);
   if (stratus_light_state_is_stale(&caster->light, key, lights, count)) {
     TRY(dark_caster(caster, &m.caster));
     TRY(stratus_ray_update_transfer_2d(m.caster, volume, options));
     TRY(stratus_volume_bounds(caster->context, volume, matter.bounds));
-    TRY(stratus_light_state_build(caster->context, &matter, lights, count, &caster->light));
+    TRY(stratus_light_state_build(caster->context, &matter, &options->light.shading, lights, count, &caster->light));
     caster->light.key = key;
   }
   caster->optics.lights = caster->light.maps;
@@ -167,28 +195,57 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
 
 typedef struct several {
   stratus_context* context;
+  const stratus_ray_cast_input* given;
   stratus_ray_cast_input* inputs; /* of the matter */
   stratus_ray_cast_options* options;
   stratus_tetra_options* tetra_options;
+  stratus_material (*materials)[4];
   int count;
+  bool colors; /* whether the options of the matter show its albedo */
   stratus_ray_draw_several* draw;
 } several;
 
-static stratus_status draw_several(void* of, const stratus_camera* camera, const stratus_image* image)
-{
-  const several* m = of;
-  return m->draw(m->inputs, m->count, camera, image, NULL);
-}
-
-static uint64_t key_of_inputs(const stratus_ray_cast_input* inputs, int count)
+/* Sets the options of the matter: without light, or such that they show its albedo. */
+static void set_options(several* m, bool colors)
 {
   const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
   const stratus_tetra_options tetra_defaults = stratus_tetra_options_default();
-  uint64_t key = 0;
+  for (int n = 0; n < m->count; ++n) {
+    const stratus_ray_cast_input* in = &m->given[n];
+    if (in->tetra) {
+      const stratus_tetra_options* options = in->tetra_options ? in->tetra_options : &tetra_defaults;
+      m->tetra_options[n] = stratus_tetra_dark_options(options);
+      if (colors) {
+        stratus_tetra_show_albedo(options, in->mesh->components, m->materials[n], &m->tetra_options[n]);
+      }
+    } else {
+      const stratus_ray_cast_options* options = in->options ? in->options : &defaults;
+      m->options[n] = dark_options(options);
+      if (colors) {
+        show_albedo(options, stratus_volume_components(in->volume), m->materials[n], &m->options[n]);
+      }
+    }
+  }
+  m->colors = colors;
+}
+
+static stratus_status draw_several(void* of, const stratus_camera* camera, const stratus_image* image, bool colors)
+{
+  several* m = of;
+  if (colors != m->colors) {
+    set_options(m, colors);
+  }
+  return m->draw(m->inputs, m->count, camera, image, NULL);
+}
+
+static uint64_t key_of_inputs(uint64_t key, const stratus_ray_cast_input* inputs, int count, bool albedo)
+{
+  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
+  const stratus_tetra_options tetra_defaults = stratus_tetra_options_default();
   for (int n = 0; n < count; ++n) {
     const stratus_ray_cast_input* in = &inputs[n];
-    key = in->tetra ? stratus_tetra_shadow_key(key, in->mesh, in->transfer, in->tetra_options ? in->tetra_options : &tetra_defaults)
-                    : key_of_volume(key, in->volume, in->transfer, in->options ? in->options : &defaults);
+    key = in->tetra ? stratus_tetra_shadow_key(key, in->mesh, in->transfer, in->tetra_options ? in->tetra_options : &tetra_defaults, albedo)
+                    : key_of_volume(key, in->volume, in->transfer, in->options ? in->options : &defaults, albedo);
   }
   return key;
 }
@@ -196,17 +253,14 @@ static uint64_t key_of_inputs(const stratus_ray_cast_input* inputs, int count)
 /* Makes the inputs of the matter. */
 static stratus_status darken(several* m, const stratus_ray_cast_input* inputs)
 {
-  const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
-  const stratus_tetra_options tetra_defaults = stratus_tetra_options_default();
+  set_options(m, false);
   for (int n = 0; n < m->count; ++n) {
     stratus_ray_cast_input* dark = &m->inputs[n];
     *dark = inputs[n];
     if (inputs[n].tetra) {
-      m->tetra_options[n] = stratus_tetra_dark_options(inputs[n].tetra_options ? inputs[n].tetra_options : &tetra_defaults);
       dark->tetra_options = &m->tetra_options[n];
       TRY(stratus_tetra_light_caster(inputs[n].tetra, &dark->tetra));
     } else {
-      m->options[n] = dark_options(inputs[n].options ? inputs[n].options : &defaults);
       dark->options = &m->options[n];
       TRY(dark_caster(inputs[n].caster, &dark->caster));
     }
@@ -276,12 +330,12 @@ static stratus_status update_several(several* m, const stratus_ray_cast_input* i
   stratus_light_matter matter = {
     .draw = draw_several, .of = m, .tolerance = lit->tetra ? lit->tetra_options->tolerance : lit->options->sampling.tolerance
   };
-  const uint64_t key = key_of_inputs(inputs, m->count);
   const int count = stratus_lights_in_world(camera, shading, lights);
+  const uint64_t key = key_of_inputs(stratus_light_key_of_scattering(0, shading, lights, count), inputs, m->count, shading->multiple != 0);
   if (stratus_light_state_is_stale(state, key, lights, count)) {
     TRY(darken(m, inputs));
     TRY(bounds_of(m, matter.bounds));
-    TRY(stratus_light_state_build(m->context, &matter, lights, count, state));
+    TRY(stratus_light_state_build(m->context, &matter, shading, lights, count, state));
     state->key = key;
   }
   return STRATUS_OK;
@@ -292,8 +346,10 @@ stratus_status stratus_ray_light_update_several(const stratus_ray_cast_input* in
 {
   const double start = stratus_now_ms();
   const stratus_ray_cast_input* lit = NULL;
-  several m = { .context = inputs->tetra ? inputs->tetra->context : inputs->caster->context, .count = count, .draw = draw };
-  void *memory = NULL, *options = NULL, *tetra_options = NULL;
+  several m = {
+    .context = inputs->tetra ? inputs->tetra->context : inputs->caster->context, .given = inputs, .count = count, .draw = draw
+  };
+  void *memory = NULL, *options = NULL, *tetra_options = NULL, *materials = NULL;
   stratus_status status;
   for (int n = 0; n < count && !lit; ++n) {
     lit = input_has_shadows(&inputs[n]) ? &inputs[n] : NULL;
@@ -306,7 +362,9 @@ stratus_status stratus_ray_light_update_several(const stratus_ray_cast_input* in
   TRY_CLEANUP(stratus_allocate(m.context, (size_t)count, sizeof *m.inputs, &memory));
   TRY_CLEANUP(stratus_allocate(m.context, (size_t)count, sizeof *m.options, &options));
   TRY_CLEANUP(stratus_allocate(m.context, (size_t)count, sizeof *m.tetra_options, &tetra_options));
+  TRY_CLEANUP(stratus_allocate(m.context, (size_t)count, sizeof *m.materials, &materials));
   m.inputs = memory;
+  m.materials = materials;
   m.options = options;
   m.tetra_options = tetra_options;
   stratus_light_state* state = inputs->tetra ? &inputs->tetra->light : &inputs->caster->light;
@@ -320,6 +378,7 @@ cleanup:
   stratus_release(m.context, memory);
   stratus_release(m.context, options);
   stratus_release(m.context, tetra_options);
+  stratus_release(m.context, materials);
   return status;
 }
 

@@ -24,8 +24,8 @@ static bool asks_for_shadows(const stratus_ray_cast_input* inputs, int count)
   bool asks = false;
   for (int n = 0; n < count; ++n) {
     asks = asks ||
-      (inputs[n].tetra ? inputs[n].tetra_options && inputs[n].tetra_options->shading.shadows
-                       : inputs[n].options && inputs[n].options->light.shading.shadows);
+      (inputs[n].tetra ? inputs[n].tetra_options && (inputs[n].tetra_options->shading.shadows || inputs[n].tetra_options->shading.multiple)
+                       : inputs[n].options && (inputs[n].options->light.shading.shadows || inputs[n].options->light.shading.multiple));
   }
   return asks;
 }

@@ -127,6 +127,14 @@ typedef struct stratus_shading {
    * albedo, and an irradiance of E is a colour of E / (4 pi). 1 needs no gradients. Default 0. */
   double scattering;
   double anisotropy; /* g, -.99...99; above 0 light scatters forward. Default 0: to all sides alike. */
+  /* Composite and isosurface, with scattering above 0. 1: light is scattered any number of times, and shadows are on. The first scattering
+   * is computed as above; all others by a solution of the equation of radiative transfer on a grid of at most 64^3 cells. Albedos above 1
+   * count as 1. The grid is made again as maps are, and if colours or the phase function change. Default 0: light is scattered once. */
+  int multiple;
+  /* With `multiple`: radiance that comes from infinity, a mix of sky_horizon and sky_zenith by the cosine to `up`; below the horizon it is
+   * sky_horizon. The picture's background does not show it. Red, green and blue, each 0..STRATUS_LIGHT_MAX. Default 0: no sky. */
+  double sky_zenith[3], sky_horizon[3];
+  double up[3]; /* direction of the zenith in the world, of any length > 0. Default z. */
 } stratus_shading;
 
 /* Colour and opacity as a function of two variables. The first is the value. The second is the gradient's magnitude or, in volumes of 2

@@ -236,9 +236,12 @@ stratus_status stratus_tetra_shadow_check(
 /* Whether a picture with these options has shadows; and a key that changes with the place of its matter. */
 bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* options);
 uint64_t stratus_tetra_shadow_key(
-  uint64_t key, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
+  uint64_t key, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options, bool albedo);
 /* Makes options of the same matter without light. */
 stratus_tetra_options stratus_tetra_dark_options(const stratus_tetra_options* options);
+/* Makes options of the mesh without light show its albedo. materials: receives those of its components, if they have their own. */
+void stratus_tetra_show_albedo(
+  const stratus_tetra_options* options, int components, stratus_material materials[4], stratus_tetra_options* dark);
 /* tetra_light.c: light and gradient opacity. */
 stratus_status stratus_tetra_light_check(
   stratus_context* context, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);

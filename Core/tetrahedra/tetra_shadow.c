@@ -12,6 +12,7 @@ typedef struct matter {
   stratus_tetra_caster* dark;
   const stratus_mesh* mesh;
   const stratus_transfer* transfers;
+  const stratus_tetra_options* lit;
   stratus_tetra_options options;
 } matter;
 
@@ -20,7 +21,8 @@ stratus_status stratus_tetra_shadow_check(
 {
   TRY(stratus_mesh_check(context, mesh));
   TRY(stratus_transfer_check(context, transfer));
-  return options && options->shading.shadows ? stratus_shading_check(context, &options->shading) : STRATUS_OK;
+  return options && (options->shading.shadows || options->shading.multiple) ? stratus_shading_check(context, &options->shading)
+                                                                            : STRATUS_OK;
 }
 
 bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* o)
@@ -39,6 +41,17 @@ stratus_tetra_options stratus_tetra_dark_options(const stratus_tetra_options* op
   return dark;
 }
 
+void stratus_tetra_show_albedo(
+  const stratus_tetra_options* options, int components, stratus_material materials[4], stratus_tetra_options* dark)
+{
+  dark->shade = 1;
+  dark->shading = stratus_lights_of_albedo(&options->shading);
+  for (int c = 0; options->materials && c < components; ++c) {
+    materials[c] = stratus_lights_albedo_of(&options->materials[c]);
+    dark->materials = materials;
+  }
+}
+
 /* Bytes under the same address are the same unless the mesh's revision has changed. */
 static uint64_t key_of_mesh(uint64_t key, const stratus_mesh* m)
 {
@@ -53,7 +66,8 @@ static uint64_t key_of_mesh(uint64_t key, const stratus_mesh* m)
   return key;
 }
 
-uint64_t stratus_tetra_shadow_key(uint64_t key, const stratus_mesh* m, const stratus_transfer* transfers, const stratus_tetra_options* o)
+uint64_t stratus_tetra_shadow_key(
+  uint64_t key, const stratus_mesh* m, const stratus_transfer* transfers, const stratus_tetra_options* o, bool albedo)
 {
   const bool surfaces = o->mode == STRATUS_TETRA_ISOSURFACE;
   const double numbers[10] = { o->mode, o->tolerance, o->gradient_distance, o->clip_plane_count, o->crop, o->crop_regions, o->dependent,
@@ -65,28 +79,40 @@ uint64_t stratus_tetra_shadow_key(uint64_t key, const stratus_mesh* m, const str
   key = stratus_light_key(key, o->crop_bounds, o->crop ? sizeof o->crop_bounds : 0);
   key = stratus_light_key(key, o->contours, surfaces ? (size_t)o->contour_count * sizeof o->contours[0] : 0);
   key = stratus_light_key(key, m->matrix, sizeof m->matrix);
+  if (albedo) {
+    key = stratus_light_key_of_albedo(key, transfers, functions, o->materials, m->components);
+  }
   return stratus_light_key_of_transfers(key, transfers, functions);
 }
 
-static stratus_status draw_matter(void* of, const stratus_camera* camera, const stratus_image* image)
+static stratus_status draw_matter(void* of, const stratus_camera* camera, const stratus_image* image, bool colors)
 {
   const matter* m = of;
-  return m->draw(m->dark, m->mesh, m->transfers, camera, &m->options, image, NULL);
+  stratus_tetra_options options = m->options;
+  stratus_material materials[4];
+  if (colors) {
+    stratus_tetra_show_albedo(m->lit, m->mesh->components, materials, &options);
+  }
+  return m->draw(m->dark, m->mesh, m->transfers, camera, &options, image, NULL);
 }
 
 stratus_status stratus_tetra_shadow_update(
   stratus_tetra_caster* caster, const stratus_tetra_subject* of, const stratus_camera* camera, stratus_tetra_draw* draw)
 {
   stratus_light lights[STRATUS_LIGHTS_MAX];
-  matter m = {
-    .draw = draw, .dark = caster->dark, .mesh = of->mesh, .transfers = of->transfer, .options = stratus_tetra_dark_options(of->options)
-  };
+  matter m = { .draw = draw,
+    .dark = caster->dark,
+    .mesh = of->mesh,
+    .transfers = of->transfer,
+    .lit = of->options,
+    .options = stratus_tetra_dark_options(of->options) };
   stratus_light_matter all = { .draw = draw_matter, .of = &m, .tolerance = of->options->tolerance };
-  const uint64_t key = stratus_tetra_shadow_key(0, of->mesh, of->transfer, of->options);
   const int count = stratus_lights_in_world(camera, &of->options->shading, lights);
+  const uint64_t key = stratus_tetra_shadow_key(stratus_light_key_of_scattering(0, &of->options->shading, lights, count), of->mesh,
+    of->transfer, of->options, of->options->shading.multiple != 0);
   if (stratus_light_state_is_stale(&caster->light, key, lights, count)) {
     stratus_matrix_box(of->mesh->matrix, caster->mesh->lo, caster->mesh->hi, all.bounds); /* caster->mesh is up to date */
-    TRY(stratus_light_state_build(caster->context, &all, lights, count, &caster->light));
+    TRY(stratus_light_state_build(caster->context, &all, &of->options->shading, lights, count, &caster->light));
     caster->light.key = key;
   }
   caster->lights = caster->light.maps;

@@ -9,6 +9,7 @@
 #include "light_arguments.h"
 #include "gather.h"
 #include "light_map.h"
+#include "light_scatter.h"
 #include "packet_math.h"
 
 INLINE vfloat v_dot3(const vfloat a[3], const vfloat b[3]) { return v_fma(a[0], b[0], v_fma(a[1], b[1], a[2] * b[2])); }
@@ -182,6 +183,7 @@ INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps
     diffuse[axis] = v_set(material[0]);
     specular[axis] = zero;
   }
+  vfloat sent = zero, all = v_set(1e-30f); /* what the phase function sends to the eye of all lights */
   for (int i = 0; i < a->count; ++i) {
     vfloat light[3], half_way[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -193,11 +195,15 @@ INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps
     const vfloat way[3] = { light[0], light[1], light[2] };
     v_normalize3(light, 0.0f);
     vfloat reaching = a->positional[i] ? lamp_reaching(a, i, way, light) : v_set(1.0f);
+    const vfloat full = reaching;
     if (a->map_at[i] >= 0) {
       reaching = reaching * (passing ? passing[i] : light_map_passing(a, maps, i, x));
     }
     if (a->scattered > 0.0f) {
-      const vfloat part = light_phase(a, zero - v_dot3(light, eye)) * reaching * v_set(material[1] * a->scattered);
+      const vfloat phase = light_phase(a, zero - v_dot3(light, eye)), part = phase * reaching * v_set(material[1] * a->scattered);
+      const vfloat bright = full * v_set(a->color[i][0] + a->color[i][1] + a->color[i][2]);
+      sent = v_fma(phase, bright, sent);
+      all = all + bright;
       for (int c = 0; c < 3; ++c) {
         diffuse[c] = v_fma(part, v_set(a->color[i][c]), diffuse[c]);
       }
@@ -220,6 +226,13 @@ INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps
     for (int c = 0; c < 3; ++c) {
       diffuse[c] = v_fma(matt, v_set(a->color[i][c]), diffuse[c]);
       specular[c] = v_fma(shine, v_set(a->specular_color[i][c]), specular[c]);
+    }
+  }
+  if (a->scatter_at >= 0) {
+    vfloat more[3];
+    light_scattered(a, maps, x, eye, sent * v_reciprocal(all), more);
+    for (int c = 0; c < 3; ++c) {
+      diffuse[c] = v_fma(more[c], v_set(material[1] * a->scattered), diffuse[c]);
     }
   }
 }

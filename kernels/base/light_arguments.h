@@ -26,6 +26,11 @@ typedef struct stratus_light_arguments {
    * near_way: the steps together, or a light's position; near_reach: their length in units of `place`. */
   int near, near_steps[8];
   float near_length[8], near_reach[8], near_way[8][3];
+  /* Light that is scattered more than once (light_scatter.h). scatter_at: where its words begin; -1: there is none. scatter_from: 3x4, by
+   * rows, takes places to nodes. scatter_scale: of red, green and blue. */
+  int scatter_at, scatter_size[3];
+  float scatter_from[12], scatter_scale[3];
+  float scatter_way; /* the part that a scattering sends on along its way; below 0: the phase function's asymmetry */
 } stratus_light_arguments;
 
 #endif

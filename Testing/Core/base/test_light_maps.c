@@ -9,8 +9,9 @@ static const double as_it_is[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0
 /* The matter: even, rough at random, or hard bars that only light along z meets. */
 typedef enum kind { EVEN, ROUGH, BARS } kind;
 
-static stratus_status draw(void* of, const stratus_camera* camera, const stratus_image* image)
+static stratus_status draw(void* of, const stratus_camera* camera, const stratus_image* image, bool colors)
 {
+  (void)colors;
   const kind matter = *(const kind*)of;
   uint32_t random = 1;
   for (int i = 0; i < image->width * image->height; ++i) {
@@ -30,8 +31,9 @@ static stratus_light_maps* maps_of(
   const stratus_light_matter all = {
     .draw = draw, .of = &matter, .bounds = { 0.0, 1.0, 0.0, 1.0, 0.0, depth }, .step = step, .tolerance = tolerance
   };
+  const stratus_shading once = { .shadows = 1 };
   stratus_light_maps* maps = NULL;
-  assert_int_equal(stratus_light_maps_build(context, &all, lights, count, &maps), STRATUS_OK);
+  assert_int_equal(stratus_light_maps_build(context, &all, &once, lights, count, &maps), STRATUS_OK);
   return maps;
 }
 

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Light that matter scatters more than once, in the layout of kernels/base/light_scatter.h. */
+#ifndef STRATUS_LIGHT_SCATTER_H
+#define STRATUS_LIGHT_SCATTER_H
+
+#include "base.h"
+#include "light_arguments.h"
+#include "stratus/ray_cast.h"
+
+/* Draws matter as it is seen without lights. colors: as its albedo, else only the opacity of the image is read. */
+typedef stratus_status stratus_light_draw(void* of, const stratus_camera* camera, const stratus_image* image, bool colors);
+
+/* Matter in a box of cells. */
+typedef struct stratus_light_cells {
+  int size[3];
+  double lo[3], spacing[3]; /* world coordinates */
+  float* extinction;        /* of each cell, x fastest, in 1 / world length */
+  float* albedo;            /* red of each cell, then green, then blue */
+} stratus_light_cells;
+
+typedef struct stratus_light_scatter {
+  stratus_light_cells cells; /* its extinction is NULL if there is no light that is scattered more than once */
+  int32_t* words;            /* in the layout */
+  float scale[3];            /* the factors of red, green and blue */
+  double error;              /* that is expected of the cells' size */
+} stratus_light_scatter;
+
+/* Solve for the light that matter within the bounds scatters more than once, and for the sky's. lights: in the world. The cells are the
+ * largest of 1/16, 1/32 and 1/64 of the bounds' longest side whose expected error keeps the tolerance, else the last. */
+stratus_status stratus_light_scatter_build(stratus_context* context, stratus_light_draw* draw, void* of, const double bounds[6],
+  const stratus_shading* shading, const stratus_light* lights, int count, double tolerance, stratus_light_scatter* scatter);
+void stratus_light_scatter_release(stratus_context* context, stratus_light_scatter* scatter);
+size_t stratus_light_scatter_words(const stratus_light_scatter* scatter);
+
+/* The part of the extinction after which light goes on as before: the anisotropy's share of what the matter scatters, 0 where it scatters
+ * backwards, or if there is no light that is scattered more than once. */
+double stratus_light_forward(const stratus_light_scatter* scatter, const stratus_shading* shading);
+
+/* Sets where the words of scattered light begin, and the way to them. scatter: NULL: there are none. to_world: 4x4, from the places that
+ * rays have. */
+void stratus_light_scatter_arguments(
+  const stratus_light_scatter* scatter, size_t at, const double to_world[16], stratus_light_arguments* a);
+
+#endif
