@@ -25,6 +25,7 @@ const char* const help = R"(stratus-bench light [options]
   --csv FILE                rows as of stratus-bench volume (default: the standard output)
   --append                  rows of other scenes that the file has stay
   --chart FILE.png          frame time against error
+  --redraw                  draw the chart of the file of --csv, and measure nothing
   --export FOLDER           write volumes, and the path tracer's images of `single`, for Testing/Benchmarks/light/vtk_gpu.py
   --reference-cache FOLDER  keep references there (default as in stratus-bench volume; none)
 
@@ -50,7 +51,7 @@ struct options {
   std::vector<double> tolerances = { 0.0126, 0.005, 0.001 };
   std::string csv = "-", chart, folder, cache = bench::default_reference_cache();
   bench::light_effort how;
-  bool error = true, peers = true, append = false;
+  bool error = true, peers = true, append = false, redraw = false;
 };
 
 double number_of(const std::string& word, const std::string& value, double least, double most)
@@ -110,10 +111,11 @@ options parse(int argc, char* argv[])
   options o;
   for (int i = 2; i < argc; ++i) {
     const std::string word = argv[i];
-    if (word == "--no-error" || word == "--no-peers" || word == "--append") {
+    if (word == "--no-error" || word == "--no-peers" || word == "--append" || word == "--redraw") {
       o.error = o.error && word != "--no-error";
       o.peers = o.peers && word != "--no-peers";
       o.append = o.append || word == "--append";
+      o.redraw = o.redraw || word == "--redraw";
     } else if (i + 1 == argc) {
       throw bench::failure(word + " is unknown or lacks its value; see --help");
     } else {
@@ -448,6 +450,14 @@ int bench::light_main(int argc, char* argv[])
   const options o = parse(argc, argv);
   if (o.peers || !o.chart.empty()) {
     ensure_display(argv);
+  }
+  if (o.redraw) {
+    const std::vector<row> known = read_csv(o.csv).rows;
+    if (known.empty() || o.chart.empty()) {
+      throw failure("--redraw needs --chart, and rows in the file of --csv");
+    }
+    write_chart(o.chart, curves_of("light", known).front());
+    return 0;
   }
   return run(o) ? 0 : 1;
 }
