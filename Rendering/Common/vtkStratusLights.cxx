@@ -83,18 +83,16 @@ bool vtkStratusSetShading(vtkRenderer* renderer, vtkVolumeProperty* property, st
   return true;
 }
 
-void vtkStratusSetScattering(vtkVolumeProperty* property, bool shadows, double blending, double anisotropy, stratus_shading& shading)
+double vtkStratusAnisotropy(double mapper, vtkVolumeProperty* property)
 {
-  shading.shadows = shadows || blending > 0.0 ? 1 : 0;
-  shading.scattering = 0.5 * blending;
-  shading.anisotropy = anisotropy;
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)
-  if (anisotropy == 0.0) {
-    shading.anisotropy = std::clamp<double>(property->GetScatteringAnisotropy(), -STRATUS_ANISOTROPY_MOST, STRATUS_ANISOTROPY_MOST);
+  if (mapper == 0.0) {
+    return std::clamp<double>(property->GetScatteringAnisotropy(), -STRATUS_ANISOTROPY_MOST, STRATUS_ANISOTROPY_MOST);
   }
 #else
   (void)property;
 #endif
+  return mapper;
 }
 
 bool vtkStratusSetMaterials(vtkVolumeProperty* property, int count, stratus_material* materials, bool& alike)

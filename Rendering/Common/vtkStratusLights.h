@@ -15,10 +15,21 @@ class vtkVolumeProperty;
 VTK_STRATUS_PRIVATE bool vtkStratusSetShading(
   vtkRenderer* renderer, vtkVolumeProperty* property, stratus_shading& shading, std::string& error);
 
-// Sets how light passes through matter, by a mapper's settings. blending: 0..2, as vtkGPUVolumeRayCastMapper has it. anisotropy: 0: the
-// property's, where VTK has one.
-VTK_STRATUS_PRIVATE void vtkStratusSetScattering(
-  vtkVolumeProperty* property, bool shadows, double blending, double anisotropy, stratus_shading& shading);
+// The anisotropy of a mapper; 0: the property's, where VTK has one.
+VTK_STRATUS_PRIVATE double vtkStratusAnisotropy(double mapper, vtkVolumeProperty* property);
+
+// Sets how light passes through matter, by a mapper's settings.
+template <class Mapper> void vtkStratusSetScattering(Mapper* mapper, vtkVolumeProperty* property, stratus_shading& shading)
+{
+  const double blending = mapper->GetVolumetricScatteringBlending(); // 0..2, as vtkGPUVolumeRayCastMapper has it
+  shading.shadows = mapper->GetShadows() || blending > 0.0 ? 1 : 0;
+  shading.scattering = 0.5 * blending;
+  shading.anisotropy = vtkStratusAnisotropy(mapper->GetScatteringAnisotropy(), property);
+  shading.multiple = mapper->GetMultipleScattering() && blending > 0.0 ? 1 : 0;
+  mapper->GetSkyZenith(shading.sky_zenith);
+  mapper->GetSkyHorizon(shading.sky_horizon);
+  mapper->GetSkyUp(shading.up);
+}
 
 // Sets the materials of the first `count` components. Returns whether one of them is lit; alike: they are the same.
 VTK_STRATUS_PRIVATE bool vtkStratusSetMaterials(vtkVolumeProperty* property, int count, stratus_material* materials, bool& alike);

@@ -124,6 +124,31 @@ public:
 
   //@{
   /**
+   * Set/Get whether scattered light is scattered again, any number of times, and the light of a sky with it. Then shadows are on. The
+   * first scattering is computed at each sample, all others on a grid of at most 64 cells along each side. Default off: light is scattered
+   * once. Not used if VolumetricScatteringBlending is 0.
+   */
+  vtkSetMacro(MultipleScattering, vtkTypeBool);
+  vtkGetMacro(MultipleScattering, vtkTypeBool);
+  vtkBooleanMacro(MultipleScattering, vtkTypeBool);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the radiance of the sky, red, green and blue, each at least 0: at the zenith, and at and below the horizon; between them it is
+   * mixed by the cosine to SkyUp, a direction of any length above 0. Light of the sky is scattered where MultipleScattering is on. The
+   * picture's background does not show it. Default 0, 0, 0 and z.
+   */
+  vtkSetVector3Macro(SkyZenith, double);
+  vtkGetVector3Macro(SkyZenith, double);
+  vtkSetVector3Macro(SkyHorizon, double);
+  vtkGetVector3Macro(SkyHorizon, double);
+  vtkSetVector3Macro(SkyUp, double);
+  vtkGetVector3Macro(SkyUp, double);
+  //@}
+
+  //@{
+  /**
    * Set/Get the alpha beyond which a ray ends, 0..1. Default 0: by ImageErrorTolerance, 0.9999 at the default one. Not used in maximum
    * intensity.
    */
@@ -421,6 +446,8 @@ protected:
   double ImageErrorTolerance = 0.001;
   vtkTypeBool Shadows = 0;
   double VolumetricScatteringBlending = 0.0, ScatteringAnisotropy = 0.0;
+  vtkTypeBool MultipleScattering = 0;
+  double SkyZenith[3] = { 0.0, 0.0, 0.0 }, SkyHorizon[3] = { 0.0, 0.0, 0.0 }, SkyUp[3] = { 0.0, 0.0, 1.0 };
   double Termination = 0.0;
   double GradientOpacityDistance = 0.0;
   int ComponentMixing = ADD_COMPONENTS;

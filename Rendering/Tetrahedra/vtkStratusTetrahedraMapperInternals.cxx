@@ -108,8 +108,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
   }
   options.materials = alike ? nullptr : this->Materials.data();
   options.shade = property->GetShade();
-  vtkStratusSetScattering(
-    property, this->Mapper->Shadows != 0, this->Mapper->VolumetricScatteringBlending, this->Mapper->ScatteringAnisotropy, options.shading);
+  vtkStratusSetScattering(this->Mapper, property, options.shading);
   return !lit || vtkStratusSetShading(renderer, property, options.shading, error);
 }
 

@@ -320,6 +320,10 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   to->SetShadows(settings->GetShadows());
   to->SetVolumetricScatteringBlending(settings->GetVolumetricScatteringBlending());
   to->SetScatteringAnisotropy(settings->GetScatteringAnisotropy());
+  to->SetMultipleScattering(settings->GetMultipleScattering());
+  to->SetSkyZenith(settings->GetSkyZenith());
+  to->SetSkyHorizon(settings->GetSkyHorizon());
+  to->SetSkyUp(settings->GetSkyUp());
   to->SetGradientOpacityDistance(settings->GetGradientOpacityDistance());
   to->SetComponentMixing(settings->GetComponentMixing());
   to->SetVectorMode(settings->GetVectorMode());

@@ -248,6 +248,10 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Shadows: " << this->Shadows << "\n";
   os << indent << "VolumetricScatteringBlending: " << this->VolumetricScatteringBlending << "\n";
   os << indent << "ScatteringAnisotropy: " << this->ScatteringAnisotropy << "\n";
+  os << indent << "MultipleScattering: " << this->MultipleScattering << "\n";
+  os << indent << "SkyZenith: " << this->SkyZenith[0] << " " << this->SkyZenith[1] << " " << this->SkyZenith[2] << "\n";
+  os << indent << "SkyHorizon: " << this->SkyHorizon[0] << " " << this->SkyHorizon[1] << " " << this->SkyHorizon[2] << "\n";
+  os << indent << "SkyUp: " << this->SkyUp[0] << " " << this->SkyUp[1] << " " << this->SkyUp[2] << "\n";
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "BlockSize: " << this->BlockSize << "\n";

@@ -36,8 +36,7 @@ bool vtkStratusVolumeMapper::Internals::SetShading(
   stratus_shading& shading = options.light.shading;
   shading.on = shade || options.light.materials ? 1 : 0;
   options.light.shade = shade ? 1 : 0;
-  vtkStratusSetScattering(
-    property, this->Mapper->Shadows != 0, this->Mapper->VolumetricScatteringBlending, this->Mapper->ScatteringAnisotropy, shading);
+  vtkStratusSetScattering(this->Mapper, property, shading);
   return vtkStratusSetShading(renderer, property, shading, error);
 }
 

@@ -135,7 +135,7 @@ private:
   vtkSmartPointer<vtkAbstractArray> Offered; // the array of the tree that the caster was last given
   vtkMTimeType OfferedTime = 0;
   const stratus_ray_caster* OfferedTo = nullptr;
-  std::array<double, 25> LearnedFor{}; // settings and geometry for which FullMilliseconds and FullSampleDistance hold
+  std::array<double, 26> LearnedFor{}; // settings and geometry for which FullMilliseconds and FullSampleDistance hold
   double FullMilliseconds = 0.0;       // estimated cast time of an exact picture, 0: unknown
   double FullSampleDistance = 0.0;
   stratus_sampling FullSampling = STRATUS_SAMPLING_AUTO;

@@ -32,7 +32,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   vtkRenderWindow* window = renderer->GetRenderWindow();
   // The time of a full picture holds only for the settings and geometry that it was learned from.
   const stratus_volume& volume = this->Image.GetVolume();
-  std::array<double, 25> learnedFor;
+  std::array<double, 26> learnedFor;
   learnedFor[0] = mapper->SampleDistance;
   std::copy_n(volume.spacing, 3, learnedFor.begin() + 1);
   std::copy_n(volume.matrix, 12, learnedFor.begin() + 4);
@@ -45,6 +45,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   learnedFor[22] = mapper->Shadows;
   learnedFor[23] = mapper->VolumetricScatteringBlending;
   learnedFor[24] = mapper->ScatteringAnisotropy;
+  learnedFor[25] = mapper->MultipleScattering;
   if (learnedFor != this->LearnedFor) {
     this->LearnedFor = learnedFor;
     this->FullMilliseconds = 0.0;
