@@ -35,17 +35,30 @@ int set_suns(const options& o, int up, stratus_light lights[STRATUS_LIGHTS_MAX])
   return static_cast<int>(suns.size());
 }
 
+void set_sky(const options& o, int up, double zenith[3], double horizon[3], double upwards[3])
+{
+  if (!o.sky.empty()) {
+    std::copy_n(o.sky.begin(), 3, zenith);
+    std::copy_n(o.sky.end() - 3, 3, horizon);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    upwards[axis] = axis == up ? 1.0 : 0.0;
+  }
+}
+
 void set_light(const options& o, int up, int& shade, stratus_shading& shading)
 {
   shade = o.shade || o.scatter;
   shading.shadows = o.shadows || o.scatter;
   const int suns = set_suns(o, up, shading.lights);
-  shading.light_count = suns > 0 ? suns : shading.light_count;
+  shading.light_count = suns > 0 || !o.sky.empty() ? suns : shading.light_count;
   if (o.scatter) {
     shading.ambient = shading.specular = 0.0;
     shading.diffuse = o.albedo;
     shading.scattering = 1.0;
     shading.anisotropy = o.anisotropy;
+    shading.multiple = o.multiple;
+    set_sky(o, up, shading.sky_zenith, shading.sky_horizon, shading.up);
   }
 }
 

@@ -15,6 +15,8 @@ namespace cli {
 stratus_slice slice_of(const options& o, int up);
 // Sets the lights of --sun and --sun-at, and returns their number. `up` is the axis of heights, 0 to 2.
 int set_suns(const options& o, int up, stratus_light lights[STRATUS_LIGHTS_MAX]);
+// Sets the sky of --sky, without one nothing but `upwards`.
+void set_sky(const options& o, int up, double zenith[3], double horizon[3], double upwards[3]);
 // Sets whether matter is lit, and how.
 void set_light(const options& o, int up, int& shade, stratus_shading& shading);
 // All that the options say but for the parts of the volume. `up` is the axis of heights, 0 to 2.

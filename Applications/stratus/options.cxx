@@ -79,6 +79,7 @@ Data and appearance
   --shade                 light from the eye, or from each --sun, with the field's gradient as normal (composite, isosurface)
   --scatter               light from the eye, or from each --sun, that the matter scatters once (composite, isosurface); --albedo and
                           --anisotropy say how. With shadows
+  --multiple              with --scatter: matter scatters light any number of times, by a solution on a grid
   --shadows               with --shade: matter absorbs light on its way from each sun
   --cloud [R]             draw water of clouds as a photograph shows it, from mass and size of the droplets: see Clouds
   --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)
@@ -134,7 +135,7 @@ Scattered light: --mode path traces random paths until their number or their err
                           horizon (-90..90). x is east and y is north
   --sun-time T            direction to the sun at a moment in UTC, such as 2024-06-01T15:30, or file: at the time of the step
   --place LAT,LON         where --sun-time is meant, degrees north and east (default: the middle of a file with longitudes and latitudes)
-  --sky R,G,B[,R,G,B]     colour of the sky at the zenith, and at and below the horizon (default: of one colour, as at the zenith)
+  --sky R,G,B[,R,G,B]     also for --multiple: colour of the sky at the zenith, and at and below the horizon (default: of one colour, as at the zenith)
   --albedo A              part of the light that is scattered, times the colour; the rest is absorbed, 0..1 (default 1)
   --anisotropy G          -.99...99; light is scattered forwards by G > 0 (default 0: evenly)
   --bounces N             largest number of scatterings; 0: no limit (default 0)
@@ -416,7 +417,7 @@ void set_sun(options& o, const std::string& word, const std::string& value)
 void set_sky(options& o, const std::string& word, const std::string& value)
 {
   o.sky = numbers(value, word, 3, 6);
-  o.of_path = word;
+  o.has_sky = true;
   if (o.sky.size() % 3 != 0) {
     throw usage(word + ": '" + value + "' is neither R,G,B nor R,G,B,R,G,B");
   }
@@ -554,6 +555,7 @@ constexpr struct {
   { "--shade", &options::shade },
   { "--scatter", &options::scatter },
   { "--shadows", &options::shadows },
+  { "--multiple", &options::multiple },
   { "--parallel", &options::parallel },
   { "--audit", &options::audit },
   { "--report", &options::report },
@@ -611,6 +613,12 @@ void check_path(const options& o)
     if (!o.of_path.empty()) {
       throw usage(o.of_path + " is for --mode path");
     }
+    if (o.has_sky && !o.multiple) {
+      throw usage("--sky is for --scatter --multiple and --mode path");
+    }
+    if (o.multiple && !o.scatter) {
+      throw usage("--multiple is for --scatter");
+    }
     if (!o.of_scattering.empty() && !o.scatter) {
       throw usage(o.of_scattering + " is for --scatter and --mode path");
     }
@@ -625,6 +633,7 @@ void check_path(const options& o)
   }
   const char* other = o.shade               ? "--shade"
     : o.scatter                             ? "--scatter"
+    : o.multiple                            ? "--multiple"
     : o.shadows                             ? "--shadows"
     : o.sampling != STRATUS_SAMPLING_AUTO   ? "--sampling"
     : o.sample_distance > 0.0               ? "--sample-distance"
@@ -804,6 +813,7 @@ options parse(int argc, char* argv[])
     }
   }
   o.scatter = o.scatter || (o.cloud && !o.path); // the path tracer scatters by itself
+  o.multiple = o.multiple || (o.cloud && !o.path);
   check_complete(o);
   warn_of_ignored(o);
   return o;

@@ -52,7 +52,7 @@ struct options {
   std::string caption; // {time} is the step's
   bool parallel = false;
   bool nearest = false;
-  bool shade = false, scatter = false, shadows = false;
+  bool shade = false, scatter = false, shadows = false, multiple = false;
   bool audit = false;
   bool report = false;                      // render, tree, sort: prints the stages of building
   bool shows_samples = false;               // render: draws the samples that each pixel took
@@ -68,6 +68,7 @@ struct options {
   stratus_mode mode = STRATUS_MODE_COMPOSITE;
   bool path = false;                     // --mode path; `mode` is then composite
   std::string of_path, of_scattering;    // one of the options for it that were given
+  bool has_sky = false;                  // --sky is given
   int samples = 0;                       // path: of each pixel; 0: as many as the tolerance needs
   int bounces = 0;                       // path: 0: no limit
   int seed = 0;                          // path
@@ -77,7 +78,7 @@ struct options {
   std::string sun_time;                  // a moment in UTC, or "file"
   std::vector<double> place;             // of sun_time: latitude, longitude in degrees; empty: the file's
   double sun_color[3] = { 1, 1, 1 };     // of suns without a colour
-  std::vector<double> sky;               // path: red, green, blue of the zenith and, if given, of the horizon
+  std::vector<double> sky;               // path, multiple: red, green, blue of the zenith and, if given, of the horizon
   bool cloud = false;                    // values are a cloud's water
   double radius = 0.0;                   // cloud: effective radius in m; 0: the usual one
   std::string water_units;               // cloud: of the values; empty: the file's

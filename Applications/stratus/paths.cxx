@@ -22,13 +22,7 @@ stratus_path_options paths_of(const options& o, const stratus_ray_cast_options& 
   paths.anisotropy = o.anisotropy;
   const int suns = set_suns(o, up, paths.lights);
   paths.light_count = suns == 0 && o.sky.empty() ? -1 : suns;
-  if (!o.sky.empty()) {
-    std::copy_n(o.sky.begin(), 3, paths.sky_zenith);
-    std::copy_n(o.sky.end() - 3, 3, paths.sky_horizon);
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    paths.up[axis] = axis == up ? 1.0 : 0.0;
-  }
+  set_sky(o, up, paths.sky_zenith, paths.sky_horizon, paths.up);
   paths.interpolation = o.nearest ? STRATUS_INTERPOLATION_NEAREST : STRATUS_INTERPOLATION_LINEAR;
   paths.clipping = parts.clipping;
   paths.mask = parts.mask;

@@ -77,7 +77,8 @@ def cloud(data, radius=None, ice=None, units=None, metres=None, density=None, va
     direction = (ctypes.c_double * 3)()
     with context.lock:
         context.call(library.stratus_sun_direction, context.pointer, *sun, 2, direction)
-    shade = dict(suns=[(*direction, *light)], ambient=0, diffuse=albedo, specular=0, shadows=True, scattering=1, anisotropy=anisotropy)
+    shade = dict(suns=[(*direction, *light)], ambient=0, diffuse=albedo, specular=0, shadows=True, scattering=1, anisotropy=anisotropy,
+                 multiple=True, sky=(*zenith, *horizon))
     rendering = drawn.render(opacity, (1, 1, 1), size, camera, unit_distance=unit_distance, shade=shade, **options)
     return _develop(rendering.rgba, background, zenith, horizon)
 

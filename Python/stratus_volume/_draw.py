@@ -48,8 +48,9 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
     tolerance      root mean square error of RGBA in 0..1 over the lit pixels that automatic settings may cause; default 0.001, 0: the finest
     shade          False, True, or a dict of ambient, diffuse, specular, specular_power: light from the eye. The dict may also have suns (a
                    direction to each, x, y, z, or with red, green and blue), shadows (True: matter absorbs light on its way), scattering (the
-                   share of light, 0..1, that matter scatters, the rest is reflected) and anisotropy (-.99...99; clouds have .85). Or a list with
-                   one dict of the first four for each component
+                   share of light, 0..1, that matter scatters, the rest is reflected), anisotropy (-.99...99; clouds have .85), multiple
+                   (True: matter scatters light any number of times) and, with it, sky (red, green and blue of the zenith, or followed by
+                   those of the horizon; z is up). Or a list with one dict of the first four for each component
     gradient_opacity  pairs of the gradient's magnitude, in values per mean spacing, and a factor in 0..1 of the optical depth; or a list with
                    one of these for each component
     contours       for mode isosurface: 1 to 16 values

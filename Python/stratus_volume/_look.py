@@ -33,16 +33,20 @@ class Transfer:
 
 
 def set_shading(options, shade):
-    """shade: False, True, or a dict of ambient, diffuse, specular, specular_power, scattering, anisotropy, shadows and suns."""
+    """shade: False, True, or a dict of ambient, diffuse, specular, specular_power, scattering, anisotropy, shadows, suns, multiple and sky."""
     options.shade = int(bool(shade) or isinstance(shade, dict))
     if isinstance(shade, dict):
-        known = _SHADING + ("shadows", "suns")
+        known = _SHADING + ("shadows", "suns", "multiple", "sky")
         unknown = set(shade) - set(known)
         if unknown:
             raise ValueError(f"shade has {sorted(unknown)}, it may have {', '.join(known)}")
         for name in set(shade) & set(_SHADING):
             setattr(options.shading, name, number(shade[name], f"shade's {name}"))
         options.shading.shadows = int(bool(shade.get("shadows", False)))
+        options.shading.multiple = int(bool(shade.get("multiple", False)))
+        if "sky" in shade:
+            sky = numbers(shade["sky"], 6 if len(shade["sky"]) == 6 else 3, "sky of shade")
+            options.shading.sky_zenith[:], options.shading.sky_horizon[:] = sky[:3], sky[-3:]
         if "suns" in shade:
             _set_suns(options.shading, shade["suns"])
 

@@ -190,12 +190,16 @@ def test_shorthand():
     write("qc.nc", [("qc", "kg m-3", None, content * numpy.array([0, 1, 2, 1, 0]))])
     sun = [math.cos(math.radians(40)) * math.sin(math.radians(120)), math.cos(math.radians(40)) * math.cos(math.radians(120)),
            math.sin(math.radians(40))]
-    bright = (9, 8, 7)
+    bright = (0.4, 0.35, 0.3)
     extinction = 1.5 / (1000 * 1e-5)
     end, distance = 2 * content, 1e-3 / (extinction * 2 * content)
-    plain = ("qc.nc", "--scatter", "--anisotropy", ".85", "--opacity", f"0:0,{end}:{-math.expm1(-extinction * end * distance)}", "--unit-distance",
+    sky = ",".join(map(str, (0.085, 0.19, 0.4, 0.29, 0.37, 0.46)))
+    plain = ("qc.nc", "--scatter", "--multiple", "--sky", sky, "--anisotropy", ".85", "--opacity", f"0:0,{end}:{-math.expm1(-extinction * end * distance)}", "--unit-distance",
              str(distance), "--color", "0:1:1:1", "--sun", ",".join(map(repr, (*sun, *bright))))
     linear = bytes_of(*plain) / 255
+    once = bytes_of(*(word for word in plain if word not in ("--multiple", "--sky", sky))) / 255
+    if not once.mean() < 0.5 * linear.mean():
+        fail(f"light that is scattered often is as dark as light that is scattered once: {once.mean()}, {linear.mean()}")
     for words in (("--sun-at", "120,40," + ",".join(map(str, bright))), ("--sun", ",".join(map(repr, (*sun, *bright))))):
         shown = bytes_of("qc.nc", "--cloud", *words)
         step = 0.6 / 255  # a half by rounding, the rest by the function's error
@@ -204,7 +208,7 @@ def test_shorthand():
         if shown.max() < 100 or not ((shown >= 255 * low - 0.6) & (shown <= numpy.minimum(255 * high, 255) + 0.6)).all():
             fail(f"{words}: not the picture of the options that --cloud stands for: {shown.max()}, {linear.max() * 255}")
     before = bytes_of("qc.nc", "--cloud")
-    for words in (("--anisotropy", "0"), ("--albedo", ".5"), ("--sun-at", "200,10"), ("--exaggerate", "3"), ("--color", "0:1:0:0"), ("30",)):
+    for words in (("--anisotropy", "0"), ("--albedo", ".5"), ("--sun-at", "200,10"), ("--exaggerate", "3"), ("--color", "0:1:0:0"), ("30",), ("--sky", "0,0,0")):
         if (bytes_of("qc.nc", "--cloud", *words) == before).all():
             fail(f"{words} change nothing")
     if not (bytes_of("qc.nc", "--anisotropy", "0", "--cloud") == bytes_of("qc.nc", "--cloud", "--anisotropy", "0")).all():
@@ -227,6 +231,9 @@ def test_refusals():
     refuse(2, "--metres is for --cloud", "qc.nc", "--metres", "3")
     refuse(2, "--cloud draws one INPUT", "qc.nc", "qc.nc", "--cloud")
     refuse(2, "--sun-at is for --shade", "qc.nc", "--sun-at", "1,2")
+    refuse(2, "--sky is for --scatter --multiple", "qc.nc", "--scatter", "--sky", "1,1,1")
+    refuse(2, "--multiple is for --scatter", "qc.nc", "--multiple")
+    refuse(2, "leave out --multiple", "qc.nc", "--multiple", "--mode", "path")
     expect(2, "--cloud is for render", "info", "qc.nc", "--cloud")
     expect(0, "extinction 0.15/m for 1 g/m3", "render", "cloud", "--cloud", "--water-units", "g/m3", "--metres", "20", "-o", "a.png", "--size", "32x32")
 
