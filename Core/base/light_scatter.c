@@ -16,10 +16,11 @@
 #define OPAQUE 1e-7      /* what passes a layer at least, as far as floats tell */
 #define FLAT 1e-6        /* a side counts as at least this part of the longest */
 #define RESIDUAL 1e-4
-#define NODES_FIRST 16
-#define NODES_LAST 64
-#define SHARE 0.5 /* of the tolerance, that the cells' size may use up */
-#define WORDS 5   /* of a node */
+#define SCOUT 16       /* cells along the longest side, to find where matter is */
+#define CUBE 64        /* as many cells as a cube of so many are the most */
+#define NODES_MOST 256 /* along a side, however thin the matter is */
+#define SHARE 0.5      /* of the tolerance, that the cells' size may use up */
+#define WORDS 5        /* of a node */
 
 /* ---- matter */
 
@@ -378,19 +379,56 @@ static double difference(const stratus_light_scatter* coarse, const stratus_ligh
   return weights > 0.0 ? sqrt(squares / weights) : 0.0;
 }
 
+/* The bounds of the cells that have matter, and of a cell about them that may have what lies between their rays. */
+static void box_of_matter(const stratus_light_cells* c, const double bounds[6], double box[6])
+{
+  int first[3], last[3] = { -1, -1, -1 };
+  memcpy(first, c->size, sizeof first);
+  memcpy(box, bounds, 6 * sizeof *box);
+  for (size_t i = 0; i < count_of(c); ++i) {
+    const int cell[3] = { (int)(i % (size_t)c->size[0]), (int)(i / (size_t)c->size[0] % (size_t)c->size[1]),
+      (int)(i / ((size_t)c->size[0] * (size_t)c->size[1])) };
+    for (int axis = 0; axis < 3 && c->extinction[i] > 0.0f; ++axis) {
+      first[axis] = cell[axis] < first[axis] ? cell[axis] : first[axis];
+      last[axis] = cell[axis] > last[axis] ? cell[axis] : last[axis];
+    }
+  }
+  for (int axis = 0; axis < 3 && last[axis] >= 0; ++axis) {
+    box[2 * axis] = fmax(bounds[2 * axis], c->lo[axis] + (first[axis] - 1) * c->spacing[axis]);
+    box[2 * axis + 1] = fmin(bounds[2 * axis + 1], c->lo[axis] + (last[axis] + 2) * c->spacing[axis]);
+  }
+}
+
+/* The cells along the longest side of a box that has as many as a cube of CUBE. */
+static int finest_nodes(const double box[6])
+{
+  double longest = 1e-300, part = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    longest = fmax(longest, box[2 * axis + 1] - box[2 * axis]);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    part *= fmax((box[2 * axis + 1] - box[2 * axis]) / longest, 1.0 / NODES_MOST);
+  }
+  return (int)fmin(CUBE / cbrt(part), NODES_MOST);
+}
+
 stratus_status stratus_light_scatter_build(stratus_context* context, stratus_light_draw* draw, void* of, const double bounds[6],
   const stratus_shading* shading, const stratus_light* lights, int count, double tolerance, stratus_light_scatter* scatter)
 {
   stratus_light_scatter rungs[2] = { { .words = NULL }, { .words = NULL } };
+  double box[6];
   int now = 0;
   stratus_status status;
-  for (int nodes = NODES_FIRST; nodes <= NODES_LAST; nodes *= 2) {
+  TRY_CLEANUP(draw_cells(context, draw, of, bounds, SCOUT, &rungs[0].cells));
+  box_of_matter(&rungs[0].cells, bounds, box);
+  const int finest = finest_nodes(box);
+  for (int part = 4; part > 0; part /= 2) {
     stratus_light_scatter* next = &rungs[1 - now];
     stratus_light_scatter_release(context, next);
-    TRY_CLEANUP(draw_cells(context, draw, of, bounds, nodes, &next->cells));
+    TRY_CLEANUP(draw_cells(context, draw, of, box, finest / part, &next->cells));
     TRY_CLEANUP(solve(context, shading, lights, count, tolerance, next));
     /* errors are of the first order in the cells' size, as light is uneven within them: the finer of two errs by their difference */
-    next->error = nodes > NODES_FIRST ? difference(&rungs[now], next) : (double)INFINITY;
+    next->error = part < 4 ? difference(&rungs[now], next) : (double)INFINITY;
     now = 1 - now;
     if (next->error <= SHARE * tolerance) {
       break;

@@ -128,7 +128,7 @@ static void the_grid_is_made_when_it_is_stale(void** state)
   double color[4] = { 0.0, 1.0, 0.8, 0.6 };
   c.transfer.color = color;
   c.transfer.color_count = 1;
-  c.options.sampling.tolerance = 0.1; /* of which coarse cells are enough */
+  c.options.sampling.tolerance = 0.3; /* of which coarse cells are enough */
   assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
   case_render_with(context, caster, &c, &drawn);
   case_camera(context, &c, 3, 0);
@@ -160,7 +160,7 @@ static void pictures_are_the_same_however_they_are_made(void** state)
   make_case(context, &c);
   c.options.light.shading.anisotropy = 0.6;
   c.options.light.shading.sky_zenith[2] = 0.6;
-  c.options.sampling.tolerance = 0.05;
+  c.options.sampling.tolerance = 0.3;
   case_render(context, &c, &drawn);
   stratus_context_destroy(context);
   for (int isa = 0; isa < 3; ++isa) {
