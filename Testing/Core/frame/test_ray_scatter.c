@@ -163,7 +163,7 @@ static void pictures_are_the_same_however_they_are_made(void** state)
   c.options.sampling.tolerance = 0.3;
   case_render(context, &c, &drawn);
   stratus_context_destroy(context);
-  for (int isa = 0; isa < 3; ++isa) {
+  for (int isa = 0; isa < (few_run() ? 1 : 3); ++isa) { /* the portable one differs most */
     context = case_context("host", 2);
     context->isa = isa;
     case_render(context, &c, &other);
