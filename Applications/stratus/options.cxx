@@ -135,7 +135,8 @@ Scattered light: --mode path traces random paths until their number or their err
                           horizon (-90..90). x is east and y is north
   --sun-time T            direction to the sun at a moment in UTC, such as 2024-06-01T15:30, or file: at the time of the step
   --place LAT,LON         where --sun-time is meant, degrees north and east (default: the middle of a file with longitudes and latitudes)
-  --sky R,G,B[,R,G,B]     also for --multiple: colour of the sky at the zenith, and at and below the horizon (default: of one colour, as at the zenith)
+  --sky R,G,B[,R,G,B]     also for --multiple: colour of the sky at the zenith, and at and below the horizon (default: of one colour,
+                          as at the zenith)
   --albedo A              part of the light that is scattered, times the colour; the rest is absorbed, 0..1 (default 1)
   --anisotropy G          -.99...99; light is scattered forwards by G > 0 (default 0: evenly)
   --bounces N             largest number of scatterings; 0: no limit (default 0)

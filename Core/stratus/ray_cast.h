@@ -128,8 +128,9 @@ typedef struct stratus_shading {
   double scattering;
   double anisotropy; /* g, -.99...99; above 0 light scatters forward. Default 0: to all sides alike. */
   /* Composite and isosurface, with scattering above 0. 1: light is scattered any number of times, and shadows are on. The first scattering
-   * is computed as above; all others by a solution of the equation of radiative transfer on a grid of about 64^3 cells at most. Albedos above 1
-   * count as 1. The grid is made again as maps are, and if colours or the phase function change. Default 0: light is scattered once. */
+   * is computed as above; all others by a solution of the equation of radiative transfer on a grid of about 64^3 cells at most. Albedos
+   * above 1 count as 1. The grid is made again as maps are, and if colours or the phase function change. Default 0: light is scattered
+   * once. */
   int multiple;
   /* With `multiple`: radiance that comes from infinity, a mix of sky_horizon and sky_zenith by the cosine to `up`; below the horizon it is
    * sky_horizon. The picture's background does not show it. Red, green and blue, each 0..STRATUS_LIGHT_MAX. Default 0: no sky. */

@@ -72,6 +72,13 @@ static void device_and_host_show_the_same(void** state)
   compare(host, device, &c, &c.transfer, "shadows, an automatic rule");
   c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
   compare(host, device, &c, &c.transfer, "shadows, midpoint");
+  const double tolerance = c.options.sampling.tolerance;
+  c.options.sampling.tolerance = 0.3; /* of which coarse cells are enough */
+  c.options.light.shading.multiple = 1;
+  c.options.light.shading.sky_zenith[1] = 0.5;
+  compare(host, device, &c, &c.transfer, "scattered again");
+  c.options.sampling.tolerance = tolerance;
+  c.options.light.shading.multiple = 0;
   c.options.light.shading.shadows = 0;
   c.options.light.shading.scattering = 0.0;
   c.options.light.shading.light_count = -1;

@@ -202,7 +202,7 @@ static void opaque_surfaces_are_lit(void** state)
     }
     print_message("             %s%s: %d lit, %d dark, %d wrong\n", stratus_sampling_name(c.options.sampling.rule), cut ? ", cut" : "", lit,
       dark, wrong);
-    assert_true(lit > 500 && dark > 50);
+    assert_true(lit > case_share(500) && dark > case_share(50));
     assert_int_equal(wrong, 0);
   }
   case_destroy(&c);

@@ -397,4 +397,13 @@ void fuzz_shading(fuzz* f, const double bounds[6], double edge, stratus_shading*
     light->follows_camera = !light->positional && fuzz_flag(f);
   }
   shading->one_sided = fuzz_flag(f);
+  if (fuzz_chance(f, 0.02)) { /* seldom, since maps and cells take longer than all else */
+    shading->shadows = fuzz_flag(f);
+    shading->scattering = fuzz_real(f, 0.0, 1.0);
+    shading->anisotropy = fuzz_real(f, -0.99, 0.99);
+    shading->multiple = shading->scattering > 0.0 && fuzz_flag(f);
+    fuzz_vector(f, 0.0, 1.0, shading->sky_zenith);
+    fuzz_vector(f, 0.0, 1.0, shading->sky_horizon);
+    fuzz_vector(f, -1.0, 1.0, shading->up);
+  }
 }
