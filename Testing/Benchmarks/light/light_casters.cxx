@@ -14,6 +14,7 @@ const std::vector<lighting>& all_lighting()
     { "local", false, 0.1, 0.7, 0.2, 0, 0.0, 0.0, -1 },
     { "shadows", true, 0.1, 0.7, 0.2, 1, 0.0, 0.0, -1 },
     { "single", true, 0.0, 1.0, 0.0, 1, 1.0, 0.0, 1 },
+    { "multiple", true, 0.0, 1.0, 0.0, 1, 1.0, 0.0, 0 },
     { "path", true, 0.0, 1.0, 0.0, 1, 1.0, 0.0, 0 },
   };
   return all;
@@ -40,6 +41,7 @@ stratus_shading shading_of(const light_subject& s, const lighting& l, const stra
   shading.shadows = l.shadows;
   shading.scattering = l.scattering;
   shading.anisotropy = l.anisotropy;
+  shading.multiple = l.bounces == 0;
   if (l.sun) {
     shading.lights[0] = sun_of(s);
   }
