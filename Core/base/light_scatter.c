@@ -15,12 +15,12 @@
 #define PIXELS_LEAST 256 /* rays across the longest side, so that cells have the mean of what is in them */
 #define OPAQUE 1e-7      /* what passes a layer at least, as far as floats tell */
 #define FLAT 1e-6        /* a side counts as at least this part of the longest */
-#define RESIDUAL 1e-4
-#define SCOUT 16       /* cells along the longest side, to find where matter is */
-#define CUBE 64        /* as many cells as a cube of so many are the most */
-#define NODES_MOST 256 /* along a side, however thin the matter is */
-#define SHARE 0.5      /* of the tolerance, that the cells' size may use up */
-#define WORDS 5        /* of a node */
+#define RESIDUAL 1e-4    /* relative, far below what the cells' size errs */
+#define SCOUT 16         /* cells along the longest side, to find where matter is */
+#define CUBE 64          /* as many cells as a cube of so many are the most */
+#define NODES_MOST 256   /* along a side, however thin the matter is */
+#define SHARE 0.5        /* of the tolerance, that the cells' size may use up */
+#define WORDS 5          /* of a node */
 
 /* ---- matter */
 
@@ -231,7 +231,7 @@ static bool same_channel(
 
 /* Solves one channel. work: three arrays. */
 static stratus_status solve_channel(stratus_context* context, const stratus_light_cells* cells, const stratus_shading* shading,
-  const stratus_light* lights, int count, int channel, double tolerance, float* work, float* result)
+  const stratus_light* lights, int count, int channel, float* work, float* result)
 {
   const size_t n = count_of(cells);
   const double forward = forward_share(shading);
@@ -249,7 +249,7 @@ static stratus_status solve_channel(stratus_context* context, const stratus_ligh
   memcpy(medium.size, cells->size, sizeof medium.size);
   memcpy(medium.spacing, cells->spacing, sizeof medium.spacing);
   set_sky(shading, channel, &medium);
-  return stratus_transport_solve(context, &medium, fmin(tolerance, RESIDUAL), result, result + n, result + 2 * n, &sweeps);
+  return stratus_transport_solve(context, &medium, RESIDUAL, result, result + n, result + 2 * n, &sweeps);
 }
 
 static uint32_t rounded(double part, double most)
@@ -286,8 +286,8 @@ static void words_of_node(float* const of[3], const double largest[3], size_t n,
 }
 
 /* Solves for the light in the cells. */
-static stratus_status solve(stratus_context* context, const stratus_shading* shading, const stratus_light* lights, int count,
-  double tolerance, stratus_light_scatter* scatter)
+static stratus_status solve(
+  stratus_context* context, const stratus_shading* shading, const stratus_light* lights, int count, stratus_light_scatter* scatter)
 {
   const stratus_light_cells* cells = &scatter->cells;
   const size_t n = count_of(cells);
@@ -302,7 +302,7 @@ static stratus_status solve(stratus_context* context, const stratus_shading* sha
       of[c] = same_channel(cells, shading, lights, count, same, c) ? of[same] : of[c];
     }
     if (of[c] == work + (3 + ARRAYS * (size_t)c) * n) {
-      TRY_CLEANUP(solve_channel(context, cells, shading, lights, count, c, tolerance, work, of[c]));
+      TRY_CLEANUP(solve_channel(context, cells, shading, lights, count, c, work, of[c]));
     }
     for (size_t i = 0; i < n; ++i) {
       largest[c] = fmax(largest[c], (double)of[c][i]);
@@ -426,7 +426,7 @@ stratus_status stratus_light_scatter_build(stratus_context* context, stratus_lig
     stratus_light_scatter* next = &rungs[1 - now];
     stratus_light_scatter_release(context, next);
     TRY_CLEANUP(draw_cells(context, draw, of, box, finest / part, &next->cells));
-    TRY_CLEANUP(solve(context, shading, lights, count, tolerance, next));
+    TRY_CLEANUP(solve(context, shading, lights, count, next));
     /* errors are of the first order in the cells' size, as light is uneven within them: the finer of two errs by their difference */
     next->error = part < 4 ? difference(&rungs[now], next) : (double)INFINITY;
     now = 1 - now;
