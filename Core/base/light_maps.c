@@ -490,7 +490,7 @@ stratus_status stratus_light_maps_build(stratus_context* context, const stratus_
   made->count = count;
   if (shading->multiple) {
     TRY_CLEANUP(stratus_light_scatter_build(
-      context, matter->draw, matter->of, matter->bounds, shading, lights, count, matter->tolerance, &made->scatter));
+      context, matter->draw, matter->of, matter->bounds, matter->detail, shading, lights, count, matter->tolerance, &made->scatter));
     made->goes_on = stratus_light_forward(&made->scatter, shading);
     made->error = made->scatter.error;
   }

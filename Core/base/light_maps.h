@@ -18,6 +18,7 @@ typedef struct stratus_light_matter {
   double bounds[6]; /* world coordinates: xmin xmax ymin ymax zmin zmax */
   /* steps at which a renderer can pass the matter next to a place by itself; 0: it cannot */
   double step;
+  double detail;    /* length of the finest cells in which it scatters light again; 0: not known */
   double tolerance; /* of the part of light that passes, root mean square over the matter; 0: as fine as maps can be */
 } stratus_light_matter;
 

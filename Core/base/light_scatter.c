@@ -399,8 +399,8 @@ static void box_of_matter(const stratus_light_cells* c, const double bounds[6], 
   }
 }
 
-/* The cells along the longest side of a box that has as many as a cube of CUBE. */
-static int finest_nodes(const double box[6])
+/* The cells along the longest side of a box that has as many as a cube of CUBE, none of them smaller than `detail`. */
+static int finest_nodes(const double box[6], double detail)
 {
   double longest = 1e-300, part = 1.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -409,11 +409,12 @@ static int finest_nodes(const double box[6])
   for (int axis = 0; axis < 3; ++axis) {
     part *= fmax((box[2 * axis + 1] - box[2 * axis]) / longest, 1.0 / NODES_MOST);
   }
-  return (int)fmin(CUBE / cbrt(part), NODES_MOST);
+  const double enough = detail > 0.0 ? fmax(ceil(longest / detail), 4.0) : (double)NODES_MOST;
+  return (int)fmin(fmin(CUBE / cbrt(part), enough), NODES_MOST);
 }
 
 stratus_status stratus_light_scatter_build(stratus_context* context, stratus_light_draw* draw, void* of, const double bounds[6],
-  const stratus_shading* shading, const stratus_light* lights, int count, double tolerance, stratus_light_scatter* scatter)
+  double detail, const stratus_shading* shading, const stratus_light* lights, int count, double tolerance, stratus_light_scatter* scatter)
 {
   stratus_light_scatter rungs[2] = { { .words = NULL }, { .words = NULL } };
   double box[6];
@@ -421,7 +422,7 @@ stratus_status stratus_light_scatter_build(stratus_context* context, stratus_lig
   stratus_status status;
   TRY_CLEANUP(draw_cells(context, draw, of, bounds, SCOUT, &rungs[0].cells));
   box_of_matter(&rungs[0].cells, bounds, box);
-  const int finest = finest_nodes(box);
+  const int finest = finest_nodes(box, detail);
   for (int part = 4; part > 0; part /= 2) {
     stratus_light_scatter* next = &rungs[1 - now];
     stratus_light_scatter_release(context, next);

@@ -26,10 +26,11 @@ typedef struct stratus_light_scatter {
 } stratus_light_scatter;
 
 /* Solve for the light that matter within the bounds scatters more than once, and for the sky's. lights: in the world. The cells fill
- * the box of the matter. At most they are as many as a cube of 64 cells along each side has; a half and a quarter as many along each side
+ * the box of the matter. At most they are as many as a cube of 64 cells along each side has, and none is
+ * smaller than `detail` (0: not known); a half and a quarter as many along each side
  * are tried before, until the expected error keeps the tolerance. */
 stratus_status stratus_light_scatter_build(stratus_context* context, stratus_light_draw* draw, void* of, const double bounds[6],
-  const stratus_shading* shading, const stratus_light* lights, int count, double tolerance, stratus_light_scatter* scatter);
+  double detail, const stratus_shading* shading, const stratus_light* lights, int count, double tolerance, stratus_light_scatter* scatter);
 void stratus_light_scatter_release(stratus_context* context, stratus_light_scatter* scatter);
 size_t stratus_light_scatter_words(const stratus_light_scatter* scatter);
 

@@ -14,6 +14,8 @@
 
 /* Steps through near matter to a voxel: the field along them counts as straight from end to end. */
 #define NEAR_STEPS_A_VOXEL 2.0
+/* Cells in which light is scattered again: as many along a voxel follow how light changes in it. */
+#define CELLS_A_VOXEL 2.0
 
 static bool has_shadows(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
@@ -170,6 +172,7 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
   const double start = stratus_now_ms();
   one_volume m = { .draw = draw, .volume = volume, .transfer = transfer, .lit = options, .options = dark_options(options) };
   stratus_light_matter matter = { .draw = draw_volume, .of = &m, .tolerance = options->sampling.tolerance };
+  matter.detail = stratus_ray_voxel_length(volume) / CELLS_A_VOXEL;
   const bool regions = options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE;
   if (stratus_volume_components(volume) == 1 && options->mode == STRATUS_MODE_COMPOSITE && options->mask.label_count == 0 &&
     !options->optics.transfer_2d && transfer->gradient_count == 0 && !regions) { /* near rays know no gradient opacity */
@@ -295,6 +298,16 @@ static stratus_status bounds_of(const several* m, double bounds[6])
   return STRATUS_OK;
 }
 
+/* The finest cells that the volumes need; of meshes that is not known. */
+static double detail_of(const several* m)
+{
+  double detail = INFINITY;
+  for (int n = 0; n < m->count; ++n) {
+    detail = fmin(detail, m->inputs[n].tetra ? 0.0 : stratus_ray_voxel_length(m->inputs[n].volume) / CELLS_A_VOXEL);
+  }
+  return detail;
+}
+
 /* Gives all inputs the maps. */
 static void give(const stratus_ray_cast_input* inputs, int count, bool given, const stratus_light_maps* maps)
 {
@@ -335,6 +348,7 @@ static stratus_status update_several(several* m, const stratus_ray_cast_input* i
   if (stratus_light_state_is_stale(state, key, lights, count)) {
     TRY(darken(m, inputs));
     TRY(bounds_of(m, matter.bounds));
+    matter.detail = detail_of(m);
     TRY(stratus_light_state_build(m->context, &matter, shading, lights, count, state));
     state->key = key;
   }
