@@ -57,11 +57,11 @@ struct stratus_light_maps {
   int count;
   int32_t* words;
   size_t words_count;
-  stratus_device_slot* slot; /* the words on the context's device, once they were sent */
-  stratus_light_scatter scatter;
-  size_t scatter_at; /* in words */
-  double goes_on;    /* as in drawing */
-  double error;      /* the largest of all maps */
+  stratus_device_slot* slot;        /* the words on the context's device, once they were sent */
+  stratus_light_scatter scatter;    /* its arrays are released: the words are among all words */
+  size_t scatter_at, scatter_words; /* of light that is scattered more than once; scatter_words: 0: there is none */
+  double goes_on;                   /* as in drawing */
+  double error;                     /* the largest of all maps */
 };
 
 static size_t map_words(const map* m)
@@ -504,12 +504,14 @@ stratus_status stratus_light_maps_build(stratus_context* context, const stratus_
   }
   TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *made->slot, &slot));
   made->scatter_at = made->words_count;
-  made->words_count += stratus_light_scatter_words(&made->scatter);
+  made->scatter_words = stratus_light_scatter_words(&made->scatter);
+  made->words_count += made->scatter_words;
   TRY_CLEANUP(stratus_allocate(context, made->words_count, sizeof(int32_t), &all));
   made->slot = slot;
   made->words = all;
   if (made->scatter.words) {
-    memcpy(made->words + made->scatter_at, made->scatter.words, stratus_light_scatter_words(&made->scatter) * sizeof(int32_t));
+    memcpy(made->words + made->scatter_at, made->scatter.words, made->scatter_words * sizeof(int32_t));
+    stratus_light_scatter_release(context, &made->scatter);
   }
   for (int i = 0; i < count; ++i) {
     memcpy(made->words + made->of[i].at, words[i], map_words(&made->of[i]) * sizeof(int32_t));
@@ -534,7 +536,6 @@ void stratus_light_maps_destroy(stratus_light_maps* maps)
   if (maps) {
     stratus_slot_drop(maps->slot); /* the device may read the words in place */
     stratus_release(maps->context, maps->slot);
-    stratus_light_scatter_release(maps->context, &maps->scatter);
     stratus_release(maps->context, maps->words);
     stratus_release(maps->context, maps);
   }
@@ -652,7 +653,7 @@ void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_
   double to_places[16];
   const bool near = maps && sample_distance > 0.0 && stratus_matrix_invert_affine(to_world, to_places);
   a->near = 0;
-  stratus_light_scatter_arguments(maps && maps->scatter.words ? &maps->scatter : NULL, maps ? maps->scatter_at : 0, to_world, a);
+  stratus_light_scatter_arguments(maps && maps->scatter_words > 0 ? &maps->scatter : NULL, maps ? maps->scatter_at : 0, to_world, a);
   for (int i = 0; i < a->count; ++i) {
     const map* m = maps && i < maps->count ? &maps->of[i] : NULL;
     a->map_at[i] = -1;

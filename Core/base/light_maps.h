@@ -22,7 +22,7 @@ typedef struct stratus_light_matter {
   double tolerance; /* of the part of light that passes, root mean square over the matter; 0: as fine as maps can be */
 } stratus_light_matter;
 
-/* Build the maps of all lights, given in the world, and where the shading asks for it the grid of light that is scattered more than once. A
+/* Build the maps of all lights, given in the world. If light is scattered more than once, solve for it, too. A
  * map has the least of 32, 64, 128 and 256 nodes along its longest side whose expected error keeps the tolerance, if need be with near
  * matter passed by rays, and at most 64 MiB: each face of a cube of maps has at most 128. *maps: NULL or maps to replace; after a failure
  * it is as before. */
@@ -47,7 +47,7 @@ void stratus_light_state_drop(stratus_light_state* state);
 uint64_t stratus_light_key(uint64_t key, const void* bytes, size_t count);
 /* The same of transfer functions, their points included. */
 uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* transfers, int count);
-/* The same of lights and the sky, if light is scattered more than once; and of what matter scatters. materials: of `components`; NULL: none
+/* The same of lights and the sky, if light is scattered more than once; and of the albedo of matter. materials: of `components`; NULL: none
  * of their own. */
 uint64_t stratus_light_key_of_scattering(uint64_t key, const stratus_shading* shading, const stratus_light* lights, int count);
 uint64_t stratus_light_key_of_albedo(

@@ -12,15 +12,15 @@
 
 #include <string.h>
 
-#define PIXELS_LEAST 256 /* rays across the longest side, so that cells have the mean of what is in them */
-#define OPAQUE 1e-7      /* what passes a layer at least, as far as floats tell */
-#define FLAT 1e-6        /* a side counts as at least this part of the longest */
-#define RESIDUAL 1e-4    /* relative, far below what the cells' size errs */
-#define SCOUT 16         /* cells along the longest side, to find where matter is */
-#define CUBE 64          /* as many cells as a cube of so many are the most */
-#define NODES_MOST 256   /* along a side, however thin the matter is */
-#define SHARE 0.5        /* of the tolerance, that the cells' size may use up */
-#define WORDS 5          /* of a node */
+#define PIXELS_LEAST 256      /* rays across the longest side, so that a cell has the mean of several rays */
+#define OPAQUE 1e-7           /* the least part of light that passes a layer: floats have no smaller difference from 1 */
+#define FLAT 1e-6             /* a side counts as at least this part of the longest */
+#define RESIDUAL 1e-4         /* relative, far below what the cells' size errs */
+#define SCOUT 16              /* cells along the longest side, to find where matter is */
+#define CUBE 64               /* as many cells as a cube of so many are the most */
+#define NODES_MOST 256        /* along a side, however thin the matter is */
+#define SHARE 0.5             /* of the tolerance, that the cells' size may use up */
+#define LIGHT_SCATTER_WORDS 5 /* of a node */
 
 /* ---- matter */
 
@@ -163,7 +163,7 @@ static double depth_from(const direct* d, const int cell[3], const double way[3]
   }
 }
 
-/* The mean over a cell of what passes, if light enters with 1 and the cell has an optical depth. */
+/* The mean transmittance over a cell of an optical depth, where light enters with 1. */
 static double mean_passing(double depth)
 {
   return depth > 1e-4 ? -expm1(-depth) / depth : 1.0 - 0.5 * depth;
@@ -257,15 +257,15 @@ static uint32_t rounded(double part, double most)
   return (uint32_t)(fmin(fmax(part, 0.0), 1.0) * most + 0.5);
 }
 
-/* The largest size of a moment of light that comes from one direction alone, as a part of the mean. */
+/* The largest size of a moment, as a part of the mean: all light comes from one direction. */
 static double most_of(int moment)
 {
   return moment < 3 ? 1.0 : moment < 5 ? 2.0 / 3.0 : 0.5;
 }
 
-static void words_of_node(float* const of[3], const double largest[3], size_t n, size_t i, int32_t words[WORDS])
+static void words_of_node(float* const of[3], const double largest[3], size_t n, size_t i, int32_t words[LIGHT_SCATTER_WORDS])
 {
-  uint32_t number[WORDS] = { 0 }, even[3];
+  uint32_t number[LIGHT_SCATTER_WORDS] = { 0 }, even[3];
   double sum = 1e-30, first = 0.0;
   for (int c = 0; c < 3; ++c) {
     even[c] = rounded((double)of[c][i] / fmax(largest[c], 1e-30), 65535.0);
@@ -279,8 +279,8 @@ static void words_of_node(float* const of[3], const double largest[3], size_t n,
     const double part = ((double)of[0][at] + (double)of[1][at] + (double)of[2][at]) / (sum * most_of(moment));
     number[2 + moment / 3] |= rounded(0.5 + 0.5 * part, 1022.0) << 10 * (moment % 3);
   }
-  number[WORDS - 1] |= rounded(first / sum, 1022.0) << 20;
-  for (int word = 0; word < WORDS; ++word) {
+  number[LIGHT_SCATTER_WORDS - 1] |= rounded(first / sum, 1022.0) << 20;
+  for (int word = 0; word < LIGHT_SCATTER_WORDS; ++word) {
     words[word] = (int32_t)number[word];
   }
 }
@@ -310,10 +310,10 @@ static stratus_status solve(
     scatter->scale[c] = (float)(largest[c] / 65535.0);
   }
   void* words;
-  TRY_CLEANUP(stratus_allocate(context, n, WORDS * sizeof(int32_t), &words));
+  TRY_CLEANUP(stratus_allocate(context, n, LIGHT_SCATTER_WORDS * sizeof(int32_t), &words));
   scatter->words = words;
   for (size_t i = 0; i < n; ++i) {
-    words_of_node(of, largest, n, i, scatter->words + WORDS * i);
+    words_of_node(of, largest, n, i, scatter->words + LIGHT_SCATTER_WORDS * i);
   }
 cleanup:
   stratus_release(context, memory);
@@ -322,8 +322,25 @@ cleanup:
 
 /* ---- all */
 
-/* The mean radiance at a place of the world. */
-static void mean_at(const stratus_light_scatter* s, const double place[3], double rgb[3])
+static void cell_of(const stratus_light_cells* c, size_t i, int cell[3])
+{
+  const size_t width = (size_t)c->size[0], height = (size_t)c->size[1];
+  cell[0] = (int)(i % width);
+  cell[1] = (int)(i / width % height);
+  cell[2] = (int)(i / (width * height));
+}
+
+/* Adds the mean radiance of a node times a weight. */
+static void add_mean(const stratus_light_scatter* s, size_t node, double weight, double rgb[3])
+{
+  const uint32_t red_green = (uint32_t)s->words[LIGHT_SCATTER_WORDS * node], blue = (uint32_t)s->words[LIGHT_SCATTER_WORDS * node + 1];
+  rgb[0] += weight * (double)s->scale[0] * (double)(red_green & 0xffff);
+  rgb[1] += weight * (double)s->scale[1] * (double)(red_green >> 16);
+  rgb[2] += weight * (double)s->scale[2] * (double)blue;
+}
+
+/* Adds the mean radiance at a place of the world times a weight. */
+static void add_mean_at(const stratus_light_scatter* s, const double place[3], double weight, double rgb[3])
 {
   size_t at = 0, stride = 1, step[3];
   double part[3];
@@ -336,22 +353,18 @@ static void mean_at(const stratus_light_scatter* s, const double place[3], doubl
     step[axis] = last > 0 ? stride : 0;
     stride *= (size_t)s->cells.size[axis];
   }
-  rgb[0] = rgb[1] = rgb[2] = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
-    double weight = 1.0;
+    double share = weight;
     size_t node = at;
     for (int axis = 0; axis < 3; ++axis) {
-      weight *= corner >> axis & 1 ? part[axis] : 1.0 - part[axis];
+      share *= corner >> axis & 1 ? part[axis] : 1.0 - part[axis];
       node += corner >> axis & 1 ? step[axis] : 0;
     }
-    const uint32_t red_green = (uint32_t)s->words[WORDS * node], blue = (uint32_t)s->words[WORDS * node + 1];
-    rgb[0] += weight * (double)s->scale[0] * (double)(red_green & 0xffff);
-    rgb[1] += weight * (double)s->scale[1] * (double)(red_green >> 16);
-    rgb[2] += weight * (double)s->scale[2] * (double)blue;
+    add_mean(s, node, share, rgb);
   }
 }
 
-/* The root mean square of the difference between two solutions, by what the cells of the finer one show of it. */
+/* The root mean square of the difference between two solutions, weighted by the opacity of the finer one's cells. */
 static double difference(const stratus_light_scatter* coarse, const stratus_light_scatter* fine)
 {
   const stratus_light_cells* c = &fine->cells;
@@ -361,16 +374,16 @@ static double difference(const stratus_light_scatter* coarse, const stratus_ligh
   for (size_t i = 0; i < n; ++i) {
     const double opacity = -expm1(-(double)c->extinction[i] * depth);
     if (opacity > 0.0) {
-      const size_t cell[3] = { i % (size_t)c->size[0], i / (size_t)c->size[0] % (size_t)c->size[1],
-        i / ((size_t)c->size[0] * (size_t)c->size[1]) };
-      double place[3], a[3], b[3];
+      int cell[3];
+      double place[3], apart[3] = { 0.0, 0.0, 0.0 };
+      cell_of(c, i, cell);
       for (int axis = 0; axis < 3; ++axis) {
-        place[axis] = c->lo[axis] + ((double)cell[axis] + 0.5) * c->spacing[axis];
+        place[axis] = c->lo[axis] + (cell[axis] + 0.5) * c->spacing[axis];
       }
-      mean_at(coarse, place, a);
-      mean_at(fine, place, b);
+      add_mean_at(coarse, place, -1.0, apart);
+      add_mean(fine, i, 1.0, apart);
       for (size_t channel = 0; channel < 3; ++channel) {
-        const double shown = (double)c->albedo[channel * n + i] * (a[channel] - b[channel]);
+        const double shown = (double)c->albedo[channel * n + i] * apart[channel];
         squares += opacity * shown * shown / 3.0;
       }
       weights += opacity;
@@ -379,15 +392,15 @@ static double difference(const stratus_light_scatter* coarse, const stratus_ligh
   return weights > 0.0 ? sqrt(squares / weights) : 0.0;
 }
 
-/* The bounds of the cells that have matter, and of a cell about them that may have what lies between their rays. */
+/* The bounds of the cells that have matter, and of one more cell on each side, because matter between their rays was not seen. */
 static void box_of_matter(const stratus_light_cells* c, const double bounds[6], double box[6])
 {
   int first[3], last[3] = { -1, -1, -1 };
   memcpy(first, c->size, sizeof first);
   memcpy(box, bounds, 6 * sizeof *box);
   for (size_t i = 0; i < count_of(c); ++i) {
-    const int cell[3] = { (int)(i % (size_t)c->size[0]), (int)(i / (size_t)c->size[0] % (size_t)c->size[1]),
-      (int)(i / ((size_t)c->size[0] * (size_t)c->size[1])) };
+    int cell[3];
+    cell_of(c, i, cell);
     for (int axis = 0; axis < 3 && c->extinction[i] > 0.0f; ++axis) {
       first[axis] = cell[axis] < first[axis] ? cell[axis] : first[axis];
       last[axis] = cell[axis] > last[axis] ? cell[axis] : last[axis];
@@ -447,12 +460,13 @@ void stratus_light_scatter_release(stratus_context* context, stratus_light_scatt
 {
   stratus_release(context, scatter->cells.extinction);
   stratus_release(context, scatter->words);
-  *scatter = (stratus_light_scatter){ .words = NULL };
+  scatter->cells.extinction = scatter->cells.albedo = NULL;
+  scatter->words = NULL;
 }
 
 size_t stratus_light_scatter_words(const stratus_light_scatter* scatter)
 {
-  return scatter->words ? WORDS * count_of(&scatter->cells) : 0;
+  return scatter->words ? LIGHT_SCATTER_WORDS * count_of(&scatter->cells) : 0;
 }
 
 void stratus_light_scatter_arguments(const stratus_light_scatter* scatter, size_t at, const double to_world[16], stratus_light_arguments* a)

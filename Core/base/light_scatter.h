@@ -25,16 +25,16 @@ typedef struct stratus_light_scatter {
   double error;              /* that is expected of the cells' size */
 } stratus_light_scatter;
 
-/* Solve for the light that matter within the bounds scatters more than once, and for the sky's. lights: in the world. The cells fill
- * the box of the matter. At most they are as many as a cube of 64 cells along each side has, and none is
- * smaller than `detail` (0: not known); a half and a quarter as many along each side
- * are tried before, until the expected error keeps the tolerance. */
+/* Solve for the light that matter within the bounds scatters more than once, and for the sky's. lights: in the world. The cells fill the
+ * box of the matter. At most they are as many as a cube of 64 cells along each side has, and none is smaller than `detail` (0: not known).
+ * A quarter and a half as many along each side are tried before, until the expected error keeps the tolerance. */
 stratus_status stratus_light_scatter_build(stratus_context* context, stratus_light_draw* draw, void* of, const double bounds[6],
   double detail, const stratus_shading* shading, const stratus_light* lights, int count, double tolerance, stratus_light_scatter* scatter);
+/* Frees the arrays, and leaves the cells' places and the scale. */
 void stratus_light_scatter_release(stratus_context* context, stratus_light_scatter* scatter);
 size_t stratus_light_scatter_words(const stratus_light_scatter* scatter);
 
-/* The part of the extinction after which light goes on as before: the anisotropy's share of what the matter scatters, 0 where it scatters
+/* The part of the extinction after which light goes on as before: the anisotropy's share of the scattered light, 0 where matter scatters
  * backwards, or if there is no light that is scattered more than once. */
 double stratus_light_forward(const stratus_light_scatter* scatter, const stratus_shading* shading);
 

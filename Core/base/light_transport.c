@@ -63,7 +63,7 @@ static int group_of(const stratus_transport* m, const double way[3])
   return 2 * most + (way[most] < 0.0);
 }
 
-/* The function of a way whose mean a moment is. */
+/* A moment is the mean of the radiance times this function of its direction. */
 static double function_of(int moment, const double way[3])
 {
   return moment < 0 ? 1.0
@@ -186,7 +186,7 @@ static stratus_status create_layouts(solver* s)
       s->planes[group] = s->sums[group] + l->count;
     }
   }
-  /* the extinction goes the way of a source, where it is 1 */
+  /* copy the extinction into the layouts, as a source is copied */
   s->source = s->medium->extinction;
   for (int axis = 0; axis < 3; ++axis) {
     uint64_t counts[STRATUS_TILE_COUNTS];

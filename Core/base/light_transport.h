@@ -21,30 +21,30 @@ typedef struct stratus_transport {
   float sky[STRATUS_TRANSPORT_DIRECTIONS]; /* the radiance that comes from outside along each direction, at least 0 */
 } stratus_transport;
 
-/* Gives the way of light along direction i, of length 1, and returns its weight; all weights together are 1. */
+/* Gives direction i, in which light travels, of length 1. Returns its weight; the weights sum to 1. */
 double stratus_transport_direction(int i, double way[3]);
 
 /* Solve the equation to a relative residual of `tolerance`, 0..1.
  * mean: receives the mean over all directions of the radiance at each cell's centre: of scattered light, and of the sky's.
  * first: receives the part of the mean that was scattered once, 0..1.
- * moments: receives arrays one after the other, the mean of this radiance times a function of the way of light: x, y, z, xx - 1/3,
+ * moments: receives arrays one after the other, the mean of this radiance times a function of its direction: x, y, z, xx - 1/3,
  * yy - 1/3, xy, yz, zx. NULL: neither these nor `first` are wanted.
  * sweeps: receives how often light went along all directions. */
 stratus_status stratus_transport_solve(
   stratus_context* context, const stratus_transport* medium, double tolerance, float* mean, float* first, float* moments, int* sweeps);
 
 /* One sweep: light goes along a direction through all planes. Arrays have a cell more at either end of each axis, in which there is vacuum.
- * `row` floats lie between rows of the first axis, `plane` between planes of the second. */
+ * Rows along the first axis begin every `row` floats, planes of the first two every `plane` floats. */
 typedef struct stratus_transport_sweep {
   int size[3]; /* the last axis is swept */
   size_t row, plane;
   const float *extinction, *source, *emission; /* emission: extinction times source */
   int back[2];                                 /* -1 or 1: the neighbour along the first and second axis from which light comes */
-  float part[2], step; /* how far towards it a place lies from which light comes, 0..1 cells, and the length of the way from there */
+  float part[2], step; /* how far towards it, 0..1 cells, the place is from which light comes, and the distance from there */
   int reverse;         /* 1: from the last plane to the first */
   float sky, weight;
   float* radiance[2]; /* two planes to work in */
-  float* sum;         /* receives the radiance times the weight, in addition to what is there */
+  float* sum;         /* the radiance times the weight is added to it */
 } stratus_transport_sweep;
 
 /* light_transport_isa.c, once for each instruction set. */

@@ -24,8 +24,8 @@ INLINE vfloat polynomial(vfloat x, float c5, float c4, float c3, float c2, float
   return v_fma(v_fma(v_fma(v_fma(v_set(c5), x, v_set(c4)), x, v_set(c3)), x, v_set(c2)), x, v_set(c1)) * x;
 }
 
-/* Shares of the source at the end, and at the beginning, of a way of an optical depth. The differences that they are lose digits where the
- * depth is small, so that series take these. */
+/* Shares of the source at the end, and at the beginning, of a segment of an optical depth. They are differences, which lose digits where
+ * the depth is small: there series are used. */
 INLINE void shares(vfloat depth, vfloat absorbed, vfloat* end, vfloat* begin)
 {
   const vfloat one = v_set(1.0f), small = v_min(depth, v_set(0.25f));

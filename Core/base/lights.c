@@ -207,20 +207,25 @@ void stratus_lights_set(const stratus_camera* camera, const stratus_shading* sha
   }
 }
 
+bool stratus_lights_want_shadows(const stratus_shading* shading)
+{
+  return shading->shadows || shading->multiple;
+}
+
 bool stratus_lights_cast_shadows(const stratus_shading* shading, bool shade, const stratus_material* materials, int count)
 {
   for (int c = 0; materials && c < count; ++c) {
     shade = (c > 0 && shade) || materials[c].shade;
   }
-  return shade && (shading->shadows || shading->multiple);
+  return shade && stratus_lights_want_shadows(shading);
 }
 
-stratus_shading stratus_lights_of_albedo(const stratus_shading* shading)
+const stratus_material* stratus_lights_show_albedo(
+  const stratus_shading* lit, const stratus_material* own, int count, stratus_shading* shading, stratus_material materials[4])
 {
-  return (stratus_shading){ .on = 1, .ambient = shading->diffuse, .scattering = 1.0 };
-}
-
-stratus_material stratus_lights_albedo_of(const stratus_material* material)
-{
-  return (stratus_material){ .shade = 1, .ambient = material->shade ? material->diffuse : 0.0 };
+  *shading = (stratus_shading){ .on = 1, .ambient = lit->diffuse, .scattering = 1.0 };
+  for (int c = 0; own && c < count; ++c) {
+    materials[c] = (stratus_material){ .shade = 1, .ambient = own[c].shade ? own[c].diffuse : 0.0 };
+  }
+  return own ? materials : NULL;
 }

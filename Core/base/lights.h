@@ -17,14 +17,17 @@ int stratus_lights_in_world(const stratus_camera* camera, const stratus_shading*
  * receives the lights in world coordinates. */
 void stratus_lights_set(const stratus_camera* camera, const stratus_shading* shading, const double origin[3], double unit,
   stratus_light lights[STRATUS_LIGHTS_MAX], stratus_light_arguments* a);
+/* Whether a shading has shadows on, by themselves or because light is scattered more than once. */
+bool stratus_lights_want_shadows(const stratus_shading* shading);
 /* Whether a picture has shadows: its shading has them on, and matter is lit. materials: of `count` components, which replace `shade`; NULL:
  * none of their own. */
 bool stratus_lights_cast_shadows(const stratus_shading* shading, bool shade, const stratus_material* materials, int count);
 
-/* Lights by which matter that is drawn shows its albedo, its colour times the diffuse number: as ambient light. Matter that is not lit
- * scatters nothing. */
-stratus_shading stratus_lights_of_albedo(const stratus_shading* shading);
-stratus_material stratus_lights_albedo_of(const stratus_material* material);
+/* Gives the shading by which matter that is drawn shows its albedo, its colour times the diffuse number: as ambient light. Matter that is
+ * not lit scatters nothing. own: materials of `count` components; NULL: none of their own. Returns the materials to draw with, which are in
+ * `materials`, or NULL. */
+const stratus_material* stratus_lights_show_albedo(
+  const stratus_shading* lit, const stratus_material* own, int count, stratus_shading* shading, stratus_material materials[4]);
 
 /* lamps.c: the fraction of a positional light that reaches a point. `to`, of length 1, leads from the point to the light, at `distance`. */
 double stratus_lamp_reaching(const stratus_light* light, const double to[3], double distance);

@@ -49,11 +49,8 @@ static void show_albedo(
 {
   dark->light = options->light;
   dark->light.shade = 1;
-  dark->light.shading = stratus_lights_of_albedo(&options->light.shading);
-  for (int c = 0; options->light.materials && c < components; ++c) {
-    materials[c] = stratus_lights_albedo_of(&options->light.materials[c]);
-    dark->light.materials = materials;
-  }
+  dark->light.materials =
+    stratus_lights_show_albedo(&options->light.shading, options->light.materials, components, &dark->light.shading, materials);
 }
 
 /* The caster that draws a volume's matter. */

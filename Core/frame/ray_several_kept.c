@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Draws several volumes and meshes in all modes but composite: one after the other, and joins what rays have kept. */
 #include "camera.h"
+#include "lights.h"
 #include "picture.h"
 #include "ray_kept.h"
 #include "ray_light.h"
@@ -23,9 +24,11 @@ static bool asks_for_shadows(const stratus_ray_cast_input* inputs, int count)
 {
   bool asks = false;
   for (int n = 0; n < count; ++n) {
-    asks = asks ||
-      (inputs[n].tetra ? inputs[n].tetra_options && (inputs[n].tetra_options->shading.shadows || inputs[n].tetra_options->shading.multiple)
-                       : inputs[n].options && (inputs[n].options->light.shading.shadows || inputs[n].options->light.shading.multiple));
+    const stratus_ray_cast_input* in = &inputs[n];
+    const stratus_shading* shading = in->tetra ? in->tetra_options ? &in->tetra_options->shading : NULL
+      : in->options                            ? &in->options->light.shading
+                                               : NULL;
+    asks = asks || (shading && stratus_lights_want_shadows(shading));
   }
   return asks;
 }

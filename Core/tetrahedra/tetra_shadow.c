@@ -21,8 +21,7 @@ stratus_status stratus_tetra_shadow_check(
 {
   TRY(stratus_mesh_check(context, mesh));
   TRY(stratus_transfer_check(context, transfer));
-  return options && (options->shading.shadows || options->shading.multiple) ? stratus_shading_check(context, &options->shading)
-                                                                            : STRATUS_OK;
+  return options && stratus_lights_want_shadows(&options->shading) ? stratus_shading_check(context, &options->shading) : STRATUS_OK;
 }
 
 bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* o)
@@ -45,11 +44,7 @@ void stratus_tetra_show_albedo(
   const stratus_tetra_options* options, int components, stratus_material materials[4], stratus_tetra_options* dark)
 {
   dark->shade = 1;
-  dark->shading = stratus_lights_of_albedo(&options->shading);
-  for (int c = 0; options->materials && c < components; ++c) {
-    materials[c] = stratus_lights_albedo_of(&options->materials[c]);
-    dark->materials = materials;
-  }
+  dark->materials = stratus_lights_show_albedo(&options->shading, options->materials, components, &dark->shading, materials);
 }
 
 /* Bytes under the same address are the same unless the mesh's revision has changed. */

@@ -4,29 +4,14 @@ PATH-OF-STRATUS FOLDER"""
 import math
 import os
 import re
-import subprocess
-import sys
+
+from checking import done, expect, fail
 
 import netCDF4
 import numpy
 
-STRATUS, FOLDER = os.path.realpath(sys.argv[1]), sys.argv[2]
 WIDTH = 400.0  # metres, of the slab along x
 ALONG_X = ("--azimuth", "0", "--elevation", "0", "--parallel", "--size", "32x32", "--device", "host")
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
-
-
-def expect(status, pattern, *words):
-    done = subprocess.run([STRATUS, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
-    if done.returncode != status or not re.search(pattern, done.stdout, re.MULTILINE):
-        fail(f"'{' '.join(words)}' ended with {done.returncode} and said:\n{done.stdout}instead of {status} and '{pattern}'")
-    return done.stdout
 
 
 def refuse(status, pattern, *words):
@@ -238,11 +223,9 @@ def test_refusals():
     expect(0, "extinction 0.15/m for 1 g/m3", "render", "cloud", "--cloud", "--water-units", "g/m3", "--metres", "20", "-o", "a.png", "--size", "32x32")
 
 
-os.makedirs(FOLDER, exist_ok=True)
-os.chdir(FOLDER)
 test_extinction()
 test_air()
 test_sun()
 test_shorthand()
 test_refusals()
-sys.exit(1 if failures else 0)
+done()

@@ -1,30 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """netCDF files as `stratus` reads them: --select, variables of groups, and which variable is drawn. netCDF4 reads the same values at the same
 indices. Usage: test_netcdf.py PATH-OF-STRATUS FOLDER"""
-import os
 import re
-import subprocess
-import sys
+
+from checking import done, expect, fail
 
 import netCDF4
 import numpy
 
-STRATUS, FOLDER = os.path.realpath(sys.argv[1]), sys.argv[2]
 LOOK = ("--size", "48x40", "--device", "host", "--opacity", "0:0,400:.6", "--unit-distance", "1")
-failures = 0
-
-
-def fail(text):
-    global failures
-    failures += 1
-    print("FAILED:", text)
-
-
-def expect(status, pattern, *words):
-    done = subprocess.run([STRATUS, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
-    if done.returncode != status or not re.search(pattern, done.stdout, re.MULTILINE):
-        fail(f"'{' '.join(words)}' ended with {done.returncode} and said:\n{done.stdout}instead of {status} and '{pattern}'")
-    return done.stdout
 
 
 def picture(name, *words):
@@ -106,10 +90,8 @@ def test_warning():
     expect(0, "picture +levels.png", "render", "levels.nc", "-o", "levels.png", *LOOK)
 
 
-os.makedirs(FOLDER, exist_ok=True)
-os.chdir(FOLDER)
 test_select()
 test_groups()
 test_no_volume()
 test_warning()
-sys.exit(1 if failures else 0)
+done()

@@ -375,6 +375,33 @@ static inline void case_offer_tree(
   stratus_voxels_destroy(cells);
 }
 
+typedef stratus_status case_draw_several(
+  const stratus_ray_cast_input*, int, const stratus_camera*, const stratus_image*, stratus_ray_cast_report*);
+
+/* Returns the PSNR of a case of float32 values that is drawn in two parts, below and above a layer along z, from the whole. */
+static inline double case_psnr_of_parts(
+  stratus_context* context, const picture_case* c, int64_t layer, const picture* whole, case_draw_several* draw)
+{
+  static picture p;
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = p.rgba };
+  const int64_t* n = c->volume.dimensions;
+  stratus_volume parts[2] = { c->volume, c->volume };
+  stratus_ray_cast_input inputs[2];
+  parts[0].dimensions[2] = layer + 1;
+  parts[1].dimensions[2] = n[2] - layer;
+  parts[1].values = (const float*)c->values + layer * n[0] * n[1];
+  parts[1].origin[2] += c->volume.spacing[2] * (double)layer;
+  for (int i = 0; i < 2; ++i) {
+    inputs[i] = (stratus_ray_cast_input){ .volume = &parts[i], .transfer = &c->transfer, .options = &c->options };
+    assert_int_equal(stratus_ray_caster_create(context, &inputs[i].caster), STRATUS_OK);
+  }
+  assert_int_equal(draw(inputs, 2, &c->camera, &image, NULL), STRATUS_OK);
+  for (int i = 0; i < 2; ++i) {
+    stratus_ray_caster_destroy(inputs[i].caster);
+  }
+  return reference_psnr(p.rgba, whole->rgba, CASE_PIXELS);
+}
+
 /* Set-up and tear-down of a group whose state is a context of the host with two threads. */
 static inline int case_set_up(void** state)
 {

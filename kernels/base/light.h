@@ -201,9 +201,11 @@ INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps
     }
     if (a->scattered > 0.0f) {
       const vfloat phase = light_phase(a, zero - v_dot3(light, eye)), part = phase * reaching * v_set(material[1] * a->scattered);
-      const vfloat bright = full * v_set(a->color[i][0] + a->color[i][1] + a->color[i][2]);
-      sent = v_fma(phase, bright, sent);
-      all = all + bright;
+      if (a->scatter_at >= 0) {
+        const vfloat bright = full * v_set(a->color[i][0] + a->color[i][1] + a->color[i][2]);
+        sent = v_fma(phase, bright, sent);
+        all = all + bright;
+      }
       for (int c = 0; c < 3; ++c) {
         diffuse[c] = v_fma(part, v_set(a->color[i][c]), diffuse[c]);
       }

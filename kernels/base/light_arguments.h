@@ -4,6 +4,8 @@
 #ifndef STRATUS_LIGHT_ARGUMENTS_H
 #define STRATUS_LIGHT_ARGUMENTS_H
 
+#define LIGHT_SCATTER_WORDS 5 /* of a node of light_scatter.h */
+
 typedef struct stratus_light_arguments {
   int on, two_sided, count;        /* on: bit c where component c is lit */
   float scattered;                 /* the share of light that matter scatters, 0..1; the rest is reflected as by surfaces */

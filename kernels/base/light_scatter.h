@@ -10,8 +10,6 @@
 #include "gather.h"
 #include "light_arguments.h"
 
-#define LIGHT_SCATTER_WORDS 5
-
 /* The light that goes from the places x along d, of length 1 in the world, after one scattering more. The part that a scattering sends on
  * along its way, scatter_way, is of the radiance along d, which the mean and the moments tell up to the second order in d. The solution
  * scatters evenly; `phase`, by the first scattering's phase function, is what that sends along d. */

@@ -72,7 +72,8 @@ static void directions_are_symmetric(void** state)
   }
 }
 
-/* In a sky that is everywhere the same, matter that only scatters is not to be seen: the radiance is that of the sky, in all directions. */
+/* A sky of one radiance lights matter that absorbs nothing. Then the matter is invisible: it has the radiance of the sky in all directions.
+ */
 static void a_furnace_shows_nothing(void** state)
 {
   (void)state;
@@ -119,8 +120,8 @@ static void absorbers_follow_beers_law(void** state)
   assert_true(worst < 1e-6);
 }
 
-/* A slab that only scatters, in even light from one side: the net flux is the same everywhere, and 4/3 / (depth + 1.4209) of what falls on
- * it (Hopf 1934: the extrapolated distance is 0.71045). */
+/* A slab that absorbs nothing, in even light from one side: the net flux is the same everywhere, 4/3 / (depth + 1.4209) of the incident
+ * flux (Hopf 1934: the extrapolated distance is 0.71045). */
 static void slabs_let_pass_what_hopf_says(void** state)
 {
   (void)state;
@@ -145,7 +146,8 @@ static void slabs_let_pass_what_hopf_says(void** state)
   }
 }
 
-/* What is scattered once alone is the part `first` of the mean: with an albedo near 0 all of it, and without light none. */
+/* `first` is the part of the mean that was scattered once: nearly all of it if the albedo is near 0, less if it is high or if a sky shines.
+ */
 static void the_first_scattering_is_told(void** state)
 {
   (void)state;

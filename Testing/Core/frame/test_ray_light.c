@@ -319,17 +319,6 @@ static void pictures_with_shadows_are_the_same_however_they_are_made(void** stat
   case_destroy(&c);
 }
 
-/* Returns a part of a case's volume, layers first..last along z, as a volume with its own values. */
-static stratus_volume part_of(const picture_case* c, int64_t first, int64_t last)
-{
-  stratus_volume part = c->volume;
-  const int64_t* n = c->volume.dimensions;
-  part.values = (const float*)c->values + first * n[0] * n[1];
-  part.dimensions[2] = last - first + 1;
-  part.origin[2] += c->volume.spacing[2] * (double)first;
-  return part;
-}
-
 /* A volume that was cut in two draws as the whole does: as blocks, and as two of several volumes. What is in one shadows the other. */
 static void matter_shadows_other_volumes(void** state)
 {
@@ -339,31 +328,16 @@ static void matter_shadows_other_volumes(void** state)
   make_ball(context, &c);
   c.options.light.shading.lights[0] = (stratus_light){ .vector = { 0.2, 0.1, 1 }, .color = { 1, 1, 1 } };
   case_render(context, &c, &drawn);
-  const stratus_volume parts[2] = { part_of(&c, 0, 8), part_of(&c, 8, 27) };
-  stratus_ray_caster* casters[2] = { NULL, NULL };
-  stratus_ray_cast_input inputs[2];
-  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba };
-  for (int n = 0; n < 2; ++n) {
-    assert_int_equal(stratus_ray_caster_create(context, &casters[n]), STRATUS_OK);
-    inputs[n] = (stratus_ray_cast_input){ .caster = casters[n], .volume = &parts[n], .transfer = &c.transfer, .options = &c.options };
-  }
-  assert_int_equal(stratus_ray_caster_render_blocks(inputs, 2, &c.camera, &image, NULL), STRATUS_OK);
-  const double blocks = reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS);
-  assert_int_equal(stratus_ray_caster_render_several(inputs, 2, &c.camera, &image, NULL), STRATUS_OK);
-  const double several = reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS);
+  const double blocks = case_psnr_of_parts(context, &c, 8, &drawn, stratus_ray_caster_render_blocks);
+  const double several = case_psnr_of_parts(context, &c, 8, &drawn, stratus_ray_caster_render_several);
   print_message("             blocks: %.1f dB, several: %.1f dB from the whole\n", blocks, several);
   assert_true(blocks > 34.0 && several > 34.0);
-  for (int n = 0; n < 2; ++n) {
-    stratus_ray_caster_destroy(casters[n]);
-  }
   case_destroy(&c);
   stratus_context_destroy(context);
 }
 
 /* Draws two volumes, and expects this number of builds of maps so far. */
-static void draw_two(const stratus_ray_cast_input inputs[2], const picture_case* c,
-  stratus_status (*draw)(const stratus_ray_cast_input*, int, const stratus_camera*, const stratus_image*, stratus_ray_cast_report*),
-  uint64_t builds)
+static void draw_two(const stratus_ray_cast_input inputs[2], const picture_case* c, case_draw_several* draw, uint64_t builds)
 {
   static stratus_ray_cast_report reports[2];
   const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba };

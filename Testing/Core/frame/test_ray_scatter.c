@@ -87,7 +87,7 @@ static void many_scatterings_are_near_those_of_paths(void** state)
   stratus_context_destroy(context);
 }
 
-/* Matter that only scatters is not to be seen in a sky that is everywhere the same. */
+/* Matter that absorbs nothing is invisible in a sky of one radiance. */
 static void a_furnace_is_not_seen(void** state)
 {
   (void)state;
@@ -171,28 +171,10 @@ static void pictures_are_the_same_however_they_are_made(void** state)
     stratus_context_destroy(context);
   }
   context = case_context("host", 2);
-  const int64_t* n = c.volume.dimensions;
-  stratus_volume parts[2] = { c.volume, c.volume };
-  stratus_ray_cast_input inputs[2];
-  stratus_ray_caster* casters[2] = { NULL, NULL };
-  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba };
-  parts[0].dimensions[2] = 12;
-  parts[1].dimensions[2] = n[2] - 11;
-  parts[1].values = (const float*)c.values + 11 * n[0] * n[1];
-  parts[1].origin[2] += 11.0 * c.volume.spacing[2];
-  for (int i = 0; i < 2; ++i) {
-    assert_int_equal(stratus_ray_caster_create(context, &casters[i]), STRATUS_OK);
-    inputs[i] = (stratus_ray_cast_input){ .caster = casters[i], .volume = &parts[i], .transfer = &c.transfer, .options = &c.options };
-  }
-  assert_int_equal(stratus_ray_caster_render_blocks(inputs, 2, &c.camera, &image, NULL), STRATUS_OK);
-  const double blocks = reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS);
-  assert_int_equal(stratus_ray_caster_render_several(inputs, 2, &c.camera, &image, NULL), STRATUS_OK);
-  const double several = reference_psnr(other.rgba, drawn.rgba, CASE_PIXELS);
+  const double blocks = case_psnr_of_parts(context, &c, 11, &drawn, stratus_ray_caster_render_blocks);
+  const double several = case_psnr_of_parts(context, &c, 11, &drawn, stratus_ray_caster_render_several);
   print_message("             blocks: %.1f dB, several: %.1f dB from the whole\n", blocks, several);
   assert_true(blocks > 40.0 && several > 40.0);
-  for (int i = 0; i < 2; ++i) {
-    stratus_ray_caster_destroy(casters[i]);
-  }
   case_destroy(&c);
   stratus_context_destroy(context);
 }
