@@ -214,10 +214,12 @@ INLINE void several_until(const several_source* from, several_volume* v, vint si
 {
   const several_way* way = &v->ways[v->now];
   const vfloat s0 = v_from_int(since - v->offset), one = v_set(1.0f);
-  vmask ended = m_andnot(*going & v_le(way->hi - s0, u), way->stops);
-  while (m_any(ended)) {
+  for (;;) {
+    const vmask ended = m_andnot(*going & v_le(way->hi - s0, u), way->stops);
+    if (!m_any(ended)) {
+      break;
+    }
     *going = m_andnot(*going, several_next(from, v, ended, *going, live));
-    ended = m_andnot(*going & v_le(way->hi - s0, u), way->stops);
   }
   const vfloat begins = way->lo - s0, ends = v_max(way->hi - s0, u);
   const vfloat whole = v_from_int(v_to_int(v_clamp(begins, 0.0f, (float)SEVERAL_SEGMENTS_MOST)));
@@ -228,34 +230,32 @@ INLINE void several_until(const several_source* from, several_volume* v, vint si
 #endif
 
 /* Composites what all volumes show from segment `since` to i on the rays of the mask: at once, or, where there are stretches, from one of
- * their ends to the next. */
-INLINE void several_interval(
+ * their ends to the next. Not inlined: with all that it calls it is most of the march, which calls it in two places. */
+OUTLINE void several_interval(
   const several_source* from, several_volume* volumes, int count, vint since, int i, vmask mask, int stretches, stratus_packet* k)
 {
   vfloat start = v_set(0.0f), stop = v_from_int(vi_set(i) - since);
-  if (!stretches) {
-    several_stretch(from, volumes, count, since, start, stop, mask, k);
-    return;
-  }
-#if SEVERAL_STRETCHES
-  while (m_any(mask)) {
+  do {
     vfloat until = stop;
     vmask going = mask;
-    for (int n = 0; n < count; ++n) {
+#if SEVERAL_STRETCHES
+    for (int n = 0; stretches && n < count; ++n) {
       if (several_has_stretches(&from[n]) && volumes[n].shows) {
         several_until(&from[n], &volumes[n], since, start, k->live, &going, &until);
       }
     }
     until = v_select(going, until, start);
+#endif
     several_stretch(from, volumes, count, since, start, until, going, k);
+#if SEVERAL_STRETCHES
     mask = mask & k->live & (v_lt(until, stop) | m_andnot(mask, going));
     /* places stay near `since`, so that floats distinguish them */
     const vint whole = vi_select(mask, v_to_int(v_select(mask, until, v_set(0.0f))), vi_set(0));
     since = since + whole;
     start = until - v_from_int(whole);
     stop = v_from_int(vi_set(i) - since);
-  }
 #endif
+  } while (stretches && m_any(mask));
 }
 
 /* Lanes on which a path shows anything. */

@@ -99,7 +99,7 @@ INLINE vmask several_mesh_cell(const several_source* from, several_volume* v, vm
 }
 
 /* Gives the rays of the mask their next stretch, or one beyond everything where none is left. */
-INLINE void several_mesh_next(const several_source* from, several_volume* v, vmask mask)
+OUTLINE void several_mesh_next(const several_source* from, several_volume* v, vmask mask)
 {
   const vfloat zero = v_set(0.0f), beyond = v_set(SEVERAL_BEYOND);
   several_way* next = &v->ways[1 - v->now];

@@ -53,7 +53,7 @@ INLINE vmask several_stop(
 }
 
 /* Compute how light and gradient opacity change the path, by the gradient in its middle. */
-INLINE void several_light(const several_source* from, const several_volume* v, vmask mask, several_way* way)
+OUTLINE void several_light(const several_source* from, const several_volume* v, vmask mask, several_way* way)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
   const stratus_packet* k = &v->k;

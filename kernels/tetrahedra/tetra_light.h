@@ -43,7 +43,7 @@ INLINE vfloat tetra_factor(
 
 /* Component c's light and gradient opacity at a part of the stretch. way: the optical depth over factor_way there, read only where that is
  * not 0. */
-INLINE void tetra_light_at(CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, int c, const stratus_tetra_stretch* s,
+OUTLINE void tetra_light_at(CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, int c, const stratus_tetra_stretch* s,
   vfloat part, vfloat way, vmask mask, stratus_tetra_lit* lit)
 {
   const vfloat z = v_fma(part, s->rise, s->begin), one = v_set(1.0f);
@@ -68,7 +68,7 @@ INLINE void tetra_light_at(CONSTANT stratus_tetra_arguments* a, GLOBAL const flo
 
 /* How much component c's light changes over the stretch, for the number of its pieces. depth: its optical depth. If light changes evenly,
  * the light at the middle of the optical depth is exact, except for the part of the depth that hides itself; if light bends, it is not. */
-INLINE vfloat tetra_light_pieces(
+OUTLINE vfloat tetra_light_pieces(
   CONSTANT stratus_tetra_arguments* a, GLOBAL const float* factors, int c, const stratus_tetra_stretch* s, vfloat depth, vmask mask)
 {
   const vfloat one = v_set(1.0f), zero = v_set(0.0f), most = v_min(depth, one);
