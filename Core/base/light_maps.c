@@ -21,7 +21,8 @@ static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
 #define NEAR_STEPS_LEAST 2
 #define NEAR_STEPS_MOST 16
 #define FAINT 1e-4f /* nodes that add less than this to a picture are not compared */
-#define LINES 32    /* so many rows, columns and layers of a map are compared with a coarser one */
+#define LINES 16    /* a map is compared with so many rows and columns of a finer one, which alone are drawn of that */
+#define LAYERS 32   /* and with so many of its layers from the side */
 /* A map has at most so many words, 64 MiB. NODES_LAST nodes along each side are within it, but not in six faces of a cube. */
 #define WORDS_MOST ((size_t)NODES_LAST * NODES_LAST * NODES_LAST)
 /* A position whose light meets the matter at a greater slope than this, or is in it, has a cube of maps. */
@@ -156,8 +157,19 @@ static bool size_map(map* m, const double sides[3], int nodes)
 
 /* ---- drawing a map */
 
-/* The camera of a face of a map that looks from the light, whose pixels are nodes. Returns whether the face may see any matter. */
-static bool face_camera(const map* m, int face, const double bounds[6], stratus_camera* camera)
+/* The nodes of a face that are drawn: numbers first, first + step, ... across and up. */
+typedef struct lattice {
+  int first[2], step[2], count[2];
+} lattice;
+
+static lattice all_nodes(const map* m)
+{
+  return (lattice){ { 0, 0 }, { 1, 1 }, { m->size[0], m->size[1] } };
+}
+
+/* The camera of a face of a map that looks from the light, whose pixels are nodes of the lattice. Returns whether the face may see any
+ * matter. */
+static bool face_camera(const map* m, int face, const double bounds[6], const lattice* l, stratus_camera* camera)
 {
   const frame* f = &m->frame;
   double basis[3][3], middle[2], half[2];
@@ -173,10 +185,10 @@ static bool face_camera(const map* m, int face, const double bounds[6], stratus_
     }
   }
   *camera = (stratus_camera){ .parallel = !f->perspective };
-  for (int i = 0; i < 2; ++i) { /* the first and the last node are at the ends, and pixels' centres are nodes */
-    const double n = m->size[i];
-    middle[i] = 0.5 * (f->lo[i] + f->hi[i]);
-    half[i] = 0.5 * (f->hi[i] - f->lo[i]) * n / (n - 1.0);
+  for (int i = 0; i < 2; ++i) { /* the map's first and last nodes are at its ends, and pixels' centres are nodes */
+    const double spacing = (f->hi[i] - f->lo[i]) / (m->size[i] - 1.0);
+    middle[i] = f->lo[i] + spacing * (l->first[i] + 0.5 * l->step[i] * (l->count[i] - 1.0));
+    half[i] = 0.5 * spacing * l->step[i] * l->count[i];
   }
   for (int axis = 0; axis < 3; ++axis) {
     const double aside = middle[0] * basis[0][axis] + middle[1] * basis[1][axis];
@@ -211,25 +223,35 @@ static float passing(const map* m, const int32_t* words, int face, const double 
   return (up[0] * (1.0f - part[1]) + up[1] * part[1]) / 65535.0f;
 }
 
-/* A map that is being drawn, and the differences between pictures by it and by a coarser one, if rays pass near matter on each of
- * near_lengths before. */
+/* Nodes of a map that are being drawn. To compare a coarser map with it, the differences between pictures by both, if rays pass near matter
+ * on each of near_lengths before. */
 typedef struct drawing {
   stratus_context* context;
   const stratus_light_matter* matter;
   double goes_on; /* the part of the extinction that light passes as if it were not there */
-  map* map;
+  const map* map;
+  lattice nodes;
   /* of a face: the light that passes to each node at the layers' near sides, one layer after the other, and at the last's far side */
   uint16_t* planes;
-  const map* coarse; /* NULL: none */
+  float *rgba, *passed;
+  int32_t* words;    /* of the map; NULL: it is drawn to be compared */
+  bool column;       /* columns are drawn to compare, else rows */
+  const map* coarse; /* all that follows is set to compare */
   const int32_t* coarse_words;
-  float *rgba, *passed, *along;               /* along: of the view along the light's way, each node's differences so far */
+  float* along;                               /* of the view along the light's way, each node's differences so far */
   double near_layers, squares[NEARS], pixels; /* near_layers: of the finer map, in a near length of the coarser */
 } drawing;
+
+static size_t drawn_nodes(const drawing* d)
+{
+  return (size_t)d->nodes.count[0] * (size_t)d->nodes.count[1];
+}
 
 /* The opacity at a node of the layer that was drawn last. */
 static float opacity_at(const drawing* d, size_t node)
 {
-  return fminf(fmaxf(d->rgba[4 * node + 3], 0.0f), 1.0f);
+  const float opacity = d->rgba[4 * node + 3];
+  return opacity < 1.0f ? opacity > 0.0f ? opacity : 0.0f : 1.0f;
 }
 
 /* The part of light that passes the layer there. */
@@ -242,18 +264,21 @@ static float passes(const drawing* d, size_t node)
 /* The part that passes to a depth, in layers, of a node. */
 static float passed_to(const drawing* d, size_t node, double depth)
 {
-  const size_t nodes = (size_t)d->map->size[0] * (size_t)d->map->size[1], layer = (size_t)depth;
+  const size_t nodes = drawn_nodes(d), layer = (size_t)depth;
   const float part = (float)(depth - (double)layer);
   return ((float)d->planes[layer * nodes + node] * (1.0f - part) + (float)d->planes[(layer + 1) * nodes + node] * part) / 65535.0f;
 }
 
-/* Adds the differences of the coarser map in the middle of a layer, each times `part`. */
+/* Adds the differences of the coarser map at a drawn node in the middle of a layer, each times `part`. */
 static void add_difference(const drawing* d, int face, int x, int y, int layer, float part, float sum[NEARS])
 {
-  const int *n = d->map->size, *c = d->coarse->size;
-  const size_t node = (size_t)y * (size_t)n[0] + (size_t)x;
+  const int *n = d->map->size, *c = d->coarse->size, at[2] = { x, y };
+  const size_t node = (size_t)y * (size_t)d->nodes.count[0] + (size_t)x;
   const float here = d->passed[node] * 0.5f * (1.0f + passes(d, node));
-  double place[3] = { (double)x / (n[0] - 1) * (c[0] - 1), (double)y / (n[1] - 1) * (c[1] - 1), 0.0 };
+  double place[3] = { 0.0, 0.0, 0.0 };
+  for (int i = 0; i < 2; ++i) {
+    place[i] = (double)(d->nodes.first[i] + d->nodes.step[i] * at[i]) / (n[i] - 1) * (c[i] - 1);
+  }
   for (int m = 0; m < (d->matter->step > 0.0 ? NEARS : 1); ++m) {
     const double depth = layer + 0.5 - near_lengths[m] * d->near_layers;
     const float there = m == 0 || depth >= layer ? here : depth > 0.0 ? passed_to(d, node, depth) : 0.0f;
@@ -264,15 +289,15 @@ static void add_difference(const drawing* d, int face, int x, int y, int layer, 
   }
 }
 
-/* Looks at the layer along one of its rows or columns, from both ends. Nodes are as far apart as layers are deep, so that their opacities
- * are the same in all directions. */
+/* Looks at the layer along one of the rows or columns that are drawn, from both ends. Nodes are as far apart as layers are deep, so that
+ * their opacities are the same in all directions. */
 static void look_along(drawing* d, int face, int layer, int line, bool column)
 {
-  const int *n = d->map->size, count = n[column];
+  const int* n = d->nodes.count;
   float left[2] = { 1.0f, 1.0f }, sum[2][NEARS] = { { 0.0f } };
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < n[column]; ++i) {
     for (int back = 0; back < 2; ++back) {
-      const int at = back ? count - 1 - i : i, x = column ? line : at, y = column ? at : line;
+      const int at = back ? n[column] - 1 - i : i, x = column ? line : at, y = column ? at : line;
       const float opacity = opacity_at(d, (size_t)y * (size_t)n[0] + (size_t)x), part = left[back] * opacity;
       if (part > FAINT) {
         add_difference(d, face, x, y, layer, part, sum[back]);
@@ -288,28 +313,27 @@ static void look_along(drawing* d, int face, int layer, int line, bool column)
   }
 }
 
-/* Adds the differences between pictures of a layer, as they are seen from its four sides and from the light: of some rows, columns and
- * nodes. */
+/* Adds the differences between pictures of a layer, as they are seen from two of its sides and, of some nodes, from the light. */
 static void compare_layer(drawing* d, int face, int layer)
 {
-  const int *n = d->map->size, stride = (n[0] > n[1] ? n[0] : n[1]) / LINES + 1;
-  for (int column = 0; column < 2 && layer % stride == 0; ++column) {
-    for (int line = 0; line < n[1 - column]; line += stride) {
-      look_along(d, face, layer, line, column);
-    }
+  const int *n = d->nodes.count, layers = d->map->size[2];
+  const bool column = d->column;
+  for (int line = 0; line < n[1 - column] && layer % (layers / LAYERS + 1) == 0; ++line) {
+    look_along(d, face, layer, line, column);
   }
-  for (int y = 0; y < n[1]; y += stride) {
-    for (int x = 0; x < n[0]; x += stride) {
+  const int stride = d->nodes.step[1 - column];
+  for (int y = 0; y < n[1]; y += column ? stride : 1) {
+    for (int x = 0; x < n[0]; x += column ? 1 : stride) {
       const size_t node = (size_t)y * (size_t)n[0] + (size_t)x;
       float* along = d->along + NEARS * node;
       const float part = d->passed[node] * opacity_at(d, node);
       if (part > FAINT) {
         add_difference(d, face, x, y, layer, part, along);
       }
-      for (int m = 0; m < NEARS && layer + 1 == n[2]; ++m) {
+      for (int m = 0; m < NEARS && layer + 1 == layers; ++m) {
         d->squares[m] += (double)along[m] * (double)along[m];
       }
-      d->pixels += layer + 1 == n[2] && d->passed[node] < 1.0f;
+      d->pixels += layer + 1 == layers && d->passed[node] < 1.0f;
     }
   }
 }
@@ -339,16 +363,38 @@ static void fill_row(const void* data, int y, uint64_t counts[STRATUS_TILE_COUNT
   }
 }
 
-static stratus_status draw_face(drawing* d, int face, int32_t* words)
+/* A layer that was drawn. */
+typedef struct drawn_layer {
+  const drawing* d;
+  uint16_t* plane; /* at its far side */
+} drawn_layer;
+
+static void pass_row(const void* data, int y, uint64_t counts[STRATUS_TILE_COUNTS])
+{
+  const drawn_layer* l = data;
+  const size_t width = (size_t)l->d->nodes.count[0];
+  (void)counts;
+  for (size_t i = (size_t)y * width; i < ((size_t)y + 1) * width; ++i) {
+    l->d->passed[i] *= passes(l->d, i);
+    l->plane[i] = (uint16_t)(l->d->passed[i] * 65535.0f + 0.5f);
+  }
+}
+
+static stratus_status draw_face(drawing* d, int face)
 {
   const map* m = d->map;
-  const int *n = m->size, layers = n[2];
-  const size_t nodes = (size_t)n[0] * (size_t)n[1];
+  const int *n = d->nodes.count, layers = m->size[2];
+  const size_t nodes = drawn_nodes(d);
   const double near = m->frame.lo[2], layer_depth = (m->frame.hi[2] - near) / layers;
   stratus_camera camera;
   const stratus_image image = { .width = n[0], .height = n[1], .rgba = d->rgba };
-  const bool sees = face_camera(m, face, d->matter->bounds, &camera);
-  memset(d->along, 0, NEARS * nodes * sizeof(float));
+  const bool sees = face_camera(m, face, d->matter->bounds, &d->nodes, &camera);
+  if (!d->words) {
+    if (!sees) {
+      return STRATUS_OK;
+    }
+    memset(d->along, 0, NEARS * nodes * sizeof(float));
+  }
   for (size_t i = 0; i < nodes; ++i) {
     d->passed[i] = 1.0f;
     d->planes[i] = 65535;
@@ -362,47 +408,111 @@ static stratus_status draw_face(drawing* d, int face, int32_t* words)
     camera.near_k = near + layer * layer_depth;
     camera.far_k = near + (layer + 1) * layer_depth;
     TRY(d->matter->draw(d->matter->of, &camera, &image, false));
-    if (d->coarse) {
+    if (!d->words) {
       compare_layer(d, face, layer);
     }
-    for (size_t i = 0; i < nodes; ++i) {
-      d->passed[i] *= passes(d, i);
-      plane[i] = (uint16_t)(d->passed[i] * 65535.0f + 0.5f);
-    }
+    uint64_t counts[STRATUS_TILE_COUNTS];
+    const drawn_layer drawn = { d, plane };
+    TRY(stratus_each_tile(d->context, "light", n[1], pass_row, &drawn, counts));
   }
-  uint64_t counts[STRATUS_TILE_COUNTS];
-  const face_words all = { d->planes, n, words + (size_t)face * nodes * (size_t)layers };
-  return stratus_each_tile(d->context, "light", n[1], fill_row, &all, counts);
+  if (d->words) {
+    uint64_t counts[STRATUS_TILE_COUNTS];
+    const face_words all = { d->planes, m->size, d->words + (size_t)face * nodes * (size_t)layers };
+    TRY(stratus_each_tile(d->context, "light", n[1], fill_row, &all, counts));
+  }
+  return STRATUS_OK;
 }
 
-/* Draws a map anew. words: receives its memory. differences: of the coarser one. */
-static stratus_status draw_map(drawing* d, int32_t** words, double differences[NEARS])
+static stratus_status draw_faces(drawing* d)
 {
-  const size_t nodes = (size_t)d->map->size[0] * (size_t)d->map->size[1];
-  void *memory = NULL, *picture = NULL, *planes = NULL;
+  const size_t nodes = drawn_nodes(d);
+  void *picture = NULL, *planes = NULL;
   stratus_status status;
-  TRY_CLEANUP(stratus_allocate(d->context, nodes, (5 + NEARS) * sizeof(float), &picture));
+  TRY_CLEANUP(stratus_allocate(d->context, nodes, (d->words ? 5 : 5 + NEARS) * sizeof(float), &picture));
   TRY_CLEANUP(stratus_allocate(d->context, nodes, ((size_t)d->map->size[2] + 1) * sizeof(uint16_t), &planes));
-  TRY_CLEANUP(stratus_allocate(d->context, map_words(d->map), sizeof(int32_t), &memory));
   d->rgba = picture;
   d->passed = d->rgba + 4 * nodes;
   d->along = d->passed + nodes;
   d->planes = planes;
-  memset(d->squares, 0, sizeof d->squares);
-  d->pixels = 0.0;
   for (int face = 0; face < (d->map->faces > 0 ? d->map->faces : 1); ++face) {
-    TRY_CLEANUP(draw_face(d, face, memory));
+    TRY_CLEANUP(draw_face(d, face));
   }
-  for (int m = 0; m < NEARS; ++m) {
-    differences[m] = d->pixels > 0.0 ? sqrt(d->squares[m] / d->pixels) : 0.0;
-  }
-  *words = memory;
-  memory = NULL;
 cleanup:
   stratus_release(d->context, picture);
   stratus_release(d->context, planes);
-  stratus_release(d->context, memory);
   return status;
+}
+
+/* Draws a map. words: receives its memory. */
+static stratus_status draw_map(stratus_context* context, const stratus_light_matter* matter, double goes_on, const map* m, int32_t** words)
+{
+  void* memory = NULL;
+  TRY(stratus_allocate(context, map_words(m), sizeof(int32_t), &memory));
+  drawing d = { .context = context, .matter = matter, .goes_on = goes_on, .map = m, .nodes = all_nodes(m), .words = memory };
+  const stratus_status status = draw_faces(&d);
+  if (status != STRATUS_OK) {
+    stratus_release(context, memory);
+    return status;
+  }
+  *words = memory;
+  return STRATUS_OK;
+}
+
+/* Sets which of the map's rows or columns are drawn to compare a coarser one with: every so many, from the one on with which they pass the
+ * most matter, so that small things count. */
+static lattice some_lines(const map* m, const map* coarse, const int32_t* coarse_words, bool column)
+{
+  const int across = 1 - column, *c = coarse->size;
+  const size_t layers = (size_t)c[2], face_nodes = (size_t)c[0] * (size_t)c[1], faces = coarse->faces > 0 ? (size_t)coarse->faces : 1;
+  lattice l = all_nodes(m);
+  double most = -1.0;
+  l.step[across] = m->size[across] / LINES + 1;
+  for (int first = 0; first < l.step[across] && first < m->size[across]; ++first) {
+    double absorbed = 0.0;
+    for (int line = first; line < m->size[across]; line += l.step[across]) {
+      const int near = (int)((double)line / (m->size[across] - 1) * (c[across] - 1) + 0.5);
+      for (size_t face = 0; face < faces; ++face) {
+        for (int i = 0; i < c[column]; ++i) {
+          const int x = column ? near : i, y = column ? i : near;
+          const size_t node = face * face_nodes + (size_t)y * (size_t)c[0] + (size_t)x;
+          absorbed += 65535.0 - (double)((uint32_t)coarse_words[node * layers + layers - 1] >> 16);
+        }
+      }
+    }
+    if (absorbed > most) {
+      most = absorbed;
+      l.first[across] = first;
+    }
+  }
+  l.count[across] = (m->size[across] - l.first[across] + l.step[across] - 1) / l.step[across];
+  return l;
+}
+
+/* Draws some rows and columns of a map, and compares a coarser one with them. */
+static stratus_status compare_map(stratus_context* context, const stratus_light_matter* matter, double goes_on, const map* m,
+  const map* coarse, const int32_t* coarse_words, double near_layers, double differences[NEARS])
+{
+  double squares[NEARS] = { 0.0 }, pixels = 0.0;
+  for (int column = 0; column < 2; ++column) {
+    drawing d = { .context = context,
+      .matter = matter,
+      .goes_on = goes_on,
+      .map = m,
+      .nodes = some_lines(m, coarse, coarse_words, column),
+      .column = column,
+      .coarse = coarse,
+      .coarse_words = coarse_words,
+      .near_layers = near_layers };
+    TRY(draw_faces(&d));
+    pixels += d.pixels;
+    for (int i = 0; i < NEARS; ++i) {
+      squares[i] += d.squares[i];
+    }
+  }
+  for (int i = 0; i < NEARS; ++i) {
+    differences[i] = pixels > 0.0 ? sqrt(squares[i] / pixels) : 0.0;
+  }
+  return STRATUS_OK;
 }
 
 static double near_length(const stratus_light_matter* matter, const map* m, double side)
@@ -412,66 +522,61 @@ static double near_length(const stratus_light_matter* matter, const map* m, doub
 
 /* Draws maps of a light, each finer than the one before, until the error that is expected of one keeps the tolerance: of the map alone, or
  * of it where near matter is passed by rays. The difference of two maps is the coarser one's error less the finer one's, and errors fall
- * from map to map as the differences do. */
+ * from map to map as the differences do. Of a finer map only some lines are drawn before it is known that it is wanted. */
 static stratus_status build_map(stratus_context* context, const stratus_light_matter* matter, double goes_on, const stratus_light* light,
   map* m, int32_t** words, double* error)
 {
   double sides[3], last[NEARS] = { 0.0 }, near = 0.0;
   const double most = SHARE * matter->tolerance;
-  map maps[2];
-  int32_t* of[2] = { NULL, NULL };
-  int now = 0;
+  const int nears = matter->step > 0.0 ? NEARS : 1;
   bool kept = false;
   stratus_status status = STRATUS_OK;
-  place_map(light, matter->bounds, &maps[0], sides);
+  place_map(light, matter->bounds, m, sides);
+  (void)size_map(m, sides, NODES_FIRST);
   *error = 0.0;
-  for (int nodes = NODES_FIRST; nodes <= NODES_LAST; nodes *= 2) {
-    drawing d = { .context = context, .matter = matter, .goes_on = goes_on, .map = &maps[now] };
-    double differences[NEARS], finest = INFINITY;
-    if (nodes > NODES_FIRST) {
-      maps[now] = maps[1 - now];
-      d.coarse = &maps[1 - now];
-      d.coarse_words = of[1 - now];
-    }
-    if (!size_map(&maps[now], sides, nodes)) {
-      break;
-    }
-    d.near_layers = d.coarse ? near_length(matter, d.coarse, sides[2]) * maps[now].size[2] / sides[2] : 0.0;
-    TRY_CLEANUP(draw_map(&d, &of[now], differences));
-    const int nears = matter->step > 0.0 ? NEARS : 1;
-    for (int finer = 0; d.coarse && finer < 2 && !kept; ++finer) {
+  TRY(draw_map(context, matter, goes_on, m, words));
+  for (int nodes = 2 * NODES_FIRST; nodes <= NODES_LAST && !kept; nodes *= 2) {
+    map finer = *m;
+    double differences[NEARS], least = INFINITY;
+    bool finer_wanted = false;
+    const bool fits = size_map(&finer, sides, nodes);
+    const double near_layers = near_length(matter, m, sides[2]) * finer.size[2] / sides[2];
+    TRY_CLEANUP(compare_map(context, matter, goes_on, &finer, m, *words, near_layers, differences));
+    for (int of_finer = 0; of_finer < (fits ? 2 : 1) && !kept; ++of_finer) {
+      least = of_finer ? INFINITY : least;
       for (int i = 0; i < nears && !kept; ++i) {
         const double fall = last[i] > 0.0 ? fmin(fmax(differences[i] / last[i], FALL_SMOOTH), FALL_JUMPS) : FALL_JUMPS;
-        const double coarse = differences[i] / (1.0 - fall), expected = finer ? coarse * fall : coarse;
-        const double length = near_lengths[i] * near_length(matter, &maps[finer ? now : 1 - now], sides[2]);
+        const double coarse = differences[i] / (1.0 - fall), expected = of_finer ? coarse * fall : coarse;
+        const double length = near_lengths[i] * near_length(matter, of_finer ? &finer : m, sides[2]);
         if (i > 0 && length > NEAR_STEPS_MOST * matter->step) {
           break;
         }
         kept = expected <= most;
-        if (kept || (finer && expected < finest)) {
-          finest = *error = expected;
+        if (kept || expected < least) {
+          least = *error = expected;
           near = length;
-          now = kept && !finer ? 1 - now : now;
+          finer_wanted = of_finer;
         }
       }
     }
     memcpy(last, differences, sizeof last);
-    if (kept) {
+    if (!fits) {
       break;
     }
-    stratus_release(context, of[1 - now]);
-    of[1 - now] = NULL;
-    now = 1 - now;
+    if (finer_wanted) {
+      stratus_release(context, *words);
+      *words = NULL;
+      *m = finer;
+      TRY_CLEANUP(draw_map(context, matter, goes_on, m, words));
+    }
   }
-  now = kept ? now : 1 - now; /* the last that was drawn */
-  *m = maps[now];
   m->near = near;
   m->near_steps = near > 0.0 ? (int)ceil(near / matter->step) : 0;
-  *words = of[now];
-  of[now] = NULL;
 cleanup:
-  stratus_release(context, of[0]);
-  stratus_release(context, of[1]);
+  if (status != STRATUS_OK) {
+    stratus_release(context, *words);
+    *words = NULL;
+  }
   return status;
 }
 
