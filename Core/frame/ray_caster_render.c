@@ -248,7 +248,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   TRY(stratus_ray_update_structures(caster, options->skipping.structure, times, &used, why, sizeof why, report));
   TRY(stratus_ray_light_update(caster, volume, transfer, camera, options, stratus_ray_render_one, report));
   if (caster->integrator.choice.provisional) {
-    TRY(stratus_ray_probe(caster, volume, options, report));
+    TRY(stratus_ray_probe(caster, volume, camera, options, report));
   }
   TRY(stratus_ray_frame_arguments(
     caster, camera, options, image, caster->integrator.choice.sample_distance, caster->integrator.choice.follows, &arguments, &empty));

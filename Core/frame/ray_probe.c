@@ -3,6 +3,7 @@
  * keeps the tolerance. No statistics are asked, so that whatever a picture shows, colour and light included, counts by itself. */
 #include "ray_probe.h"
 
+#include "lights.h"
 #include "picture.h"
 #include "ray_cast_host.h"
 #include "ray_fetched.h"
@@ -605,8 +606,8 @@ static void keep_last(stratus_ray_caster* caster, const stratus_ray_cast_options
   stratus_log(caster->context, STRATUS_LOG_WARNING, "no memory to measure what the tolerance needs: the last setting stays");
 }
 
-stratus_status stratus_ray_probe(
-  stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options, stratus_ray_cast_report* report)
+stratus_status stratus_ray_probe(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_camera* camera,
+  const stratus_ray_cast_options* options, stratus_ray_cast_report* report)
 {
   const double start = stratus_now_ms();
   probe p = { .caster = caster, .volume = volume, .options = options, .whole = *options, .voxel = stratus_ray_voxel_length(volume) };
@@ -618,6 +619,10 @@ stratus_status stratus_ray_probe(
   p.lit = caster->optics.shades && stratus_ray_can_sample(caster, options, STRATUS_SAMPLING_CELLS) &&
     (options->sampling.rule == STRATUS_SAMPLING_AUTO || stratus_ray_visits_cells(options->sampling.rule));
   p.whole.clipping.crop = p.whole.clipping.clip_plane_count = p.whole.sampling.jitter = 0;
+  if (caster->optics.lights) {
+    stratus_shading* shading = &p.whole.light.shading;
+    shading->light_count = stratus_lights_in_world(camera, &options->light.shading, shading->lights);
+  }
   caster->tried[0] = '\0';
   stratus_status status = stratus_ray_probe_rays(caster, p.patches, &p.count, &p.classes);
   if (status == STRATUS_OK && p.count > 0) {

@@ -93,7 +93,7 @@ static stratus_status update_volume(stratus_several* s, stratus_several_input* i
     snprintf(in->why, sizeof in->why, "%s: several volumes are not timed apart", stratus_structure_name(in->used));
   }
   if (caster->integrator.choice.provisional) {
-    TRY(stratus_ray_probe(caster, in->of->volume, &in->options, &in->report));
+    TRY(stratus_ray_probe(caster, in->of->volume, s->camera, &in->options, &in->report));
   }
   return STRATUS_OK;
 }

@@ -294,6 +294,30 @@ static void maps_are_built_when_they_are_stale(void** state)
   stratus_context_destroy(context);
 }
 
+/* A light that moves with the camera has shadows where it is, and is probed there: thick matter then needs light at nearby places. */
+static void lights_that_follow_the_camera_are_probed_with_their_shadows(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  make_ball(context, &c);
+  stratus_light* light = &c.options.light.shading.lights[0];
+  c.options.light.shading.scattering = 1.0;
+  c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
+  *light = (stratus_light){ .vector = { 0, 0, 1 }, .color = { 1, 1, 1 }, .follows_camera = 1 };
+  case_render(context, &c, &drawn);
+  *light = (stratus_light){ .color = { 1, 1, 1 } };
+  for (int axis = 0; axis < 3; ++axis) {
+    light->vector[axis] = -c.camera.forward[axis];
+  }
+  case_render(context, &c, &other);
+  print_message("             light spread %g, %g if it stands still\n", drawn.report.light_spread, other.report.light_spread);
+  assert_true(drawn.report.light_spread == other.report.light_spread);
+  assert_true(reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS) > 80.0);
+  case_destroy(&c);
+  stratus_context_destroy(context);
+}
+
 /* Structures, instruction sets and threads change no bit. */
 static void pictures_with_shadows_are_the_same_however_they_are_made(void** state)
 {
@@ -678,6 +702,7 @@ int test_ray_light_maps(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(maps_are_built_when_they_are_stale),
+    cmocka_unit_test(lights_that_follow_the_camera_are_probed_with_their_shadows),
     cmocka_unit_test(pictures_with_shadows_are_the_same_however_they_are_made),
     cmocka_unit_test(matter_shadows_other_volumes),
     cmocka_unit_test(maps_of_several_are_of_their_data),
