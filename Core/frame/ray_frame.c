@@ -194,6 +194,18 @@ static double border_of(const stratus_ray_caster* caster, int axis, int64_t cell
                                   : (double)cell - (caster->field.traversed.cell_centered ? 0.5 : 0.0);
 }
 
+/* Returns where gradients begin to lack neighbours beside a border that another piece is behind, in the coordinates of rays. owned: the
+ * border of what the piece owns, which gradients cover in any case. side: 0: below, 1: above. */
+static double lit_border(const stratus_ray_caster* caster, int axis, int side, int64_t cells, double owned)
+{
+  const int64_t outer = side ? cells - 1 : 1; /* the border between the outermost cell and the next */
+  double border = border_of(caster, axis, outer);
+  if (caster->field.traversed.cell_centered) { /* the next cell's centre */
+    border = 0.5 * (border + border_of(caster, axis, outer + (side ? -1 : 1)));
+  }
+  return side ? fmax(border, owned) : fmin(border, owned);
+}
+
 /* Sets the part that this piece of a larger volume draws. Returns false if it owns nothing. */
 static bool set_piece(const stratus_ray_caster* caster, stratus_ray_cast_arguments* a)
 {
@@ -202,8 +214,12 @@ static bool set_piece(const stratus_ray_caster* caster, stratus_ray_cast_argumen
   a->crop.has_piece = !caster->field.owns_all;
   for (int axis = 0; axis < 3; ++axis) {
     const int64_t cells = volume->dimensions[axis] - (volume->cell_centered ? 0 : 1);
-    a->crop.piece[0][axis] = stratus_pair_of(lo[axis] > 0 ? border_of(caster, axis, lo[axis]) : -(double)UNBOUNDED);
-    a->crop.piece[1][axis] = stratus_pair_of(hi[axis] < cells ? border_of(caster, axis, hi[axis]) : (double)UNBOUNDED);
+    const bool others[2] = { lo[axis] > 0, hi[axis] < cells };
+    for (int side = 0; side < 2; ++side) {
+      const double owned = others[side] ? border_of(caster, axis, side ? hi[axis] : lo[axis]) : (side ? 1.0 : -1.0) * (double)UNBOUNDED;
+      a->crop.piece[side][axis] = stratus_pair_of(owned);
+      a->crop.lit[side][axis] = (float)(others[side] && cells > 2 ? lit_border(caster, axis, side, cells, owned) : owned);
+    }
     if (lo[axis] >= hi[axis]) {
       return false;
     }

@@ -5,6 +5,7 @@
 #include "vtkStratusGather.h"
 #include "vtkStratusLODVolume.h"
 #include "vtkStratusMultiBlockVolumeMapper.h"
+#include "vtkStratusPanelLight.h"
 #include "vtkStratusPanelUpdate.h"
 #include "vtkStratusRankWhole.h"
 #include "vtkStratusRanks.h"
@@ -38,6 +39,8 @@
 namespace {
 // Rank 0 takes pieces of up to so many bytes to ask which step a picture of the whole needs.
 constexpr vtkIdType WHOLE_BYTES = vtkIdType(1) << 28;
+// Gradients at places in the first cell beyond a piece take values of the second.
+constexpr int GHOST_LEVELS = 2;
 
 double mean_spacing(const double bounds[6], const double extent[6])
 {
@@ -51,7 +54,8 @@ double mean_spacing(const double bounds[6], const double extent[6])
 
 vtkStandardNewMacro(vtkStratusVolumeRepresentation);
 
-vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation() : Solid(new stratus::SolidColor), Panel(new stratus::PanelUpdate)
+vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation()
+    : Solid(new stratus::SolidColor), Panel(new stratus::PanelUpdate), Light(new stratus::PanelLight)
 {
   this->VolumeMapper = vtkSmartPointer<vtkStratusMultiBlockVolumeMapper>::New();
   this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
@@ -83,7 +87,7 @@ int vtkStratusVolumeRepresentation::RequestUpdateExtent(vtkInformation* request,
 {
   const int done = this->Superclass::RequestUpdateExtent(request, input, output);
   if (stratus::count_ranks() > 1 && input[0]->GetNumberOfInformationObjects() == 1) {
-    input[0]->GetInformationObject(0)->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 1);
+    input[0]->GetInformationObject(0)->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), GHOST_LEVELS);
   }
   return done;
 }
@@ -174,8 +178,8 @@ void vtkStratusVolumeRepresentation::ReportProblem(vtkMultiProcessController* ra
 {
   const std::string failed = this->Actor->GetVisibility() ? this->GetMapper()->GetLastError() : "";
   const bool hits = this->GetSettings()->GetRenderMode() == vtkStratusVolumeMapper::FIRST_HIT_MODE;
-  const std::string mine =
-    stratus::choose_words(ranks, failed, this->Problem, this->Refusal, hits ? 0 : this->VolumeMapper->GetBlendMode());
+  const std::string mine = stratus::choose_words(
+    ranks, failed, this->Problem, this->Refusal, hits ? 0 : this->VolumeMapper->GetBlendMode(), this->Light->IsLeftOut());
   const std::string words = stratus::join_words(ranks, mine, this->Reported);
   if (!words.empty()) {
     vtkErrorMacro(<< words);
@@ -500,6 +504,8 @@ void vtkStratusVolumeRepresentation::SetTermination(double opacity)
 {
   this->GetSettings()->SetTermination(opacity);
 }
+
+STRATUS_PANEL_LIGHT(vtkStratusVolumeRepresentation, this->GetSettings())
 
 void vtkStratusVolumeRepresentation::SetDevice(const char* device)
 {

@@ -68,7 +68,9 @@ def shade(view, shown):
 
 
 def strict(view, shown):
-    shown.StratusCellsImageErrorTolerance = 0.0001
+    for name in "StratusImageErrorTolerance", "StratusCellsImageErrorTolerance":
+        if name in shown.ListProperties():
+            setattr(shown, name, 0.0001)
 
 
 def hit(view, shown):
@@ -124,11 +126,12 @@ def after_another(view, shown):
             raise SystemExit(f"both steps in time are drawn at a distance of {used[0]}")
 
 
-SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POINTS", [shade]), ("image-crop", "even.vti", "POINTS", [crop]),
+SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POINTS", [shade]), ("image-shade-strict", "even.vti", "POINTS", [shade, strict]), ("image-crop", "even.vti", "POINTS", [crop]),
           ("image-opaque", "even.vti", "POINTS", [opaque]), ("image-background", "even.vti", "POINTS", [opaque, background]),
           ("image-translucent", "even.vti", "POINTS", [translucent]), ("image-cells", "boxes.vti", "CELLS", []),
           ("image-solid", "even.vti", "POINTS", [never_coloured]), ("two-cells", "two.vti", "POINTS", [close]),
           ("rectilinear", "levels.vtr", "POINTS", []), ("rectilinear-shade", "levels.vtr", "POINTS", [shade]),
+          ("rectilinear-shade-strict", "levels.vtr", "POINTS", [shade, strict]),
           ("blocks", "parts.vtm", "POINTS", []), ("refined", "refined.vthb", "CELLS", []), ("structured", "hills.vts", "POINTS", []),
           ("structured-shade", "hills.vts", "POINTS", [shade]), ("structured-shade-strict", "hills.vts", "POINTS", [shade, strict]),
           ("structured-translucent", "hills.vts", "POINTS", [translucent]), ("image-hit", "even.vti", "POINTS", [hit]),
@@ -139,12 +142,13 @@ SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POIN
           ("image-series", "even.vti", "POINTS", [after_another]),
           ("unstructured-shade", "cells.vtu", "POINTS", [shade, strict]), ("unstructured-isosurface", "cells.vtu", "POINTS", [isosurface]),
           ("unstructured", "cells.vtu", "POINTS", []), ("unstructured-opaque", "cells.vtu", "POINTS", [opaque])]
-# By how much more than 1 scenes may differ, and in how many pixels. A mesh's light is integrated by as many pieces a cell as the tolerance
+# By how much more than 1 scenes may differ, and in how many pixels. A border cuts the part of a ray through an image that is lit at one
+# place, so that its light is computed at two; at a strict tolerance, by which such parts are short, pictures are within 1. A mesh's light is integrated by as many pieces a cell as the tolerance
 # needs, and a cell that a border cuts in two parts: pictures of 1 and 4 ranks are within 1 of the picture of a strict tolerance, on either
 # side of it in two pixels. A ray passes an image's isosurface of value .5 where the field rises to .5 less 1.4e-7 (in doubles), which is
 # the rounding of floats: one rank meets the surface twice there, and pieces, whose points have other numbers, don't. By a second array, one
 # pixel differs by 2 on 2 and 4 ranks for a reason that is not known.
-MORE = {"structured-shade": (2, 2), "image-isosurface": (43, 1), "image-isosurface-shade": (34, 1),
+MORE = {"image-shade": (2, 6), "structured-shade": (2, 2), "image-isosurface": (43, 1), "image-isosurface-shade": (34, 1),
         "rectilinear-second-array": (2, 1)}
 wanted = sys.argv[3:]
 

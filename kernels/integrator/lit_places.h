@@ -83,12 +83,6 @@ INLINE void lit_begin(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k)
   p->limit = v_set(a->lattice.light_spread) * voxels;
   p->gap = voxels * v_inverse_root(v_max(voxels, v_set(1e-30f)));
   p->reach = zero;
-  p->from = v_set(-LARGEST_FLOAT);
-  p->to = v_set(LARGEST_FLOAT);
-  if (RAY_RARE(RAY_PIECE, a->crop.has_piece)) { /* beyond the first and the last segment's middle gradients may lack neighbours */
-    p->from = v_from_int(k->i) + v_set(0.5f);
-    p->to = v_max(v_from_int(k->last) - v_set(0.5f), p->from);
-  }
   p->weight = p->first = p->second = p->origin = zero;
   p->count = 0;
   for (int c = 0; c < 3; ++c) { /* lanes without an entry read some place, too */
@@ -121,10 +115,10 @@ INLINE void lit_queue(float* queue, vmask mask, const int* lanes, int count, vfl
 }
 
 /* Closes the open bundles of the lanes in `mask`, which have these colours. The queue must have fewer entries than a packet has lanes. */
-INLINE void lit_close(stratus_packet* k, vmask mask, vfloat red, vfloat green, vfloat blue)
+INLINE void lit_close(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k, vmask mask, vfloat red, vfloat green, vfloat blue)
 {
   stratus_lit_places* p = &k->places;
-  const vfloat mean = v_fma(p->first, v_reciprocal(v_max(p->weight, v_set(1e-30f))), p->origin), place = v_min(v_max(mean, p->from), p->to);
+  const vfloat place = v_fma(p->first, v_reciprocal(v_max(p->weight, v_set(1e-30f))), p->origin);
 #if !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
   const int count = m_count(mask);
   _mm512_storeu_si512(p->lane + p->count, _mm512_maskz_compress_epi32(mask, (__m512i)vi_lanes()));
@@ -137,7 +131,11 @@ INLINE void lit_close(stratus_packet* k, vmask mask, vfloat red, vfloat green, v
   }
 #endif
   for (int c = 0; c < 3; ++c) {
-    lit_queue(p->x[c] + p->count, mask, p->lane + p->count, count, v_fma(place, k->d[c], k->p[c]));
+    vfloat x = v_fma(place, k->d[c], k->p[c]);
+    if (RAY_RARE(RAY_PIECE, a->crop.has_piece)) {
+      x = v_min(v_max(x, v_set(a->crop.lit[0][c])), v_set(a->crop.lit[1][c]));
+    }
+    lit_queue(p->x[c] + p->count, mask, p->lane + p->count, count, x);
     lit_queue(p->d[c] + p->count, mask, p->lane + p->count, count, k->d[c]);
   }
   lit_queue(p->color[0] + p->count, mask, p->lane + p->count, count, red);
@@ -204,7 +202,7 @@ INLINE void RAY_NAME(lit_pass)(CONSTANT stratus_ray_cast_arguments* a, value_sou
   const vfloat spread = v_fma(first * v_reciprocal(v_max(sum, v_set(1e-30f))), zero - first, second);
   const vmask closes = mask & open & (v_lt(p->limit, spread) | v_lt(p->reach + p->gap, s->begin));
   if (m_any(closes)) {
-    lit_close(k, closes, before->red, before->green, before->blue);
+    lit_close(a, k, closes, before->red, before->green, before->blue);
     k->red = v_select(closes, k->red - before->red, k->red);
     k->green = v_select(closes, k->green - before->green, k->green);
     k->blue = v_select(closes, k->blue - before->blue, k->blue);
@@ -227,7 +225,7 @@ INLINE void RAY_NAME(lit_end)(
   CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, GLOBAL const void* table, stratus_packet* k)
 {
   stratus_lit_places* p = &k->places;
-  lit_close(k, v_lt(v_set(0.0f), p->weight), k->red, k->green, k->blue);
+  lit_close(a, k, v_lt(v_set(0.0f), p->weight), k->red, k->green, k->blue);
   while (p->count > 0) {
     RAY_NAME(lit_shade)(a, values, hidden, table, k);
   }

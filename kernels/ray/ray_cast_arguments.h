@@ -101,6 +101,7 @@ typedef struct stratus_ray_lattice {
 typedef struct stratus_ray_crop {
   stratus_pair box[2][3];   /* bounds, crop included, drawn in by a hair so that rounding keeps every sample inside */
   stratus_pair piece[2][3]; /* the part that this piece owns: a segment belongs to it if its middle does */
+  float lit[2][3];          /* has_piece: the part in which gradients have all neighbours, and at least what the piece owns */
   stratus_pair clip[STRATUS_CLIP_MAX][4];
   stratus_pair plane[3][2];
   int clip_count, has_piece;

@@ -18,7 +18,6 @@
 typedef struct stratus_lit_places {
   vfloat limit, gap;                    /* the largest spread of a bundle, in squares of samples, and the widest gap in it, a voxel */
   vfloat reach;                         /* where the last stretch ended */
-  vfloat from, to;                      /* places are between these: of a piece of a volume, in its own part */
   vfloat weight, first, second, origin; /* of the open bundles: their opacity, and the moments of their places about `origin` */
   float lit[3][STRATUS_WIDTH];          /* each ray's colours with light */
   float x[3][LIT_QUEUE], d[3][LIT_QUEUE], color[3][LIT_QUEUE], opacity[LIT_QUEUE]; /* closed bundles: place, and direction of the ray */
