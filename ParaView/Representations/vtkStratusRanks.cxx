@@ -127,8 +127,8 @@ std::string stratus::join_words(vtkMultiProcessController* controller, const std
   return joined;
 }
 
-std::string stratus::choose_words(
-  vtkMultiProcessController* controller, const std::string& failed, const std::string& problem, const std::string& refusal, int mode)
+std::string stratus::choose_words(vtkMultiProcessController* controller, const std::string& failed, const std::string& problem,
+  const std::string& refusal, int mode, bool dark)
 {
   const bool projects = mode >= vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND && mode <= vtkVolumeMapper::ADDITIVE_BLEND;
   if (!failed.empty()) {
@@ -137,9 +137,12 @@ std::string stratus::choose_words(
   if (!problem.empty() || !refusal.empty()) {
     return problem.empty() ? refusal : problem;
   }
-  return projects && controller->GetLocalProcessId() == 0
-    ? "each rank shows the maximum, minimum, average or sum of its own part of a ray, laid over the others, not of the whole ray"
-    : "";
+  if (controller->GetLocalProcessId() > 0) {
+    return "";
+  }
+  return dark  ? "several ranks draw without shadows and scattered light, because each has only its own part of the matter"
+    : projects ? "each rank shows the maximum, minimum, average or sum of its own part of a ray, laid over the others, not of the whole ray"
+               : "";
 }
 
 std::string stratus::judge_parts(vtkMultiProcessController* controller, const double mine[6])

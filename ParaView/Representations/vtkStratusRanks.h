@@ -38,9 +38,10 @@ std::string agree_on_array(vtkMultiProcessController* controller, const std::str
 std::string join_words(vtkMultiProcessController* controller, const std::string& mine, std::string& last);
 
 // Returns what a rank has to say: why its picture failed, else what is wrong with its part, else which device was refused, else, on rank 0,
-// that projections of several ranks don't join. mode: one of vtkVolumeMapper's blend modes.
-std::string choose_words(
-  vtkMultiProcessController* controller, const std::string& failed, const std::string& problem, const std::string& refusal, int mode);
+// that shadows are left out, or that projections of several ranks don't join. mode: one of vtkVolumeMapper's blend modes; dark: whether
+// shadows are left out.
+std::string choose_words(vtkMultiProcessController* controller, const std::string& failed, const std::string& problem,
+  const std::string& refusal, int mode, bool dark);
 
 // Returns the fault of this rank's part, or "": that it overlaps the part of a rank behind it, or, on rank 0, that parts leave gaps. The
 // bounds may be uninitialized. Every rank must call it.

@@ -3,6 +3,7 @@
 
 #include "vtkStratusCompositePass.h"
 #include "vtkStratusLODVolume.h"
+#include "vtkStratusPanelLight.h"
 #include "vtkStratusPanelUpdate.h"
 #include "vtkStratusRankCells.h"
 #include "vtkStratusRanks.h"
@@ -54,7 +55,8 @@ vtkSmartPointer<vtkDataObject> Copy(vtkDataObject* data)
 
 vtkStandardNewMacro(vtkStratusTetrahedraRepresentation);
 
-vtkStratusTetrahedraRepresentation::vtkStratusTetrahedraRepresentation() : Solid(new stratus::SolidColor), Panel(new stratus::PanelUpdate)
+vtkStratusTetrahedraRepresentation::vtkStratusTetrahedraRepresentation()
+    : Solid(new stratus::SolidColor), Panel(new stratus::PanelUpdate), Light(new stratus::PanelLight)
 {
   this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
   this->Actor->SetProperty(this->Property);
@@ -209,7 +211,8 @@ void vtkStratusTetrahedraRepresentation::ReportProblem(vtkMultiProcessController
 {
   const bool drawn = this->Actor->GetVisibility() && this->Actor->GetMapper() == this->Mapper;
   const std::string failed = drawn ? this->Mapper->GetLastError() : "";
-  const std::string mine = stratus::choose_words(ranks, failed, this->Problem, this->Refusal, this->Mapper->GetBlendMode());
+  const std::string mine =
+    stratus::choose_words(ranks, failed, this->Problem, this->Refusal, this->Mapper->GetBlendMode(), this->Light->IsLeftOut());
   const std::string words = stratus::join_words(ranks, mine, this->Reported);
   if (!words.empty()) {
     vtkErrorMacro(<< words);
@@ -325,6 +328,8 @@ void vtkStratusTetrahedraRepresentation::SetTermination(double opacity)
 {
   this->Mapper->SetTermination(opacity);
 }
+
+STRATUS_PANEL_LIGHT(vtkStratusTetrahedraRepresentation, this->Mapper.Get())
 
 void vtkStratusTetrahedraRepresentation::SetDevice(const char* device)
 {

@@ -29,6 +29,7 @@ class vtkPiecewiseFunction;
 class vtkPolyDataMapper;
 class vtkStratusTetrahedraMapper;
 namespace stratus {
+struct PanelLight;
 class PanelUpdate;
 class SolidColor;
 } // namespace stratus
@@ -64,6 +65,19 @@ public:
   void SetImageErrorTolerance(double tolerance);
   void SetTermination(double opacity);
   void SetDevice(const char* device);
+  //@}
+
+  //@{
+  /**
+   * Forwarded to the mapper: light that passes through matter. Several ranks draw without, and rank 0 says so.
+   */
+  void SetShadows(bool on);
+  void SetScattering(double blending);
+  void SetScatteringAnisotropy(double anisotropy);
+  void SetMultipleScattering(bool on);
+  void SetSkyZenith(double red, double green, double blue);
+  void SetSkyHorizon(double red, double green, double blue);
+  void SetSkyUp(double x, double y, double z);
   //@}
 
   //@{
@@ -123,6 +137,7 @@ private:
 
   std::unique_ptr<stratus::SolidColor> Solid;
   std::unique_ptr<stratus::PanelUpdate> Panel;
+  std::unique_ptr<stratus::PanelLight> Light;
   vtkNew<vtkStratusTetrahedraMapper> Mapper;
   vtkNew<vtkPolyDataMapper> OutlineMapper;
   vtkSmartPointer<vtkDataObject> Cache; // what of the input this rank has

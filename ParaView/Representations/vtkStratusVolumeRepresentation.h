@@ -32,6 +32,7 @@ class vtkRenderer;
 class vtkStratusMultiBlockVolumeMapper;
 class vtkStratusVolumeMapper;
 namespace stratus {
+struct PanelLight;
 class PanelUpdate;
 class SolidColor;
 } // namespace stratus
@@ -84,6 +85,19 @@ public:
 
   //@{
   /**
+   * Forwarded to the mapper: light that passes through matter. Several ranks draw without, and rank 0 says so.
+   */
+  void SetShadows(bool on);
+  void SetScattering(double blending);
+  void SetScatteringAnisotropy(double anisotropy);
+  void SetMultipleScattering(bool on);
+  void SetSkyZenith(double red, double green, double blue);
+  void SetSkyHorizon(double red, double green, double blue);
+  void SetSkyUp(double x, double y, double z);
+  //@}
+
+  //@{
+  /**
    * Get what the last picture took on this rank: numbers of all blocks together, and how the first block was drawn. Milliseconds are those
    * of casting rays. The sample distance is 0 where rays go from cell to cell, which takes no step.
    */
@@ -129,6 +143,7 @@ private:
 
   std::unique_ptr<stratus::SolidColor> Solid;
   std::unique_ptr<stratus::PanelUpdate> Panel;
+  std::unique_ptr<stratus::PanelLight> Light;
   int BlendMode = 0;
   int Projection = 0;
   int Sampling = 0; // of the user, as are the next two

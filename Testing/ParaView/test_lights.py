@@ -61,7 +61,38 @@ for side, x in ("rising", -100), ("falling", 123):  # the value along the rays
         seen = shot(view, f"ramp-{side}-{name.replace(' ', '-')}").reshape(200, 200, 3)[100, 100]
         print(f"{side}, {name}: {255 * seen[0]:.0f} of 255, expected {255 * expected:.1f}")
         check(abs(seen - expected).max() * 255 < 1.5, f"{side}: {name} is lit as the formula says")
+# Of a light at the eye, half reaches even, thick matter that the eye sees: both ways have the same optical depth.
+view.UseLight = 0
+lamp = simple.AddLight(view=view)
+lamp.Coords, lamp.Position, lamp.FocalPoint = "Camera", [0, 0, 1], [0, 0, 0]
+lamp.Intensity = 0.3
+shadowed = scattered = lamp.Intensity * COLOR / 2
 simple.Hide(shown.Input, view)
+cells = simple.Tetrahedralize(Input=shown.Input)
+grid = simple.Show(cells, view, "UnstructuredGridRepresentation")
+simple.ColorBy(grid, ("POINTS", "ramp"))
+grid.SetRepresentationType("Stratus Volume")
+grid.StratusCellsShade, grid.Ambient, grid.Diffuse, grid.Specular = 1, 0, 1, 0
+simple.Hide(cells, view)
+for kind, display, source, prefix in ("image", shown, shown.Input, "Stratus"), ("cells", grid, cells, "StratusCells"):
+    simple.Show(source, view)
+    display.SetRepresentationType("Stratus Volume")
+    display.StratusUnitDistance = 4
+    setattr(display, prefix + "ImageErrorTolerance", 0.002)
+    light = []
+    for name, changes, expected in (("shadows", dict(Shadows=1), shadowed), ("scattered", dict(Scattering=2), scattered),
+                                    ("again", dict(MultipleScattering=1), None), ("sky", dict(SkyZenith=[0, 0, 0.2], SkyHorizon=[0, 0, 0.2]), None)):
+        for change, value in changes.items():
+            setattr(display, prefix + change, value)
+        light.append(shot(view, f"ramp-{kind}-{name}").reshape(200, 200, 3)[100, 100])
+        print(f"{kind}, {name}: {255 * light[-1][0]:.1f} of 255" + (f", expected {255 * expected:.1f}" if expected else ""))
+        check(expected is None or abs(light[-1] - expected).max() * 255 < 2, f"{kind}: {name} follows the formula")
+    check(light[2].min() > light[1].min() + 0.05, f"{kind}: light that is scattered again adds to that which is scattered once")
+    check(light[3][2] > light[2][2] + 0.05 and abs(light[3] - light[2])[0] < 0.01,
+          f"{kind}: a blue sky lights blue")
+    simple.Hide(source, view)
+simple.RemoveLight(lamp)
+view.UseLight = 1
 sheet = simple.Show(simple.Plane(Origin=[20, 0, 0], Point1=[20, 23, 0], Point2=[20, 0, 23]), view)
 sheet.Ambient, sheet.Diffuse, sheet.Specular = 0, 1, 0
 sheet.AmbientColor = sheet.DiffuseColor = 3 * [COLOR]
