@@ -155,8 +155,10 @@ cloud::cloud(const options& o, const series* in)
 void cloud::find_air(const series& in)
 {
   for (const variable_name& one : in.names()) {
-    for (const auto& known : { std::make_pair("air_density", &this->Density), std::make_pair("air_pressure", &this->Pressure),
-           std::make_pair("air_temperature", &this->Temperature) }) {
+    using known_name = std::pair<const char*, std::string*>;
+    const known_name all[] = { { "air_density", &this->Density }, { "air_pressure", &this->Pressure },
+      { "air_temperature", &this->Temperature } };
+    for (const known_name& known : all) {
       if (one.standard_name == known.first && known.second->empty()) {
         *known.second = one.name;
       }
