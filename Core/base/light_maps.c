@@ -21,8 +21,8 @@ static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
 #define NEAR_STEPS_LEAST 2
 #define NEAR_STEPS_MOST 16
 #define FAINT 1e-4f /* nodes that add less than this to a picture are not compared */
-#define LINES 16    /* a map is compared with so many rows and columns of a finer one, which alone are drawn of that */
-#define LAYERS 32   /* and with so many of its layers from the side */
+#define LINES 16    /* a map is compared with so many rows and columns of a finer one; only these are drawn of that */
+#define LAYERS 32   /* and so many of its layers are compared from the side */
 /* A map has at most so many words, 64 MiB. NODES_LAST nodes along each side are within it, but not in six faces of a cube. */
 #define WORDS_MOST ((size_t)NODES_LAST * NODES_LAST * NODES_LAST)
 /* A position whose light meets the matter at a greater slope than this, or is in it, has a cube of maps. */
@@ -363,23 +363,6 @@ static void fill_row(const void* data, int y, uint64_t counts[STRATUS_TILE_COUNT
   }
 }
 
-/* A layer that was drawn. */
-typedef struct drawn_layer {
-  const drawing* d;
-  uint16_t* plane; /* at its far side */
-} drawn_layer;
-
-static void pass_row(const void* data, int y, uint64_t counts[STRATUS_TILE_COUNTS])
-{
-  const drawn_layer* l = data;
-  const size_t width = (size_t)l->d->nodes.count[0];
-  (void)counts;
-  for (size_t i = (size_t)y * width; i < ((size_t)y + 1) * width; ++i) {
-    l->d->passed[i] *= passes(l->d, i);
-    l->plane[i] = (uint16_t)(l->d->passed[i] * 65535.0f + 0.5f);
-  }
-}
-
 static stratus_status draw_face(drawing* d, int face)
 {
   const map* m = d->map;
@@ -411,9 +394,11 @@ static stratus_status draw_face(drawing* d, int face)
     if (!d->words) {
       compare_layer(d, face, layer);
     }
-    uint64_t counts[STRATUS_TILE_COUNTS];
-    const drawn_layer drawn = { d, plane };
-    TRY(stratus_each_tile(d->context, "light", n[1], pass_row, &drawn, counts));
+#pragma omp parallel for num_threads(d->context->threads)
+    for (size_t i = 0; i < nodes; ++i) {
+      d->passed[i] *= passes(d, i);
+      plane[i] = (uint16_t)(d->passed[i] * 65535.0f + 0.5f);
+    }
   }
   if (d->words) {
     uint64_t counts[STRATUS_TILE_COUNTS];
@@ -522,7 +507,8 @@ static double near_length(const stratus_light_matter* matter, const map* m, doub
 
 /* Draws maps of a light, each finer than the one before, until the error that is expected of one keeps the tolerance: of the map alone, or
  * of it where near matter is passed by rays. The difference of two maps is the coarser one's error less the finer one's, and errors fall
- * from map to map as the differences do. Of a finer map only some lines are drawn before it is known that it is wanted. */
+ * from map to map as the differences do. Of a finer map only some lines are drawn before it is known that it is wanted. words: receives
+ * the map's memory, also if a finer one fails. */
 static stratus_status build_map(stratus_context* context, const stratus_light_matter* matter, double goes_on, const stratus_light* light,
   map* m, int32_t** words, double* error)
 {
@@ -530,20 +516,19 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
   const double most = SHARE * matter->tolerance;
   const int nears = matter->step > 0.0 ? NEARS : 1;
   bool kept = false;
-  stratus_status status = STRATUS_OK;
   place_map(light, matter->bounds, m, sides);
   (void)size_map(m, sides, NODES_FIRST);
   *error = 0.0;
   TRY(draw_map(context, matter, goes_on, m, words));
   for (int nodes = 2 * NODES_FIRST; nodes <= NODES_LAST && !kept; nodes *= 2) {
     map finer = *m;
-    double differences[NEARS], least = INFINITY;
+    double differences[NEARS];
     bool finer_wanted = false;
     const bool fits = size_map(&finer, sides, nodes);
     const double near_layers = near_length(matter, m, sides[2]) * finer.size[2] / sides[2];
-    TRY_CLEANUP(compare_map(context, matter, goes_on, &finer, m, *words, near_layers, differences));
+    TRY(compare_map(context, matter, goes_on, &finer, m, *words, near_layers, differences));
     for (int of_finer = 0; of_finer < (fits ? 2 : 1) && !kept; ++of_finer) {
-      least = of_finer ? INFINITY : least;
+      double least = INFINITY;
       for (int i = 0; i < nears && !kept; ++i) {
         const double fall = last[i] > 0.0 ? fmin(fmax(differences[i] / last[i], FALL_SMOOTH), FALL_JUMPS) : FALL_JUMPS;
         const double coarse = differences[i] / (1.0 - fall), expected = of_finer ? coarse * fall : coarse;
@@ -567,17 +552,12 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
       stratus_release(context, *words);
       *words = NULL;
       *m = finer;
-      TRY_CLEANUP(draw_map(context, matter, goes_on, m, words));
+      TRY(draw_map(context, matter, goes_on, m, words));
     }
   }
   m->near = near;
   m->near_steps = near > 0.0 ? (int)ceil(near / matter->step) : 0;
-cleanup:
-  if (status != STRATUS_OK) {
-    stratus_release(context, *words);
-    *words = NULL;
-  }
-  return status;
+  return STRATUS_OK;
 }
 
 /* ---- all maps */

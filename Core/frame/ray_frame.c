@@ -195,7 +195,7 @@ static double border_of(const stratus_ray_caster* caster, int axis, int64_t cell
 }
 
 /* Returns where gradients begin to lack neighbours beside a border that another piece is behind, in the coordinates of rays. owned: the
- * border of what the piece owns, which gradients cover in any case. side: 0: below, 1: above. */
+ * border of the piece's own part, on all of which places stay where they are. side: 0: below, 1: above. */
 static double lit_border(const stratus_ray_caster* caster, int axis, int side, int64_t cells, double owned)
 {
   const int64_t outer = side ? cells - 1 : 1; /* the border between the outermost cell and the next */

@@ -18,7 +18,7 @@ struct PanelLight {
   // Whether it is left out, because a rank does not have the matter of the others, whose shadows would end at its borders.
   bool IsLeftOut() const { return (this->Shadows || this->Scattering > 0.0) && count_ranks() > 1; }
 
-  template <typename Mapper> void Apply(Mapper* mapper)
+  template <typename Mapper> void Apply(Mapper* mapper) const
   {
     const bool whole = count_ranks() == 1;
     mapper->SetShadows(whole && this->Shadows);
@@ -32,7 +32,8 @@ struct PanelLight {
 };
 } // namespace stratus
 
-// Functions of a representation that set its member Light, and with it a mapper.
+// Functions of a representation that set its member Light, and with it a mapper. SetScattering() has a name of its own, because a property
+// of ParaView's superclass calls SetVolumetricScatteringBlending().
 #define STRATUS_PANEL_LIGHT(representation, mapper)                                                                                        \
   STRATUS_PANEL_LIGHT_ONE(representation, SetShadows, bool, Shadows, mapper)                                                               \
   STRATUS_PANEL_LIGHT_ONE(representation, SetScattering, double, Scattering, mapper)                                                       \

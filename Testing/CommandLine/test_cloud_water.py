@@ -11,7 +11,7 @@ import netCDF4
 import numpy
 
 WIDTH = 400.0  # metres, of the slab along x
-SMALL = ("-o", "a.png", "--size", "8x8", "--tolerance", "0.1")  # what is said counts, not the picture
+SMALL = ("-o", "a.png", "--size", "8x8", "--tolerance", "0.1")  # only the words are tested, not the picture
 ALONG_X = ("--azimuth", "0", "--elevation", "0", "--parallel", "--size", "32x32", "--device", "host")
 
 

@@ -66,7 +66,7 @@ view.UseLight = 0
 lamp = simple.AddLight(view=view)
 lamp.Coords, lamp.Position, lamp.FocalPoint = "Camera", [0, 0, 1], [0, 0, 0]
 lamp.Intensity = 0.3
-shadowed = scattered = lamp.Intensity * COLOR / 2
+half = lamp.Intensity * COLOR / 2
 simple.Hide(shown.Input, view)
 cells = simple.Tetrahedralize(Input=shown.Input)
 grid = simple.Show(cells, view, "UnstructuredGridRepresentation")
@@ -80,7 +80,7 @@ for kind, display, source, prefix in ("image", shown, shown.Input, "Stratus"), (
     display.StratusUnitDistance = 4
     setattr(display, prefix + "ImageErrorTolerance", 0.002)
     light = []
-    for name, changes, expected in (("shadows", dict(Shadows=1), shadowed), ("scattered", dict(Scattering=2), scattered),
+    for name, changes, expected in (("shadows", dict(Shadows=1), half), ("scattered", dict(Scattering=2), half),
                                     ("again", dict(MultipleScattering=1), None), ("sky", dict(SkyZenith=[0, 0, 0.2], SkyHorizon=[0, 0, 0.2]), None)):
         for change, value in changes.items():
             setattr(display, prefix + change, value)
@@ -88,8 +88,7 @@ for kind, display, source, prefix in ("image", shown, shown.Input, "Stratus"), (
         print(f"{kind}, {name}: {255 * light[-1][0]:.1f} of 255" + (f", expected {255 * expected:.1f}" if expected else ""))
         check(expected is None or abs(light[-1] - expected).max() * 255 < 2, f"{kind}: {name} follows the formula")
     check(light[2].min() > light[1].min() + 0.05, f"{kind}: light that is scattered again adds to that which is scattered once")
-    check(light[3][2] > light[2][2] + 0.05 and abs(light[3] - light[2])[0] < 0.01,
-          f"{kind}: a blue sky lights blue")
+    check(light[3][2] > light[2][2] + 0.05 and abs(light[3] - light[2])[0] < 0.01, f"{kind}: a blue sky lights blue")
     simple.Hide(source, view)
 simple.RemoveLight(lamp)
 view.UseLight = 1

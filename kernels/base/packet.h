@@ -33,7 +33,8 @@
 #define GLOBAL
 #define CONSTANT const
 #define INLINE static inline __attribute__((always_inline))
-/* Of long functions that few rays come to: they are not inlined on the host. Not every file needs each. */
+/* Of long functions that few rays come to, or that several places call: they are not inlined on the host, where each copy would take its
+ * time to compile. Not every file needs each. */
 #define OUTLINE static __attribute__((noinline, unused))
 typedef unsigned char uchar;
 typedef unsigned short ushort;

@@ -230,7 +230,7 @@ INLINE void several_until(const several_source* from, several_volume* v, vint si
 #endif
 
 /* Composites what all volumes show from segment `since` to i on the rays of the mask: at once, or, where there are stretches, from one of
- * their ends to the next. Not inlined: with all that it calls it is most of the march, which calls it in two places. */
+ * their ends to the next. */
 OUTLINE void several_interval(
   const several_source* from, several_volume* volumes, int count, vint since, int i, vmask mask, int stretches, stratus_packet* k)
 {
