@@ -27,12 +27,12 @@ static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
 #define WORDS_MOST ((size_t)NODES_LAST * NODES_LAST * NODES_LAST)
 /* A position whose light meets the matter at a greater slope than this, or is in it, has a cube of maps. */
 #define SLOPE_MOST 2.0
-/* The share of the tolerance that maps may use up; errors of the picture's sampling add to it by their squares. */
-#define SHARE 0.5
+/* The share of the tolerance that maps may use up. Errors of the picture's sampling add to it by their squares, and have .65. */
+#define SHARE 0.7
 /* The part to which an error falls if the spacing is halved: of the second order where the light that passes is smooth, of the first where
- * it jumps, since as much smaller a part of the picture errs. */
-#define FALL_SMOOTH 0.25
-#define FALL_JUMPS 0.5
+ * it jumps, since as much smaller a part of the picture errs. A picture has both, so that not less than FALL_LEAST = 2^-1.5 is counted on,
+ * and a map is not kept before a fall was measured. */
+#define FALL_LEAST 0.354
 #define FAR 1e4   /* so many extents of the matter away, a position is a direction */
 #define FLAT 1e-6 /* a side of the map is at least this part of the longest */
 
@@ -50,6 +50,8 @@ typedef struct map {
   size_t at;          /* in words */
   double near;        /* the length on which rays pass near matter, in near_steps */
   int near_steps;
+  double error; /* that is expected of a picture, if the light is white */
+  bool finest;  /* no map of this light can be finer */
 } map;
 
 struct stratus_light_maps {
@@ -62,7 +64,8 @@ struct stratus_light_maps {
   stratus_light_scatter scatter;    /* its arrays are released: the words are among all words */
   size_t scatter_at, scatter_words; /* of light that is scattered more than once; scatter_words: 0: there is none */
   double goes_on;                   /* as in drawing */
-  double error;                     /* the largest of all maps */
+  double most, brightness;          /* the error that all maps may have, and the lights' brightness when they were built */
+  double scatter_error;
 };
 
 static size_t map_words(const map* m)
@@ -269,12 +272,20 @@ static float passed_to(const drawing* d, size_t node, double depth)
   return ((float)d->planes[layer * nodes + node] * (1.0f - part) + (float)d->planes[(layer + 1) * nodes + node] * part) / 65535.0f;
 }
 
-/* Adds the differences of the coarser map at a drawn node in the middle of a layer, each times `part`. */
+/* The root mean square of the colour of the layer that was drawn last. */
+static float color_at(const drawing* d, size_t node)
+{
+  const float* c = d->rgba + 4 * node;
+  return c[3] > 0.0f ? sqrtf((c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) / 3.0f) / c[3] : 0.0f;
+}
+
+/* Adds the differences of the coarser map at a drawn node in the middle of a layer, each times `part` and the matter's colour there. */
 static void add_difference(const drawing* d, int face, int x, int y, int layer, float part, float sum[NEARS])
 {
   const int *n = d->map->size, *c = d->coarse->size, at[2] = { x, y };
   const size_t node = (size_t)y * (size_t)d->nodes.count[0] + (size_t)x;
   const float here = d->passed[node] * 0.5f * (1.0f + passes(d, node));
+  part *= color_at(d, node);
   double place[3] = { 0.0, 0.0, 0.0 };
   for (int i = 0; i < 2; ++i) {
     place[i] = (double)(d->nodes.first[i] + d->nodes.step[i] * at[i]) / (n[i] - 1) * (c[i] - 1);
@@ -505,20 +516,18 @@ static double near_length(const stratus_light_matter* matter, const map* m, doub
   return fmax(side / m->size[2], NEAR_STEPS_LEAST * matter->step);
 }
 
-/* Draws maps of a light, each finer than the one before, until the error that is expected of one keeps the tolerance: of the map alone, or
- * of it where near matter is passed by rays. The difference of two maps is the coarser one's error less the finer one's, and errors fall
- * from map to map as the differences do. Of a finer map only some lines are drawn before it is known that it is wanted. words: receives
- * the map's memory, also if a finer one fails. */
+/* Draws maps of a light, each finer than the one before, until the error that is expected of one is at most `most`: of the map by itself,
+ * or of it where near matter is passed by rays. A map's error is measured at nodes of a finer one, where that is exact. Of the finer one
+ * only some lines are drawn before it is known that it is wanted, and its own error is expected to fall as errors fell from map to map
+ * before. words: receives the map's memory, also if a finer one fails. */
 static stratus_status build_map(stratus_context* context, const stratus_light_matter* matter, double goes_on, const stratus_light* light,
-  map* m, int32_t** words, double* error)
+  double most, map* m, int32_t** words)
 {
-  double sides[3], last[NEARS] = { 0.0 }, near = 0.0;
-  const double most = SHARE * matter->tolerance;
+  double sides[3], last[NEARS] = { 0.0 }, near = 0.0, error = 0.0;
   const int nears = matter->step > 0.0 ? NEARS : 1;
   bool kept = false;
   place_map(light, matter->bounds, m, sides);
   (void)size_map(m, sides, NODES_FIRST);
-  *error = 0.0;
   TRY(draw_map(context, matter, goes_on, m, words));
   for (int nodes = 2 * NODES_FIRST; nodes <= NODES_LAST && !kept; nodes *= 2) {
     map finer = *m;
@@ -530,15 +539,15 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
     for (int of_finer = 0; of_finer < (fits ? 2 : 1) && !kept; ++of_finer) {
       double least = INFINITY;
       for (int i = 0; i < nears && !kept; ++i) {
-        const double fall = last[i] > 0.0 ? fmin(fmax(differences[i] / last[i], FALL_SMOOTH), FALL_JUMPS) : FALL_JUMPS;
-        const double coarse = differences[i] / (1.0 - fall), expected = of_finer ? coarse * fall : coarse;
+        const double fall = last[i] > 0.0 ? fmin(fmax(differences[i] / last[i], FALL_LEAST), 1.0) : 1.0;
+        const double expected = matter->diffuse * (of_finer ? differences[i] * fall : differences[i]);
         const double length = near_lengths[i] * near_length(matter, of_finer ? &finer : m, sides[2]);
         if (i > 0 && length > NEAR_STEPS_MOST * matter->step) {
           break;
         }
         kept = expected <= most;
         if (kept || expected < least) {
-          least = *error = expected;
+          least = error = expected;
           near = length;
           finer_wanted = of_finer;
         }
@@ -555,12 +564,25 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
       TRY(draw_map(context, matter, goes_on, m, words));
     }
   }
+  m->error = error;
+  m->finest = !kept;
   m->near = near;
   m->near_steps = near > 0.0 ? (int)ceil(near / matter->step) : 0;
   return STRATUS_OK;
 }
 
 /* ---- all maps */
+
+/* How bright lights are together: each is as bright as its largest channel, and errors of lights add by their squares. */
+static double brightness_of(const stratus_light* lights, int count)
+{
+  double squares = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const double largest = fmax(fmax(lights[i].color[0], lights[i].color[1]), lights[i].color[2]);
+    squares += largest * largest;
+  }
+  return sqrt(squares);
+}
 
 stratus_status stratus_light_maps_build(stratus_context* context, const stratus_light_matter* matter, const stratus_shading* shading,
   const stratus_light* lights, int count, stratus_light_maps** maps)
@@ -573,18 +595,19 @@ stratus_status stratus_light_maps_build(stratus_context* context, const stratus_
   made = memory;
   made->context = context;
   made->count = count;
+  made->most = SHARE * matter->tolerance;
+  made->brightness = brightness_of(lights, count);
   if (shading->multiple) {
     TRY_CLEANUP(stratus_light_scatter_build(
       context, matter->draw, matter->of, matter->bounds, matter->detail, shading, lights, count, matter->tolerance, &made->scatter));
     made->goes_on = stratus_light_forward(&made->scatter, shading);
-    made->error = made->scatter.error;
+    made->scatter_error = made->scatter.error;
   }
   for (int i = 0; i < count; ++i) {
-    double error;
-    TRY_CLEANUP(build_map(context, matter, made->goes_on, &lights[i], &made->of[i], &words[i], &error));
+    const double most = made->most / fmax(made->brightness, 1e-30);
+    TRY_CLEANUP(build_map(context, matter, made->goes_on, &lights[i], most, &made->of[i], &words[i]));
     made->of[i].at = made->words_count;
     made->words_count += map_words(&made->of[i]);
-    made->error = fmax(made->error, error);
     TRY_CLEANUP(stratus_progress(context, "light", (i + 1.0) / count));
   }
   TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *made->slot, &slot));
@@ -649,10 +672,10 @@ uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* tr
 
 uint64_t stratus_light_key_of_scattering(uint64_t key, const stratus_shading* shading, const stratus_light* lights, int count)
 {
+  key = stratus_light_key(key, &shading->diffuse, sizeof shading->diffuse);
   if (!shading->multiple) {
     return key;
   }
-  key = stratus_light_key(key, &shading->diffuse, sizeof shading->diffuse);
   key = stratus_light_key(key, &shading->anisotropy, sizeof shading->anisotropy);
   key = stratus_light_key(key, shading->sky_zenith, sizeof shading->sky_zenith);
   key = stratus_light_key(key, shading->sky_horizon, sizeof shading->sky_horizon);
@@ -691,13 +714,18 @@ static bool same_way(const stratus_light* a, const stratus_light* b)
   return a->positional == b->positional && memcmp(a->vector, b->vector, sizeof a->vector) == 0;
 }
 
-bool stratus_light_state_is_stale(const stratus_light_state* state, uint64_t key, const stratus_light* lights, int count)
+bool stratus_light_state_serves(stratus_light_state* state, uint64_t key, const stratus_light* lights, int count)
 {
-  bool serves = state->key == key && state->maps && state->maps->count == count;
+  stratus_light_maps* maps = state->maps;
+  bool serves = state->key == key && maps && maps->count == count, finest = true;
   for (int i = 0; serves && i < count; ++i) {
-    serves = same_way(&state->maps->of[i].light, &lights[i]);
+    serves = same_way(&maps->of[i].light, &lights[i]);
   }
-  return !serves;
+  for (int i = 0; serves && i < count; ++i) {
+    memcpy(maps->of[i].light.color, lights[i].color, sizeof lights[i].color);
+    finest = finest && maps->of[i].finest;
+  }
+  return serves && (finest || brightness_of(lights, count) <= maps->brightness || stratus_light_maps_error(maps) <= maps->most);
 }
 
 stratus_status stratus_light_state_build(stratus_context* context, const stratus_light_matter* matter, const stratus_shading* shading,
@@ -788,7 +816,12 @@ size_t stratus_light_maps_bytes(const stratus_light_maps* maps)
 
 double stratus_light_maps_error(const stratus_light_maps* maps)
 {
-  return maps ? maps->error : 0.0;
+  double squares = maps ? maps->scatter_error * maps->scatter_error : 0.0;
+  for (int i = 0; maps && i < maps->count; ++i) {
+    const double error = maps->of[i].error * brightness_of(&maps->of[i].light, 1);
+    squares += error * error;
+  }
+  return sqrt(squares);
 }
 
 double stratus_light_maps_near(const stratus_light_maps* maps)

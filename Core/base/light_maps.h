@@ -19,13 +19,15 @@ typedef struct stratus_light_matter {
   /* steps at which a renderer can pass the matter next to a place by itself; 0: it cannot */
   double step;
   double detail;    /* length of the finest cells in which it scatters light again; 0: not known */
-  double tolerance; /* of the part of light that passes, root mean square over the matter; 0: as fine as maps can be */
+  double diffuse;   /* the matter's albedo is at most this times the colour that `draw` shows without lights */
+  double tolerance; /* of pictures, root mean square over the matter; 0: as fine as maps can be */
 } stratus_light_matter;
 
-/* Build the maps of all lights, given in the world. If light is scattered more than once, solve for it, too. A
- * map has the least of 32, 64, 128 and 256 nodes along its longest side whose expected error keeps the tolerance, if need be with near
- * matter passed by rays, and at most 64 MiB: each face of a cube of maps has at most 128. *maps: NULL or maps to replace; after a failure
- * it is as before. */
+/* Build the maps of all lights, given in the world. If light is scattered more than once, solve for it, too. A map has the least of 32, 64,
+ * 128 and 256 nodes along its longest side whose expected error keeps its light's share of the tolerance, if need be with near matter
+ * passed by rays, and at most 64 MiB: each face of a cube of maps has at most 128. *maps: NULL or maps to replace; after a failure it is as
+ * before.
+ */
 stratus_status stratus_light_maps_build(stratus_context* context, const stratus_light_matter* matter, const stratus_shading* shading,
   const stratus_light* lights, int count, stratus_light_maps** maps);
 void stratus_light_maps_destroy(stratus_light_maps* maps);
@@ -37,8 +39,9 @@ typedef struct stratus_light_state {
   uint64_t builds;
 } stratus_light_state;
 
-/* Whether there are no maps of matter with this key and of exactly these lights' ways; their colours do not matter. */
-bool stratus_light_state_is_stale(const stratus_light_state* state, uint64_t key, const stratus_light* lights, int count);
+/* Whether there are maps of matter with this key and of exactly these lights' ways, as exact as their colours need. If so, takes over the
+ * colours. */
+bool stratus_light_state_serves(stratus_light_state* state, uint64_t key, const stratus_light* lights, int count);
 /* Builds the maps anew. The key is then 0, until the caller sets it. */
 stratus_status stratus_light_state_build(stratus_context* context, const stratus_light_matter* matter, const stratus_shading* shading,
   const stratus_light* lights, int count, stratus_light_state* state);
@@ -47,8 +50,8 @@ void stratus_light_state_drop(stratus_light_state* state);
 uint64_t stratus_light_key(uint64_t key, const void* bytes, size_t count);
 /* The same of transfer functions, their points included. */
 uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* transfers, int count);
-/* The same of lights and the sky, if light is scattered more than once; and of the albedo of matter. materials: of `components`; NULL: none
- * of their own. */
+/* The same of lights and the sky, if light is scattered more than once; and of the albedo of matter but for the shading's diffuse number.
+ * materials: of `components`; NULL: none of their own. */
 uint64_t stratus_light_key_of_scattering(uint64_t key, const stratus_shading* shading, const stratus_light* lights, int count);
 uint64_t stratus_light_key_of_albedo(
   uint64_t key, const stratus_transfer* transfers, int count, const stratus_material* materials, int components);
@@ -59,8 +62,8 @@ uint64_t stratus_light_key_of_albedo(
 void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_light* lights, const double to_world[16], double unit,
   double sample_distance, stratus_light_arguments* a);
 
-/* The words of all maps, NULL without maps; their bytes; the largest expected error; and the longest way, in the world, on which near
- * matter is passed. */
+/* The words of all maps, NULL without maps; their bytes; the error that is expected of a picture by them; and the longest way, in the
+ * world, on which near matter is passed. */
 const int32_t* stratus_light_maps_words(const stratus_light_maps* maps);
 size_t stratus_light_maps_bytes(const stratus_light_maps* maps);
 double stratus_light_maps_error(const stratus_light_maps* maps);

@@ -229,3 +229,12 @@ const stratus_material* stratus_lights_show_albedo(
   }
   return own ? materials : NULL;
 }
+
+double stratus_lights_diffuse(const stratus_shading* shading, const stratus_material* own, int count)
+{
+  double most = own ? 0.0 : shading->diffuse;
+  for (int c = 0; own && c < count; ++c) {
+    most = own[c].shade ? fmax(most, own[c].diffuse) : most;
+  }
+  return most;
+}

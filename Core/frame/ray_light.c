@@ -17,13 +17,18 @@
 /* Cells in which light is scattered again: as many along a voxel follow how light changes in it. */
 #define CELLS_A_VOXEL 2.0
 
+/* Materials of the components' own, or NULL. */
+static const stratus_material* materials_of(const stratus_volume* volume, const stratus_ray_cast_options* options)
+{
+  return stratus_volume_components(volume) > 1 && !options->optics.dependent ? options->light.materials : NULL;
+}
+
 static bool has_shadows(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
   const bool lit = options->mode == STRATUS_MODE_COMPOSITE || options->mode == STRATUS_MODE_ISOSURFACE;
-  const int components = stratus_volume_components(volume);
-  const bool own = components > 1 && !options->optics.dependent;
   return lit &&
-    stratus_lights_cast_shadows(&options->light.shading, options->light.shade != 0, own ? options->light.materials : NULL, components);
+    stratus_lights_cast_shadows(
+      &options->light.shading, options->light.shade != 0, materials_of(volume, options), stratus_volume_components(volume));
 }
 
 static bool input_has_shadows(const stratus_ray_cast_input* in)
@@ -51,6 +56,11 @@ static void show_albedo(
   dark->light.shade = 1;
   dark->light.materials =
     stratus_lights_show_albedo(&options->light.shading, options->light.materials, components, &dark->light.shading, materials);
+}
+
+static double diffuse_of(const stratus_volume* volume, const stratus_ray_cast_options* options)
+{
+  return stratus_lights_diffuse(&options->light.shading, materials_of(volume, options), stratus_volume_components(volume));
 }
 
 /* The caster that draws a volume's matter. */
@@ -103,10 +113,10 @@ static uint64_t key_of_data(uint64_t key, const stratus_volume* v)
   return key;
 }
 
-/* Adds all that decides where a volume's matter is, and with `albedo` how it scatters, to a key. The key depends on no caster, so that
- * pictures of several inputs have one. Bytes under the same address are the same unless their revision has changed. */
+/* Adds all that decides where a volume's matter is and how it scatters to a key. The key depends on no caster, so that pictures of several
+ * inputs have one. Bytes under the same address are the same unless their revision has changed. */
 static uint64_t key_of_volume(
-  uint64_t key, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options, bool albedo)
+  uint64_t key, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options)
 {
   const stratus_ray_optics_options* optics = &options->optics;
   const stratus_ray_clipping_options* clip = &options->clipping;
@@ -126,9 +136,7 @@ static uint64_t key_of_volume(
     return key_of_function(key, optics->transfer_2d);
   }
   const int functions = stratus_ray_shading_media(volume, options);
-  if (albedo) {
-    key = stratus_light_key_of_albedo(key, transfer, functions, options->light.materials, stratus_volume_components(volume));
-  }
+  key = stratus_light_key_of_albedo(key, transfer, functions, options->light.materials, stratus_volume_components(volume));
   return stratus_light_key_of_transfers(key, transfer, functions);
 }
 
@@ -169,6 +177,7 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
   const double start = stratus_now_ms();
   one_volume m = { .draw = draw, .volume = volume, .transfer = transfer, .lit = options, .options = dark_options(options) };
   stratus_light_matter matter = { .draw = draw_volume, .of = &m, .tolerance = options->sampling.tolerance };
+  matter.diffuse = diffuse_of(volume, options);
   matter.detail = stratus_ray_voxel_length(volume) / CELLS_A_VOXEL;
   const bool regions = options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE;
   if (stratus_volume_components(volume) == 1 && options->mode == STRATUS_MODE_COMPOSITE && options->mask.label_count == 0 &&
@@ -176,10 +185,8 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
     matter.step = stratus_ray_voxel_length(volume) / NEAR_STEPS_A_VOXEL;
   }
   const int count = stratus_lights_in_world(camera, &options->light.shading, lights);
-  const bool multiple = options->light.shading.multiple != 0;
-  const uint64_t key =
-    key_of_volume(stratus_light_key_of_scattering(0, &options->light.shading, lights, count), volume, transfer, options, multiple);
-  if (stratus_light_state_is_stale(&caster->light, key, lights, count)) {
+  const uint64_t key = key_of_volume(stratus_light_key_of_scattering(0, &options->light.shading, lights, count), volume, transfer, options);
+  if (!stratus_light_state_serves(&caster->light, key, lights, count)) {
     TRY(dark_caster(caster, &m.caster));
     TRY(stratus_ray_update_transfer_2d(m.caster, volume, options));
     TRY(stratus_volume_bounds(caster->context, volume, matter.bounds));
@@ -238,14 +245,14 @@ static stratus_status draw_several(void* of, const stratus_camera* camera, const
   return m->draw(m->inputs, m->count, camera, image, NULL);
 }
 
-static uint64_t key_of_inputs(uint64_t key, const stratus_ray_cast_input* inputs, int count, bool albedo)
+static uint64_t key_of_inputs(uint64_t key, const stratus_ray_cast_input* inputs, int count)
 {
   const stratus_ray_cast_options defaults = stratus_ray_cast_options_default();
   const stratus_tetra_options tetra_defaults = stratus_tetra_options_default();
   for (int n = 0; n < count; ++n) {
     const stratus_ray_cast_input* in = &inputs[n];
-    key = in->tetra ? stratus_tetra_shadow_key(key, in->mesh, in->transfer, in->tetra_options ? in->tetra_options : &tetra_defaults, albedo)
-                    : key_of_volume(key, in->volume, in->transfer, in->options ? in->options : &defaults, albedo);
+    key = in->tetra ? stratus_tetra_shadow_key(key, in->mesh, in->transfer, in->tetra_options ? in->tetra_options : &tetra_defaults)
+                    : key_of_volume(key, in->volume, in->transfer, in->options ? in->options : &defaults);
   }
   return key;
 }
@@ -305,6 +312,18 @@ static double detail_of(const several* m)
   return detail;
 }
 
+static double diffuse_of_inputs(const stratus_ray_cast_input* inputs, int count)
+{
+  double most = 0.0;
+  for (int n = 0; n < count; ++n) {
+    const stratus_ray_cast_input* in = &inputs[n];
+    if (input_has_shadows(in)) {
+      most = fmax(most, in->tetra ? stratus_tetra_diffuse(in->mesh, in->tetra_options) : diffuse_of(in->volume, in->options));
+    }
+  }
+  return most;
+}
+
 /* Gives all inputs the maps. */
 static void give(const stratus_ray_cast_input* inputs, int count, bool given, const stratus_light_maps* maps)
 {
@@ -341,11 +360,12 @@ static stratus_status update_several(several* m, const stratus_ray_cast_input* i
     .draw = draw_several, .of = m, .tolerance = lit->tetra ? lit->tetra_options->tolerance : lit->options->sampling.tolerance
   };
   const int count = stratus_lights_in_world(camera, shading, lights);
-  const uint64_t key = key_of_inputs(stratus_light_key_of_scattering(0, shading, lights, count), inputs, m->count, shading->multiple != 0);
-  if (stratus_light_state_is_stale(state, key, lights, count)) {
+  const uint64_t key = key_of_inputs(stratus_light_key_of_scattering(0, shading, lights, count), inputs, m->count);
+  if (!stratus_light_state_serves(state, key, lights, count)) {
     TRY(darken(m, inputs));
     TRY(bounds_of(m, matter.bounds));
     matter.detail = detail_of(m);
+    matter.diffuse = diffuse_of_inputs(inputs, m->count);
     TRY(stratus_light_state_build(m->context, &matter, shading, lights, count, state));
     state->key = key;
   }

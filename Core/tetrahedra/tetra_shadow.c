@@ -24,11 +24,16 @@ stratus_status stratus_tetra_shadow_check(
   return options && stratus_lights_want_shadows(&options->shading) ? stratus_shading_check(context, &options->shading) : STRATUS_OK;
 }
 
+/* Materials of the components' own, or NULL. */
+static const stratus_material* materials_of(const stratus_mesh* mesh, const stratus_tetra_options* o)
+{
+  return stratus_tetra_mixes(mesh, o) && !o->dependent ? o->materials : NULL;
+}
+
 bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* o)
 {
   const bool lit = o->mode == STRATUS_TETRA_COMPOSITE || o->mode == STRATUS_TETRA_ISOSURFACE;
-  const bool own = stratus_tetra_mixes(mesh, o) && !o->dependent;
-  return lit && stratus_lights_cast_shadows(&o->shading, o->shade != 0, own ? o->materials : NULL, mesh->components);
+  return lit && stratus_lights_cast_shadows(&o->shading, o->shade != 0, materials_of(mesh, o), mesh->components);
 }
 
 stratus_tetra_options stratus_tetra_dark_options(const stratus_tetra_options* options)
@@ -61,8 +66,7 @@ static uint64_t key_of_mesh(uint64_t key, const stratus_mesh* m)
   return key;
 }
 
-uint64_t stratus_tetra_shadow_key(
-  uint64_t key, const stratus_mesh* m, const stratus_transfer* transfers, const stratus_tetra_options* o, bool albedo)
+uint64_t stratus_tetra_shadow_key(uint64_t key, const stratus_mesh* m, const stratus_transfer* transfers, const stratus_tetra_options* o)
 {
   const bool surfaces = o->mode == STRATUS_TETRA_ISOSURFACE;
   const double numbers[10] = { o->mode, o->tolerance, o->gradient_distance, o->clip_plane_count, o->crop, o->crop_regions, o->dependent,
@@ -74,10 +78,13 @@ uint64_t stratus_tetra_shadow_key(
   key = stratus_light_key(key, o->crop_bounds, o->crop ? sizeof o->crop_bounds : 0);
   key = stratus_light_key(key, o->contours, surfaces ? (size_t)o->contour_count * sizeof o->contours[0] : 0);
   key = stratus_light_key(key, m->matrix, sizeof m->matrix);
-  if (albedo) {
-    key = stratus_light_key_of_albedo(key, transfers, functions, o->materials, m->components);
-  }
+  key = stratus_light_key_of_albedo(key, transfers, functions, o->materials, m->components);
   return stratus_light_key_of_transfers(key, transfers, functions);
+}
+
+double stratus_tetra_diffuse(const stratus_mesh* mesh, const stratus_tetra_options* options)
+{
+  return stratus_lights_diffuse(&options->shading, materials_of(mesh, options), mesh->components);
 }
 
 static stratus_status draw_matter(void* of, const stratus_camera* camera, const stratus_image* image, bool colors)
@@ -103,9 +110,10 @@ stratus_status stratus_tetra_shadow_update(
     .options = stratus_tetra_dark_options(of->options) };
   stratus_light_matter all = { .draw = draw_matter, .of = &m, .tolerance = of->options->tolerance };
   const int count = stratus_lights_in_world(camera, &of->options->shading, lights);
-  const uint64_t key = stratus_tetra_shadow_key(stratus_light_key_of_scattering(0, &of->options->shading, lights, count), of->mesh,
-    of->transfer, of->options, of->options->shading.multiple != 0);
-  if (stratus_light_state_is_stale(&caster->light, key, lights, count)) {
+  const uint64_t key =
+    stratus_tetra_shadow_key(stratus_light_key_of_scattering(0, &of->options->shading, lights, count), of->mesh, of->transfer, of->options);
+  all.diffuse = stratus_tetra_diffuse(of->mesh, of->options);
+  if (!stratus_light_state_serves(&caster->light, key, lights, count)) {
     stratus_matrix_box(of->mesh->matrix, caster->mesh->lo, caster->mesh->hi, all.bounds); /* caster->mesh is up to date */
     TRY(stratus_light_state_build(caster->context, &all, &of->options->shading, lights, count, &caster->light));
     caster->light.key = key;

@@ -16,11 +16,13 @@ static stratus_status draw(void* of, const stratus_camera* camera, const stratus
   uint32_t random = 1;
   for (int i = 0; i < image->width * image->height; ++i) {
     const int x = i % image->width;
-    image->rgba[4 * i + 3] = matter == EVEN ? 0.5f
-      : matter == ROUGH                     ? 1e-3f * (float)random_below(&random, 10)
-      : fabs(camera->forward[2]) < 0.5      ? 0.0f
-      : 8 * x / image->width % 2            ? 0.9f
-                                            : 0.0f;
+    float* rgba = image->rgba + 4 * i;
+    rgba[3] = matter == EVEN           ? 0.5f
+      : matter == ROUGH                ? 1e-3f * (float)random_below(&random, 10)
+      : fabs(camera->forward[2]) < 0.5 ? 0.0f
+      : 8 * x / image->width % 2       ? 0.9f
+                                       : 0.0f;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3];
   }
   return STRATUS_OK;
 }
@@ -29,7 +31,7 @@ static stratus_light_maps* maps_of(
   stratus_context* context, kind matter, double depth, double step, double tolerance, const stratus_light* lights, int count)
 {
   const stratus_light_matter all = {
-    .draw = draw, .of = &matter, .bounds = { 0.0, 1.0, 0.0, 1.0, 0.0, depth }, .step = step, .tolerance = tolerance
+    .draw = draw, .of = &matter, .bounds = { 0.0, 1.0, 0.0, 1.0, 0.0, depth }, .step = step, .diffuse = 1.0, .tolerance = tolerance
   };
   const stratus_shading once = { .shadows = 1 };
   stratus_light_maps* maps = NULL;
@@ -81,10 +83,12 @@ static void flat_matter_has_a_map(void** state)
   stratus_context_destroy(context);
 }
 
-/* The length on which near matter is passed to a light follows from that light only. */
+/* The length on which near matter is passed to a light follows from that light and its share of the tolerance: errors of lights add by
+ * their squares. */
 static void each_light_passes_near_matter_on_its_own_length(void** state)
 {
-  const stratus_light lights[3] = { { .vector = { 1, 0, 0 } }, { .vector = { 0, 0, 1 } }, { .vector = { 0.5, 0.5, 40 }, .positional = 1 } };
+  const stratus_light lights[3] = { { .color = { 1, 0, 0 }, .vector = { 1, 0, 0 } }, { .color = { 0, 0, 1 }, .vector = { 0, 0, 1 } },
+    { .color = { 0, 1, 0 }, .vector = { 0.5, 0.5, 40 }, .positional = 1 } };
   stratus_light_arguments all = { .count = 3, .positional = { 0, 0, 1 } }, one = { .count = 1 };
   (void)state;
   stratus_context* context = make_context("host", 1);
@@ -93,7 +97,7 @@ static void each_light_passes_near_matter_on_its_own_length(void** state)
   stratus_light_maps_destroy(maps);
   assert_true(all.near && all.near_steps[0] == 0 && all.near_steps[1] > 0);
   for (int i = 0; i < 3; ++i) {
-    maps = maps_of(context, BARS, 1.0, 1.0 / 128.0, 0.01, &lights[i], 1);
+    maps = maps_of(context, BARS, 1.0, 1.0 / 128.0, 0.01 / sqrt(3.0), &lights[i], 1);
     one.positional[0] = all.positional[i];
     stratus_light_maps_arguments(maps, &lights[i], as_it_is, 1.0, 0.1, &one);
     assert_int_equal(one.near_steps[0], all.near_steps[i]);
@@ -109,12 +113,50 @@ static void each_light_passes_near_matter_on_its_own_length(void** state)
   stratus_context_destroy(context);
 }
 
+/* A map is as exact as its light's brightness and its matter's colour need, and is kept until a brighter light needs more. */
+static void brighter_lights_have_finer_maps(void** state)
+{
+  kind matter = BARS;
+  stratus_light light = { .color = { 0.01, 0.02, 0.01 }, .vector = { 0, 0, 1 } };
+  stratus_light_matter all = { .draw = draw, .of = &matter, .bounds = { 0, 1, 0, 1, 0, 1 }, .tolerance = 0.02 };
+  const stratus_shading once = { .shadows = 1 };
+  stratus_light_state kept = { 0 };
+  double errors[2][2];
+  (void)state;
+  stratus_context* context = make_context("host", 1);
+  for (int dark = 0; dark < 2; ++dark) {
+    all.diffuse = dark ? 0.5 : 1.0;
+    light.color[1] = 0.02;
+    assert_int_equal(stratus_light_state_build(context, &all, &once, &light, 1, &kept), STRATUS_OK);
+    kept.key = 1;
+    const size_t bytes = stratus_light_maps_bytes(kept.maps);
+    assert_int_equal(bytes, 32 * 32 * 31 * sizeof(int32_t));
+    errors[dark][0] = stratus_light_maps_error(kept.maps);
+    light.color[1] = 0.01; /* darker: the same maps err less */
+    assert_true(stratus_light_state_serves(&kept, 1, &light, 1));
+    errors[dark][1] = stratus_light_maps_error(kept.maps);
+    assert_true(fabs(errors[dark][1] - 0.5 * errors[dark][0]) < 1e-9 && errors[dark][1] > 0.0);
+    light.color[1] = 1.0;
+    assert_false(stratus_light_state_serves(&kept, 1, &light, 1));
+    assert_int_equal(stratus_light_state_build(context, &all, &once, &light, 1, &kept), STRATUS_OK);
+    kept.key = 1;
+    assert_true(stratus_light_maps_bytes(kept.maps) > bytes);
+    light.color[1] = 2.0; /* the maps of hard bars were as good as maps can be */
+    assert_true(stratus_light_state_serves(&kept, 1, &light, 1) && stratus_light_maps_error(kept.maps) > all.tolerance);
+    assert_false(stratus_light_state_serves(&kept, 2, &light, 1));
+  }
+  assert_true(fabs(errors[1][0] - 0.5 * errors[0][0]) < 1e-9);
+  stratus_light_state_drop(&kept);
+  stratus_context_destroy(context);
+}
+
 int test_light_maps(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_finest_maps_are_as_large_as_64_mib_allow),
     cmocka_unit_test(flat_matter_has_a_map),
     cmocka_unit_test(each_light_passes_near_matter_on_its_own_length),
+    cmocka_unit_test(brighter_lights_have_finer_maps),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

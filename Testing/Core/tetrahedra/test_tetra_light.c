@@ -364,13 +364,13 @@ static void shadows_follow_all_that_absorbs(void** state)
   tetra_case c;
   (void)state;
   tetra_create(&c, 3, 0.2, 0.0, 1);
-  keys[count++] = stratus_tetra_shadow_key(0, &c.mesh, &c.transfer, &c.options, false);
+  keys[count++] = stratus_tetra_shadow_key(0, &c.mesh, &c.transfer, &c.options);
   for (bool more = true; more; ++count) {
     stratus_mesh mesh = c.mesh;
     stratus_transfer transfers[2] = { c.transfer, c.transfer };
     stratus_tetra_options options = c.options;
     more = change(count - 1, &mesh, transfers, &options);
-    keys[count] = stratus_tetra_shadow_key(0, &mesh, transfers, &options, false);
+    keys[count] = stratus_tetra_shadow_key(0, &mesh, transfers, &options);
     for (int i = 0; i < count && more; ++i) {
       if (keys[i] == keys[count]) {
         fail_msg("changes %d and %d have the same key", i - 1, count - 1);
