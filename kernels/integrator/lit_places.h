@@ -5,6 +5,10 @@
  * the mean. A bundle is closed where its spread would pass a limit. Thus faint stretches, and those behind others, share a place over a
  * long way, and a stretch that makes most of a pixel has its own.
  *
+ * Where normals are turned towards the eye, light jumps where the field turns along the ray, since there the normal is turned round. The
+ * jump is found between the places of two bundles, where the slope along the ray is 0 if it is straight between them. The part of a bundle
+ * that is on the other side takes the other's light: its stretches count as even over the extent that has their spread.
+ *
  * Closed bundles wait until the packet has one for each lane. A bundle follows from its ray, and a ray adds up the light of its
  * bundles in their order, so that no pixel depends on the others of its packet. Included by ray_cast.h. */
 #ifndef STRATUS_LIT_PLACES_H
@@ -85,12 +89,11 @@ INLINE void lit_begin(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k)
   p->reach = zero;
   p->weight = p->first = p->second = p->origin = zero;
   p->count = 0;
-  for (int c = 0; c < 3; ++c) { /* lanes without an entry read some place, too */
-    v_store(p->x[c], zero);
-    v_store(p->d[c], zero);
-    v_store(p->color[c], zero);
+  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+    p->lane[lane] = lane; /* entries that are not used read some place, too */
+    p->place[lane] = p->opacity[lane] = p->color[0][lane] = p->color[1][lane] = p->color[2][lane] = 0.0f;
+    p->last[lane].slope = 0.0f;
   }
-  v_store(p->opacity, zero);
 }
 
 /* Puts the lanes of the mask, one after the other, to an array. */
@@ -114,11 +117,30 @@ INLINE void lit_queue(float* queue, vmask mask, const int* lanes, int count, vfl
 #endif
 }
 
+/* The numbers of these lanes. */
+INLINE vfloat lit_of_lanes(vfloat v, const int* lanes)
+{
+#if STRATUS_WIDTH == 1
+  (void)lanes;
+  return v;
+#elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
+  return _mm512_permutexvar_ps(_mm512_loadu_si512(lanes), v);
+#else
+  float all[STRATUS_WIDTH], picked[STRATUS_WIDTH];
+  v_store(all, v);
+  for (int i = 0; i < STRATUS_WIDTH; ++i) {
+    picked[i] = all[lanes[i]];
+  }
+  return v_load(picked);
+#endif
+}
+
 /* Closes the open bundles of the lanes in `mask`, which have these colours. The queue must have fewer entries than a packet has lanes. */
-INLINE void lit_close(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k, vmask mask, vfloat red, vfloat green, vfloat blue)
+INLINE void lit_close(stratus_packet* k, vmask mask, vfloat red, vfloat green, vfloat blue)
 {
   stratus_lit_places* p = &k->places;
-  const vfloat place = v_fma(p->first, v_reciprocal(v_max(p->weight, v_set(1e-30f))), p->origin);
+  const vfloat each = v_reciprocal(v_max(p->weight, v_set(1e-30f))), mean = p->first * each, place = mean + p->origin;
+  const vfloat variance = v_max(v_fma(v_set(0.0f) - mean, mean, p->second * each), v_set(1e-12f));
 #if !defined(STRATUS_DEVICE) && STRATUS_ISA == 2
   const int count = m_count(mask);
   _mm512_storeu_si512(p->lane + p->count, _mm512_maskz_compress_epi32(mask, (__m512i)vi_lanes()));
@@ -130,19 +152,40 @@ INLINE void lit_close(CONSTANT stratus_ray_cast_arguments* a, stratus_packet* k,
     count += wanted[lane];
   }
 #endif
-  for (int c = 0; c < 3; ++c) {
-    vfloat x = v_fma(place, k->d[c], k->p[c]);
-    if (RAY_RARE(RAY_PIECE, a->crop.has_piece)) {
-      x = v_min(v_max(x, v_set(a->crop.lit[0][c])), v_set(a->crop.lit[1][c]));
-    }
-    lit_queue(p->x[c] + p->count, mask, p->lane + p->count, count, x);
-    lit_queue(p->d[c] + p->count, mask, p->lane + p->count, count, k->d[c]);
-  }
   lit_queue(p->color[0] + p->count, mask, p->lane + p->count, count, red);
   lit_queue(p->color[1] + p->count, mask, p->lane + p->count, count, green);
   lit_queue(p->color[2] + p->count, mask, p->lane + p->count, count, blue);
   lit_queue(p->opacity + p->count, mask, p->lane + p->count, count, p->weight);
+  lit_queue(p->place + p->count, mask, p->lane + p->count, count, place);
+  lit_queue(p->extent + p->count, mask, p->lane + p->count, count, v_set(1.7320508f) * (variance * v_inverse_root(variance)));
   p->count += count;
+}
+
+/* The part of a bundle behind a place on its ray. */
+INLINE float lit_behind(const stratus_lit_bundle* b, float place)
+{
+  const float part = (b->place + b->extent - place) / (2.0f * b->extent);
+  return part > 0.0f ? part < 1.0f ? part : 1.0f : 0.0f;
+}
+
+/* Gives a part of a bundle the light of another. */
+INLINE void lit_exchange(stratus_lit_places* p, int lane, const stratus_lit_bundle* b, float part, const stratus_lit_bundle* other)
+{
+  for (int c = 0; c < 3; ++c) {
+    p->lit[c][lane] += part * (b->color[c] * (other->diffuse[c] - b->diffuse[c]) + b->opacity * (other->specular[c] - b->specular[c]));
+  }
+}
+
+/* Finds where light jumps between the last bundle of a ray and the next one, and shares their light there. */
+INLINE void lit_turn(stratus_lit_places* p, int lane, const stratus_lit_bundle* next)
+{
+  const stratus_lit_bundle* last = &p->last[lane];
+  if ((last->slope < 0.0f) != (next->slope < 0.0f) && last->slope != 0.0f) {
+    const float turn = last->place + (next->place - last->place) * (last->slope / (last->slope - next->slope));
+    lit_exchange(p, lane, last, lit_behind(last, turn), next);
+    lit_exchange(p, lane, next, 1.0f - lit_behind(next, turn), last);
+  }
+  p->last[lane] = *next;
 }
 #endif
 
@@ -153,8 +196,15 @@ OUTLINE void RAY_NAME(lit_shade)(
   stratus_lit_places* p = &k->places;
   const int count = p->count < STRATUS_WIDTH ? p->count : STRATUS_WIDTH;
   const vmask mask = vi_lt(vi_lanes(), vi_set(count));
-  const vfloat x[3] = { v_load(p->x[0]), v_load(p->x[1]), v_load(p->x[2]) }, d[3] = { v_load(p->d[0]), v_load(p->d[1]), v_load(p->d[2]) };
-  const vfloat opacity = v_load(p->opacity);
+  const vfloat place = v_load(p->place), opacity = v_load(p->opacity);
+  vfloat x[3], d[3];
+  for (int c = 0; c < 3; ++c) {
+    d[c] = lit_of_lanes(k->d[c], p->lane);
+    x[c] = v_fma(place, d[c], lit_of_lanes(k->p[c], p->lane));
+    if (RAY_RARE(RAY_PIECE, a->crop.has_piece)) {
+      x[c] = v_min(v_max(x[c], v_set(a->crop.lit[0][c])), v_set(a->crop.lit[1][c]));
+    }
+  }
   vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) }, diffuse[3], specular[3];
   if (light_reflects(&a->light)) {
     RAY_NAME(ray_gradient)(a, values, k->grid, x, mask, g);
@@ -164,23 +214,37 @@ OUTLINE void RAY_NAME(lit_shade)(
     RAY_NAME(light_near)(a, values, hidden, table, k, x, mask, passing);
   }
   light_at(&a->light, k->lights, a->light.near ? passing : 0, 0, x, d, g, diffuse, specular);
+  const int turns = a->light.two_sided && light_reflects(&a->light);
+  float light[3][STRATUS_WIDTH], falls[6][STRATUS_WIDTH], slope[STRATUS_WIDTH];
+  v_store(slope, v_dot3(g, d));
   for (int c = 0; c < 3; ++c) {
-    float light[STRATUS_WIDTH];
-    v_store(light, v_fma(v_load(p->color[c]), diffuse[c], opacity * specular[c]));
-    for (int i = 0; i < count; ++i) {
-      p->lit[c][p->lane[i]] += light[i];
+    v_store(light[c], v_fma(v_load(p->color[c]), diffuse[c], opacity * specular[c]));
+    v_store(falls[c], diffuse[c]);
+    v_store(falls[3 + c], specular[c]);
+  }
+  for (int i = 0; i < count; ++i) { /* one after the other, so that sums do not depend on how many are lit at once */
+    const int lane = p->lane[i];
+    for (int c = 0; c < 3; ++c) {
+      p->lit[c][lane] += light[c][i];
+    }
+    if (turns) {
+      const stratus_lit_bundle next = { p->place[i], p->extent[i], slope[i], p->opacity[i],
+        { p->color[0][i], p->color[1][i], p->color[2][i] }, { falls[0][i], falls[1][i], falls[2][i] },
+        { falls[3][i], falls[4][i], falls[5][i] } };
+      lit_turn(p, lane, &next);
     }
   }
   p->count -= count;
-  for (int i = 0; i < p->count; ++i) {
-    const int from = STRATUS_WIDTH + i;
+  if (p->count > 0) { /* the others move up */
     for (int c = 0; c < 3; ++c) {
-      p->x[c][i] = p->x[c][from];
-      p->d[c][i] = p->d[c][from];
-      p->color[c][i] = p->color[c][from];
+      v_store(p->color[c], v_load(p->color[c] + STRATUS_WIDTH));
     }
-    p->opacity[i] = p->opacity[from];
-    p->lane[i] = p->lane[from];
+    v_store(p->opacity, v_load(p->opacity + STRATUS_WIDTH));
+    v_store(p->place, v_load(p->place + STRATUS_WIDTH));
+    v_store(p->extent, v_load(p->extent + STRATUS_WIDTH));
+    for (int i = 0; i < p->count; ++i) {
+      p->lane[i] = p->lane[STRATUS_WIDTH + i];
+    }
   }
 }
 
@@ -202,7 +266,7 @@ INLINE void RAY_NAME(lit_pass)(CONSTANT stratus_ray_cast_arguments* a, value_sou
   const vfloat spread = v_fma(first * v_reciprocal(v_max(sum, v_set(1e-30f))), zero - first, second);
   const vmask closes = mask & open & (v_lt(p->limit, spread) | v_lt(p->reach + p->gap, s->begin));
   if (m_any(closes)) {
-    lit_close(a, k, closes, before->red, before->green, before->blue);
+    lit_close(k, closes, before->red, before->green, before->blue);
     k->red = v_select(closes, k->red - before->red, k->red);
     k->green = v_select(closes, k->green - before->green, k->green);
     k->blue = v_select(closes, k->blue - before->blue, k->blue);
@@ -225,7 +289,7 @@ INLINE void RAY_NAME(lit_end)(
   CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden, GLOBAL const void* table, stratus_packet* k)
 {
   stratus_lit_places* p = &k->places;
-  lit_close(a, k, v_lt(v_set(0.0f), p->weight), k->red, k->green, k->blue);
+  lit_close(k, v_lt(v_set(0.0f), p->weight), k->red, k->green, k->blue);
   while (p->count > 0) {
     RAY_NAME(lit_shade)(a, values, hidden, table, k);
   }

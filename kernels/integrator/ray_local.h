@@ -41,8 +41,18 @@ INLINE void RAY_NAME(local_march)(CONSTANT stratus_ray_cast_arguments* a, value_
 #endif
     local_composite(a, sums, k, k->live & v_finite(sample.value), sample.value, sample.length, sample.lo);
 #if RAY_LIT
+    vfloat parts;
     const lit_stretch stretch = lit_stretch_of(&before, k, sample.lo, sample.weight);
-    RAY_NAME(lit_pass)(a, values, hidden, sums, k, &before, k->live, &stretch);
+    vmask cut = lit_take_back(k, &before, k->live, &stretch, &parts);
+    RAY_NAME(lit_pass)(a, values, hidden, sums, k, &before, m_andnot(k->live, cut), &stretch);
+    const vfloat share = v_reciprocal(parts), part = sample.weight * share;
+    for (vfloat n = v_set(0.0f); m_any(cut); n = n + v_set(1.0f), cut = cut & v_lt(n, parts)) { /* of one value, lit at several places */
+      const lit_before mine = lit_before_stretch(k);
+      const vfloat begin = v_fma(n, part, sample.lo);
+      local_composite(a, sums, k, cut, sample.value, sample.length * share, begin);
+      const lit_stretch piece = lit_stretch_of(&mine, k, begin, part);
+      RAY_NAME(lit_pass)(a, values, hidden, sums, k, &mine, cut, &piece);
+    }
 #endif
     k->i = k->i + vi_set(1);
     k->live = m_andnot(k->live, vi_ge(k->i, k->last) | v_lt(k->transparency, v_set(a->termination)));

@@ -12,16 +12,24 @@
 #endif
 
 #if RAY_LIT
-/* The bundles of rays (lit_places.h). The colours of a ray's open bundle are the packet's own. Closed bundles of all rays wait in a
- * queue, so that light is computed for as many of them at once as a packet has lanes. */
+/* A bundle that was lit (lit_places.h): its place on the ray, half of its length, and the field's slope along the ray there; 0: there is
+ * none. */
+typedef struct stratus_lit_bundle {
+  float place, extent, slope, opacity, color[3], diffuse[3], specular[3];
+} stratus_lit_bundle;
+
+/* The bundles of rays. The colours of a ray's open bundle are the packet's own. Closed bundles of all rays wait in a queue, so that light
+ * is computed for as many of them at once as a packet has lanes. */
 #define LIT_QUEUE (2 * STRATUS_WIDTH)
 typedef struct stratus_lit_places {
   vfloat limit, gap;                    /* the largest spread of a bundle, in squares of samples, and the widest gap in it, a voxel */
   vfloat reach;                         /* where the last stretch ended */
   vfloat weight, first, second, origin; /* of the open bundles: their opacity, and the moments of their places about `origin` */
   float lit[3][STRATUS_WIDTH];          /* each ray's colours with light */
-  float x[3][LIT_QUEUE], d[3][LIT_QUEUE], color[3][LIT_QUEUE], opacity[LIT_QUEUE]; /* closed bundles: place, and direction of the ray */
+  /* of the closed bundles: as of a stratus_lit_bundle, and the number of the ray */
+  float place[LIT_QUEUE], extent[LIT_QUEUE], opacity[LIT_QUEUE], color[3][LIT_QUEUE];
   int lane[LIT_QUEUE], count;
+  stratus_lit_bundle last[STRATUS_WIDTH]; /* of each ray, the one that was lit last */
 } stratus_lit_places;
 #endif
 

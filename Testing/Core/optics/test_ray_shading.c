@@ -71,13 +71,14 @@ static void pictures_are_lit_as_the_reference_lights_them(void** state)
 }
 
 /* Rays by cells take light at places that neighbouring stretches share. The picture converges to the reference as the spread about a place
- * falls, with no more samples; places that are far apart are seen. */
+ * falls, with no more samples; places that are far apart are seen. Where normals are turned to the eye, light jumps along a ray. */
 static void rays_by_cells_are_lit_at_shared_places(void** state)
 {
   (void)state;
   static const double spreads[] = { 1e-5, 1e-3, 1e-1 }, wanted[] = { 70.0, 55.0, 35.0 };
   stratus_context* context = case_context("host", 2);
-  for (int turned = 0; turned < 2; ++turned) {
+  for (int way = 0; way < 4; ++way) {
+    const int turned = way & 1, both_sides = way / 2;
     picture_case c;
     double last = INFINITY;
     case_create(context, &c, turned ? STRATUS_UINT8 : STRATUS_FLOAT32, 30, 26, 28, 5);
@@ -85,7 +86,7 @@ static void rays_by_cells_are_lit_at_shared_places(void** state)
     c.options.light.shading.light_count = 2;
     c.options.light.shading.lights[0] = (stratus_light){ .vector = { 3, -1, 2 }, .color = { 1, 0.4, 0.2 } };
     c.options.light.shading.lights[1] = (stratus_light){ .vector = { 40, 50, -10 }, .color = { 0.2, 0.5, 1.5 }, .positional = 1 };
-    c.options.light.shading.one_sided = 1;
+    c.options.light.shading.one_sided = !both_sides;
     c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
     c.options.sampling.cell_error = 1e-4;
     if (turned) {
@@ -96,12 +97,37 @@ static void rays_by_cells_are_lit_at_shared_places(void** state)
     }
     for (int i = 0; i < 3; ++i) {
       c.options.sampling.light_spread = spreads[i];
-      const double db = lit_psnr("by cells", context, &c, wanted[i]);
+      const double db = lit_psnr(both_sides ? "by cells, both sides" : "by cells", context, &c, wanted[i]);
       assert_true(db < last);
       last = db;
     }
     case_destroy(&c);
   }
+  stratus_context_destroy(context);
+}
+
+/* Where the field is smooth, samples are as long as without light: one that makes much of a pixel is lit at several places. */
+static void long_samples_are_lit_at_several_places(void** state)
+{
+  static const double tolerances[] = { 0.02, 0.005 };
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  picture_case c;
+  case_create(context, &c, STRATUS_FLOAT32, 30, 26, 28, 5);
+  shine(&c);
+  c.options.sampling.distance = 0.0;
+  for (int i = 0; i < 2; ++i) {
+    uint64_t samples[2];
+    c.options.sampling.tolerance = tolerances[i];
+    for (int cells = 0; cells < 2; ++cells) {
+      c.options.sampling.rule = cells ? STRATUS_SAMPLING_CELLS : STRATUS_SAMPLING_AUTO;
+      lit_psnr(cells ? "by cells" : "by long samples", context, &c, -20.0 * log10(tolerances[i]));
+      samples[cells] = drawn.report.samples;
+      assert_int_equal(drawn.report.sampling, cells ? STRATUS_SAMPLING_CELLS : STRATUS_SAMPLING_LOCAL);
+    }
+    assert_true(3 * samples[0] < 2 * samples[1]);
+  }
+  case_destroy(&c);
   stratus_context_destroy(context);
 }
 
@@ -453,6 +479,7 @@ int test_ray_shading(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(pictures_are_lit_as_the_reference_lights_them),
     cmocka_unit_test(rays_by_cells_are_lit_at_shared_places),
+    cmocka_unit_test(long_samples_are_lit_at_several_places),
     cmocka_unit_test(lights_follow_the_camera),
     cmocka_unit_test(lights_are_dimmed_and_have_cones_as_the_reference_says),
     cmocka_unit_test(what_is_wrong_with_a_lamp_is_said),
