@@ -20,9 +20,12 @@
 static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
 #define NEAR_STEPS_LEAST 2
 #define NEAR_STEPS_MOST 16
-#define FAINT 1e-4f /* nodes that add less than this to a picture are not compared */
-#define LINES 16    /* a map is compared with so many rows and columns of a finer one; only these are drawn of that */
-#define LAYERS 32   /* and so many of its layers are compared from the side */
+#define FAINT 1e-4f                      /* nodes that add less than this to a picture are not compared */
+#define LINES 16                         /* a map is compared with so many rows and columns of a finer one; only these are drawn of that */
+#define LAYERS 32                        /* and so many of its layers are compared from the side */
+#define PICTURES_BYTES ((size_t)1 << 24) /* of layers that are drawn together, which should be in the cache until they are summed */
+#define ROWS 16                          /* of nodes are drawn at once at least */
+#define NODES_A_THREAD 4096              /* fewer are faster summed by one */
 /* A map has at most so many words, 64 MiB. NODES_LAST nodes along each side are within it, but not in six faces of a cube. */
 #define WORDS_MOST ((size_t)NODES_LAST * NODES_LAST * NODES_LAST)
 /* A position whose light meets the matter at a greater slope than this, or is in it, has a cube of maps. */
@@ -236,10 +239,10 @@ typedef struct drawing {
   lattice nodes;
   /* of a face: the light that passes to each node at the layers' near sides, one layer after the other, and at the last's far side */
   uint16_t* planes;
-  float *rgba, *passed;
-  int32_t* words;    /* of the map; NULL: it is drawn to be compared */
-  bool column;       /* columns are drawn to compare, else rows */
-  const map* coarse; /* all that follows is set to compare */
+  float *pictures, *rgba, *passed; /* rgba: of the layer that is looked at */
+  int32_t* words;                  /* of the map; NULL: it is drawn to be compared */
+  bool column;                     /* columns are drawn to compare, else rows */
+  const map* coarse;               /* all that follows is set to compare */
   const int32_t* coarse_words;
   float* along;                               /* of the view along the light's way, each node's differences so far */
   double near_layers, squares[NEARS], pixels; /* near_layers: of the finer map, in a near length of the coarser */
@@ -374,67 +377,86 @@ static void fill_row(const void* data, int y, uint64_t counts[STRATUS_TILE_COUNT
   }
 }
 
-static stratus_status draw_face(drawing* d, int face)
+/* Draws some rows of a face's nodes, `together` layers at a time, and compares them, or fills their words. */
+static stratus_status draw_rows(drawing* d, int face, int from, int rows, int together)
 {
   const map* m = d->map;
-  const int *n = d->nodes.count, layers = m->size[2];
-  const size_t nodes = drawn_nodes(d);
+  const lattice all = d->nodes;
+  const int layers = m->size[2];
   const double near = m->frame.lo[2], layer_depth = (m->frame.hi[2] - near) / layers;
   stratus_camera camera;
-  const stratus_image image = { .width = n[0], .height = n[1], .rgba = d->rgba };
+  stratus_status status = STRATUS_OK;
+  d->nodes.first[1] += from * all.step[1];
+  d->nodes.count[1] = rows;
+  const size_t nodes = drawn_nodes(d);
   const bool sees = face_camera(m, face, d->matter->bounds, &d->nodes, &camera);
-  if (!d->words) {
-    if (!sees) {
-      return STRATUS_OK;
-    }
-    memset(d->along, 0, NEARS * nodes * sizeof(float));
-  }
   for (size_t i = 0; i < nodes; ++i) {
     d->passed[i] = 1.0f;
     d->planes[i] = 65535;
   }
-  for (int layer = 0; layer < layers; ++layer) {
-    uint16_t* plane = d->planes + (size_t)(layer + 1) * nodes;
-    if (!sees) {
-      memset(plane, 255, nodes * sizeof *plane);
-      continue;
-    }
-    camera.near_k = near + layer * layer_depth;
-    camera.far_k = near + (layer + 1) * layer_depth;
-    TRY(d->matter->draw(d->matter->of, &camera, &image, false));
-    if (!d->words) {
-      compare_layer(d, face, layer);
-    }
-#pragma omp parallel for num_threads(d->context->threads)
-    for (size_t i = 0; i < nodes; ++i) {
-      d->passed[i] *= passes(d, i);
-      plane[i] = (uint16_t)(d->passed[i] * 65535.0f + 0.5f);
+  if (!sees) {
+    memset(d->planes, 255, ((size_t)layers + 1) * nodes * sizeof *d->planes);
+  }
+  for (int first = 0; sees && first < layers; first += together) {
+    const int count = together < layers - first ? together : layers - first;
+    const stratus_image image = { .width = d->nodes.count[0], .height = rows, .rgba = d->pictures };
+    camera.near_k = near + first * layer_depth;
+    camera.far_k = near + (first + count) * layer_depth;
+    TRY_CLEANUP(d->matter->draw(d->matter->of, &camera, count, &image, false));
+    for (int layer = first; layer < first + count; ++layer) {
+      uint16_t* plane = d->planes + (size_t)(layer + 1) * nodes;
+      d->rgba = d->pictures + 4 * (size_t)(layer - first) * nodes;
+      if (!d->words) {
+        compare_layer(d, face, layer);
+      }
+#pragma omp parallel for num_threads(d->context->threads) if (nodes > NODES_A_THREAD)
+      for (size_t i = 0; i < nodes; ++i) {
+        d->passed[i] *= passes(d, i);
+        plane[i] = (uint16_t)(d->passed[i] * 65535.0f + 0.5f);
+      }
     }
   }
   if (d->words) {
     uint64_t counts[STRATUS_TILE_COUNTS];
-    const face_words all = { d->planes, m->size, d->words + (size_t)face * nodes * (size_t)layers };
-    TRY(stratus_each_tile(d->context, "light", n[1], fill_row, &all, counts));
+    const size_t words_before = ((size_t)face * (size_t)m->size[1] + (size_t)from) * (size_t)m->size[0] * (size_t)layers;
+    const int size[3] = { m->size[0], rows, layers };
+    const face_words some = { d->planes, size, d->words + words_before };
+    TRY_CLEANUP(stratus_each_tile(d->context, "light", rows, fill_row, &some, counts));
   }
-  return STRATUS_OK;
+cleanup:
+  d->nodes = all;
+  return status;
 }
 
 static stratus_status draw_faces(drawing* d)
 {
-  const size_t nodes = drawn_nodes(d);
-  void *picture = NULL, *planes = NULL;
+  const int *n = d->nodes.count, layers = d->map->size[2];
+  const int together = d->matter->together ? layers : 1;
+  const size_t row_pictures = (size_t)n[0] * (size_t)together * 4 * sizeof(float);
+  /* lines that are compared are drawn as a whole, because they are looked at along columns, too */
+  const int some = (int)(PICTURES_BYTES / row_pictures) / ROWS * ROWS;
+  const int rows = !d->matter->together || !d->words || some >= n[1] ? n[1] : some > ROWS ? some : ROWS;
+  const size_t nodes = (size_t)n[0] * (size_t)rows;
+  void *picture = NULL, *sums = NULL, *planes = NULL;
   stratus_status status;
-  TRY_CLEANUP(stratus_allocate(d->context, nodes, (d->words ? 5 : 5 + NEARS) * sizeof(float), &picture));
-  TRY_CLEANUP(stratus_allocate(d->context, nodes, ((size_t)d->map->size[2] + 1) * sizeof(uint16_t), &planes));
-  d->rgba = picture;
-  d->passed = d->rgba + 4 * nodes;
+  TRY_CLEANUP(stratus_allocate(d->context, nodes, 4 * sizeof(float) * (size_t)together, &picture));
+  TRY_CLEANUP(stratus_allocate(d->context, nodes, (d->words ? 1 : 1 + NEARS) * sizeof(float), &sums));
+  TRY_CLEANUP(stratus_allocate(d->context, nodes, ((size_t)layers + 1) * sizeof(uint16_t), &planes));
+  d->pictures = picture;
+  d->passed = sums;
   d->along = d->passed + nodes;
   d->planes = planes;
   for (int face = 0; face < (d->map->faces > 0 ? d->map->faces : 1); ++face) {
-    TRY_CLEANUP(draw_face(d, face));
+    if (!d->words) {
+      memset(d->along, 0, NEARS * nodes * sizeof(float));
+    }
+    for (int from = 0; from < n[1]; from += rows) {
+      TRY_CLEANUP(draw_rows(d, face, from, rows < n[1] - from ? rows : n[1] - from, together));
+    }
   }
 cleanup:
   stratus_release(d->context, picture);
+  stratus_release(d->context, sums);
   stratus_release(d->context, planes);
   return status;
 }

@@ -16,6 +16,7 @@ typedef struct stratus_light_matter {
   stratus_light_draw* draw;
   void* of;
   double bounds[6]; /* world coordinates: xmin xmax ymin ymax zmin zmax */
+  bool together;    /* whether it is drawn fastest in many layers at a time */
   /* steps at which a renderer can pass the matter next to a place by itself; 0: it cannot */
   double step;
   double detail;    /* length of the finest cells in which it scatters light again; 0: not known */

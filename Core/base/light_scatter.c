@@ -86,7 +86,7 @@ static stratus_status draw_cells(
       .up = { 0.0, half[1], 0.0 },
       .near_k = layer * c.spacing[2],
       .far_k = (layer + 1) * c.spacing[2] };
-    TRY_CLEANUP(draw(of, &camera, &drawn, true));
+    TRY_CLEANUP(draw(of, &camera, 1, &drawn, true));
     add_layer(&c, picture, pixels, layer);
   }
   for (size_t i = 0; i < 3 * count; ++i) {

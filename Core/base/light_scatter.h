@@ -7,8 +7,26 @@
 #include "light_arguments.h"
 #include "stratus/ray_cast.h"
 
-/* Draws matter as it is seen without lights. colors: as its albedo, else only the opacity of the image is read. */
-typedef stratus_status stratus_light_draw(void* of, const stratus_camera* camera, const stratus_image* image, bool colors);
+/* Draws matter as it is seen without lights, in `layers`: the image's rgba receives so many pictures, one after the other, each of a part
+ * of the same depth of the camera's near_k to far_k. colors: as its albedo, else in its own colours. */
+typedef stratus_status stratus_light_draw(void* of, const stratus_camera* camera, int layers, const stratus_image* image, bool colors);
+
+/* For renderers that draw layer by layer: the camera and the picture of one of `layers`. */
+static inline stratus_camera stratus_light_layer_camera(const stratus_camera* all, int layer, int layers)
+{
+  stratus_camera camera = *all;
+  const double depth = (all->far_k - all->near_k) / layers;
+  camera.near_k = all->near_k + layer * depth;
+  camera.far_k = all->near_k + (layer + 1) * depth;
+  return camera;
+}
+
+static inline stratus_image stratus_light_layer_image(const stratus_image* all, int layer)
+{
+  stratus_image image = *all;
+  image.rgba += 4 * (size_t)layer * (size_t)all->width * (size_t)all->height;
+  return image;
+}
 
 /* Matter in a box of cells. */
 typedef struct stratus_light_cells {

@@ -55,6 +55,7 @@ struct stratus_ray_caster {
   stratus_ray_trial trial;
   const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
   bool on_host;                    /* it never draws on the device */
+  int layers;                      /* > 0: pictures hold so many layers, as stratus_light_draw has them; on the host */
   stratus_light_state light;       /* of a picture of this one volume, or of several inputs of which it is the first */
   bool light_given;                /* optics.lights belongs to a picture of several inputs */
   bool together;                   /* it draws in one march with others, which light each sample */

@@ -229,6 +229,23 @@ void stratus_ray_fill_report(
   report->light_error = stratus_light_maps_error(caster->optics.lights);
 }
 
+/* Makes a picture, or all its layers, show nothing. */
+static void clear(const stratus_ray_caster* caster, const stratus_image* image)
+{
+  stratus_image all = *image;
+  all.height *= caster->layers > 0 ? caster->layers : 1;
+  stratus_image_clear(&all);
+}
+
+/* Makes rays store layers of the camera's depth. */
+static void set_layers(int layers, const stratus_camera* camera, stratus_ray_camera* rays)
+{
+  rays->layers = layers;
+  if (layers > 0) {
+    rays->layer_k = stratus_pair_of((camera->far_k - camera->near_k) / layers);
+  }
+}
+
 static stratus_status render(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image, stratus_ray_cast_report* report)
 {
@@ -252,11 +269,12 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   }
   TRY(stratus_ray_frame_arguments(
     caster, camera, options, image, caster->integrator.choice.sample_distance, caster->integrator.choice.follows, &arguments, &empty));
+  set_layers(caster->layers, camera, &arguments.camera);
   const bool covers = stratus_ray_modes_covers(options);
   bool with_map = used != STRATUS_STRUCTURE_NONE && !(covers && caster->structure.occupancy->count == 0);
   double start = stratus_now_ms(), drawn_ms = 0.0;
   if (empty || (!stratus_ray_shading_show(&caster->optics, &caster->field, &caster->integrator.values) && !covers)) {
-    stratus_image_clear(image);
+    clear(caster, image);
     memset(report->window, 0, sizeof report->window);
   } else {
     const bool found = !with_map || caster->structure.occupancy->count > 0;
@@ -287,7 +305,7 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
       TRY(draw(caster, &arguments, image, with_map, &drawn, &counts, &report->upload_ms));
       report_window(arguments.camera.window, report->window);
     } else {
-      stratus_image_clear(image);
+      clear(caster, image);
       memset(report->window, 0, sizeof report->window);
     }
     if (options->skipping.audit) {

@@ -151,7 +151,7 @@ typedef struct one_volume {
   stratus_ray_cast_options options;
 } one_volume;
 
-static stratus_status draw_volume(void* of, const stratus_camera* camera, const stratus_image* image, bool colors)
+static stratus_status draw_volume(void* of, const stratus_camera* camera, int layers, const stratus_image* image, bool colors)
 {
   const one_volume* m = of;
   stratus_ray_cast_report report;
@@ -160,7 +160,10 @@ static stratus_status draw_volume(void* of, const stratus_camera* camera, const 
   if (colors) {
     show_albedo(m->lit, stratus_volume_components(m->volume), materials, &options);
   }
-  return m->draw(m->caster, m->volume, m->transfer, camera, &options, image, &report);
+  m->caster->layers = layers;
+  const stratus_status status = m->draw(m->caster, m->volume, m->transfer, camera, &options, image, &report);
+  m->caster->layers = 0;
+  return status;
 }
 
 stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_transfer* transfer,
@@ -177,6 +180,7 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
   const double start = stratus_now_ms();
   one_volume m = { .draw = draw, .volume = volume, .transfer = transfer, .lit = options, .options = dark_options(options) };
   stratus_light_matter matter = { .draw = draw_volume, .of = &m, .tolerance = options->sampling.tolerance };
+  matter.together = true;
   matter.diffuse = diffuse_of(volume, options);
   matter.detail = stratus_ray_voxel_length(volume) / CELLS_A_VOXEL;
   const bool regions = options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE;
@@ -236,13 +240,18 @@ static void set_options(several* m, bool colors)
   m->colors = colors;
 }
 
-static stratus_status draw_several(void* of, const stratus_camera* camera, const stratus_image* image, bool colors)
+static stratus_status draw_several(void* of, const stratus_camera* camera, int layers, const stratus_image* image, bool colors)
 {
   several* m = of;
   if (colors != m->colors) {
     set_options(m, colors);
   }
-  return m->draw(m->inputs, m->count, camera, image, NULL);
+  for (int layer = 0; layer < layers; ++layer) {
+    const stratus_camera part = stratus_light_layer_camera(camera, layer, layers);
+    const stratus_image picture = stratus_light_layer_image(image, layer);
+    TRY(m->draw(m->inputs, m->count, &part, &picture, NULL));
+  }
+  return STRATUS_OK;
 }
 
 static uint64_t key_of_inputs(uint64_t key, const stratus_ray_cast_input* inputs, int count)

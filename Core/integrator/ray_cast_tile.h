@@ -22,7 +22,7 @@ static void RAY_NAME(tile)
 {
   const stratus_ray_cast_arguments* a = frame->arguments;
   tile_counts mine = { vi_set(0), vi_set(0), vi_set(0), 0 };
-  const int pieces = a->crop.regions ? CROP_PIECES : 1;
+  const int pieces = a->crop.regions ? CROP_PIECES : 1, layers = a->camera.layers > 0 ? a->camera.layers : 1;
   for (int y = y0; y < y1; y += PACKET_Y) {
     for (int x = x0; x < x1; x += PACKETS_TOGETHER * PACKET_X) {
       stratus_packet k[PACKETS_TOGETHER];
@@ -30,21 +30,27 @@ static void RAY_NAME(tile)
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
         RAY_NAME(begin_packet)(frame, x + i * PACKET_X, y, &k[i], &crop[i]); /* beyond the picture, no ray is live and nothing is stored */
       }
-      for (int piece = 0; piece < pieces; ++piece) {
-        for (int i = 0; a->crop.regions && i < PACKETS_TOGETHER; ++i) {
-          crop_enter(a, &crop[i], piece, &k[i]);
-        }
+      stratus_ray_cast_frame pictures = *frame;
+      for (int layer = 0; layer < layers; ++layer, pictures.rgba += 4 * (size_t)a->picture.width * (size_t)a->picture.height) {
+        for (int piece = 0; piece < pieces; ++piece) {
+          for (int i = 0; (a->crop.regions || a->camera.layers) && i < PACKETS_TOGETHER; ++i) {
+            crop_enter(a, &crop[i], piece, layer, &k[i]);
+          }
 #if PACKETS_TOGETHER == 2
-        RAY_NAME(ray_march_two)(a, frame->values, frame->hidden, frame->map, frame->rough, frame->table, &k[0], &k[1]);
+          RAY_NAME(ray_march_two)(a, frame->values, frame->hidden, frame->map, frame->rough, frame->table, &k[0], &k[1]);
 #else
-        RAY_NAME(ray_march)(a, frame->values, frame->hidden, frame->map, frame->rough, frame->table, &k[0]);
+          RAY_NAME(ray_march)(a, frame->values, frame->hidden, frame->map, frame->rough, frame->table, &k[0]);
 #endif
-      }
-      for (int i = 0; i < PACKETS_TOGETHER; ++i) {
+        }
+        for (int i = 0; i < PACKETS_TOGETHER; ++i) {
 #if defined(STRATUS_RAY_MODE)
-        RAY_NAME(ray_finish)(a, frame->values, frame->hidden, frame->table, &k[i]);
+          RAY_NAME(ray_finish)(a, frame->values, frame->hidden, frame->table, &k[i]);
 #endif
-        store_packet(frame, &k[i], x + i * PACKET_X, y, &mine);
+          store_packet(&pictures, &k[i], x + i * PACKET_X, y, &mine);
+          if (a->camera.layers) {
+            crop_next_layer(a, &crop[i], &k[i]);
+          }
+        }
       }
     }
   }

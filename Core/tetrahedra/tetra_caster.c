@@ -326,6 +326,8 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   stratus_tetra_frame_clip(&frame, mesh, options);
   stratus_tetra_frame_light(&frame, caster, mesh, transfer, options);
   stratus_tetra_frame_components(&frame, caster, mesh, options);
+  frame.arguments.layers = caster->layers;
+  frame.arguments.layer_depth = caster->layers > 0 ? (frame.arguments.end - frame.arguments.begin) / (float)caster->layers : 0.0f;
   report->transform_ms = stratus_now_ms() - start;
   TRY(marches ? march(caster, &frame, report) : project(caster, mesh, options->leaves, &frame, report));
   if (hits) {

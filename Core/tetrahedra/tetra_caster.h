@@ -108,6 +108,7 @@ typedef struct stratus_tetra_list stratus_tetra_list;   /* tetra_lattice.h */
 
 struct stratus_tetra_caster {
   stratus_context* context;
+  int layers;               /* > 0: pictures hold so many layers, as stratus_light_draw has them */
   int keeps;                /* > 0: pictures hold what rays keep, of surfaces this one of each ray, the nearest is 1 */
   stratus_mesh view;        /* the source of `mesh`; the list's where a lattice is listed */
   stratus_tetra_list* list; /* NULL: none */

@@ -87,7 +87,13 @@ double stratus_tetra_diffuse(const stratus_mesh* mesh, const stratus_tetra_optio
   return stratus_lights_diffuse(&options->shading, materials_of(mesh, options), mesh->components);
 }
 
-static stratus_status draw_matter(void* of, const stratus_camera* camera, const stratus_image* image, bool colors)
+/* Whether rays store all layers at once: they gather in one picture, and no crop region cuts them. */
+static bool draws_together(const stratus_mesh* mesh, const stratus_tetra_options* options)
+{
+  return !stratus_tetra_modes_regions(options) && !stratus_tetra_draws_parts(mesh, options);
+}
+
+static stratus_status draw_matter(void* of, const stratus_camera* camera, int layers, const stratus_image* image, bool colors)
 {
   const matter* m = of;
   stratus_tetra_options options = m->options;
@@ -95,7 +101,19 @@ static stratus_status draw_matter(void* of, const stratus_camera* camera, const 
   if (colors) {
     stratus_tetra_show_albedo(m->lit, m->mesh->components, materials, &options);
   }
-  return m->draw(m->dark, m->mesh, m->transfers, camera, &options, image, NULL);
+  if (layers > 1 && draws_together(m->mesh, &options)) {
+    memset(image->rgba, 0, 4 * (size_t)layers * (size_t)image->width * (size_t)image->height * sizeof(float));
+    m->dark->layers = layers;
+    const stratus_status status = m->draw(m->dark, m->mesh, m->transfers, camera, &options, image, NULL);
+    m->dark->layers = 0;
+    return status;
+  }
+  for (int layer = 0; layer < layers; ++layer) {
+    const stratus_camera part = stratus_light_layer_camera(camera, layer, layers);
+    const stratus_image picture = stratus_light_layer_image(image, layer);
+    TRY(m->draw(m->dark, m->mesh, m->transfers, &part, &options, &picture, NULL));
+  }
+  return STRATUS_OK;
 }
 
 stratus_status stratus_tetra_shadow_update(
@@ -112,6 +130,7 @@ stratus_status stratus_tetra_shadow_update(
   const int count = stratus_lights_in_world(camera, &of->options->shading, lights);
   const uint64_t key =
     stratus_tetra_shadow_key(stratus_light_key_of_scattering(0, &of->options->shading, lights, count), of->mesh, of->transfer, of->options);
+  all.together = draws_together(of->mesh, &m.options);
   all.diffuse = stratus_tetra_diffuse(of->mesh, of->options);
   if (!stratus_light_state_serves(&caster->light, key, lights, count)) {
     stratus_matrix_box(of->mesh->matrix, caster->mesh->lo, caster->mesh->hi, all.bounds); /* caster->mesh is up to date */

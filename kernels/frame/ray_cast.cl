@@ -66,7 +66,7 @@ PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGU
     RAY_NAME(ray_load)(a, opaque_depth, grid, lights, x, y, &k, &crop);
     for (int piece = 0; piece < pieces; ++piece) {
       if (RAY_RARE(RAY_REGIONS, a->crop.regions)) {
-        crop_enter(a, &crop, piece, &k);
+        crop_enter(a, &crop, piece, 0, &k);
       }
       if (m_any(k.live)) {
         RAY_NAME(ray_march)(a, values, hidden, map, rough, table, &k);
@@ -116,7 +116,7 @@ PACKET_KERNEL void ray_cast(__constant stratus_ray_cast_arguments* a, VALUE_ARGU
       }
       for (int piece = 0; piece < pieces; ++piece) {
         for (int i = 0; RAY_RARE(RAY_REGIONS, a->crop.regions) && i < PACKETS_TOGETHER; ++i) {
-          crop_enter(a, &crop[i], piece, &k[i]);
+          crop_enter(a, &crop[i], piece, 0, &k[i]);
         }
 #if PACKETS_TOGETHER == 2
         RAY_NAME(ray_march_two)(a, values, hidden, map, rough, table, &k[0], &k[1]);

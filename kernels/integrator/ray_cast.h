@@ -262,7 +262,8 @@ INLINE void RAY_NAME(ray_finish)(
 #endif
 #endif
 
-/* Makes the rays of the packet at pixel (x, y) ready for their first segment. `crop` is set only where the frame shows crop regions. */
+/* Makes the rays of the packet at pixel (x, y) ready for their first segment. `crop` is set only where the frame shows crop regions or
+ * stores layers. */
 INLINE void RAY_NAME(ray_load)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const float* opaque_depth, GLOBAL const int* grid,
   GLOBAL const int* lights, int x, int y, stratus_packet* k, stratus_crop* crop)
 {
@@ -274,7 +275,7 @@ INLINE void RAY_NAME(ray_load)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
 #if STRATUS_PREINTEGRATED
   k->fresh = k->live;
 #endif
-  if (RAY_RARE(RAY_REGIONS, a->crop.regions)) {
+  if (RAY_RARE(RAY_REGIONS, a->crop.regions) || RAY_LAYERS(a)) {
     crop_begin(a, &rays, k, crop);
   }
 #if STRATUS_RAY_MODE == STRATUS_RAY_SLICE

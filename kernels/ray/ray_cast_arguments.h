@@ -75,10 +75,12 @@ typedef struct stratus_ray_camera {
   /* squared world length of forward + u right + v up: [0] + u [1] + v [2] + u u [3] + u v [4] + v v [5] */
   stratus_pair metric[6];
   stratus_pair near_k, far_k; /* far_k only if has_far */
+  stratus_pair layer_k;       /* only if layers is set */
   stratus_pair pixel[2];      /* 1/width, 1/height of the picture */
   int window[4];              /* x0, x1, y0, y1: pixels outside show nothing */
   int parallel, has_far;
   int has_opaque_depth; /* 1: rays end where opaque geometry hides them */
+  int layers;           /* > 0: on the host rays store so many pictures, one after the other, each of a part layer_k deep from near_k on */
 } stratus_ray_camera;
 
 /* The samples of every ray. */

@@ -15,8 +15,16 @@ typedef struct stratus_rays {
   float unit[STRATUS_WIDTH];                                  /* the length of a sample in sample distances; set if lattice.follows is */
   float whole[2][STRATUS_WIDTH];                              /* the sum is that index, exactly, and without jitter */
   float piece_begin[STRATUS_WIDTH], piece_end[STRATUS_WIDTH]; /* the part that this piece owns, in samples */
+  float layers[2][STRATUS_WIDTH];                             /* where the first layer begins and how deep each is, in samples */
   float crossing[3][2][STRATUS_WIDTH];                        /* where the ray crosses the planes between crop regions, in samples */
 } stratus_rays;
+
+/* The number of layers that rays store one by one, on the host only: else 0. */
+#ifdef STRATUS_DEVICE
+#define RAY_LAYERS(a) 0
+#else
+#define RAY_LAYERS(a) (a)->camera.layers
+#endif
 
 /* The smallest displacement of a sample along an axis, in voxels. It keeps reciprocals finite, and the product of two in the range of
  * floats; and it moves no ray by a thousandth of a voxel, even if the eye is 1e11 samples away, as from voxels of very unequal sides. */
@@ -156,6 +164,10 @@ INLINE void ray_setup_part(
   }
   r_store(rays->whole[0] + part, first);
   r_store(rays->whole[1] + part, r_sub(first, r_load(rays->whole[0] + part)));
+  if (RAY_LAYERS(a)) {
+    r_store(rays->layers[0] + part, r_sub(r_mul(r_of(a->camera.near_k), samples_per_k), first));
+    r_store(rays->layers[1] + part, r_mul(r_of(a->camera.layer_k), samples_per_k));
+  }
   for (int side = 0; RAY_RARE(RAY_REGIONS, a->crop.regions) && side < 6; ++side) {
     const int axis = side / 2;
     const real crossing = r_mul(r_sub(r_of(a->crop.plane[axis][side % 2]), origin[axis]), inverse[axis]);

@@ -95,9 +95,13 @@ typedef struct stratus_tetra_arguments {
   float contour[4][TETRA_CONTOURS][5]; /* of each independent component, sorted by value: value, colour times opacity, opacity */
   stratus_slice_arguments slice;       /* in (a, b, z) */
   int plane_count;
-  float plane[TETRA_PLANES][6];        /* a ray is seen where [0] + u [1] + v [2] + ([3] + u [4] + v [5]) z >= 0 */
-  int regions;                         /* not 0: which crop regions show, of those between these planes */
-  float crop[3][2][6];                 /* along each axis of the mesh, the lower and the upper plane, as `plane` has them */
+  float plane[TETRA_PLANES][6]; /* a ray is seen where [0] + u [1] + v [2] + ([3] + u [4] + v [5]) z >= 0 */
+  int regions;                  /* not 0: which crop regions show, of those between these planes */
+  float crop[3][2][6];          /* along each axis of the mesh, the lower and the upper plane, as `plane` has them */
+  /* > 0: rays that gather light or surfaces store so many pictures, one after the other, each of a part of the same depth of begin..end;
+   * only pixels that show something are stored */
+  int layers;
+  float layer_depth;                   /* of such a part, in z */
   int steps_most;                      /* the most cells that a ray can pass from one border face to the next */
   int has_ends;                        /* 1: rays end at opaque geometry, each pixel at a depth of its own */
   stratus_tetra_media_arguments media; /* of the variant TETRA_LIT, as all that follows */

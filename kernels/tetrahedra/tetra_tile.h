@@ -23,6 +23,8 @@ typedef struct stratus_tetra_lanes {
   vint pixel, entry, beyond; /* the next entry of the ray, and the end of its entries */
   vint piece;                /* of the ray, where crop regions cut it */
   vint steps, segments;      /* cells passed since the last entry; cells passed in all */
+  vint layer;                /* of the pictures of layers, the one that the ray is in */
+  vfloat first, seen[2];     /* where the ray's first layer begins, and the part of the ray that is seen in all layers */
   vmask live, done;          /* done: the lane's way has ended; neither live nor done: there is no pixel for it */
 } stratus_tetra_lanes;
 
@@ -94,6 +96,16 @@ INLINE void lanes_crop(CONSTANT stratus_tetra_arguments* a, stratus_tetra_lanes*
   r->end = v_select(mask, v_load(last), r->end);
 }
 
+/* Cuts the seen part of rays to their layer. */
+INLINE void lanes_cut_to_layer(CONSTANT stratus_tetra_arguments* a, stratus_tetra_lanes* k, vmask mask)
+{
+  const vfloat depth = v_set(a->layer_depth), number = v_from_int(k->layer);
+  const vfloat begin = v_fma(number, depth, k->first), end = v_fma(number + v_set(1.0f), depth, k->first);
+  const vmask last = vi_ge(k->layer, vi_set(a->layers - 1));
+  k->ray.begin = v_select(mask, v_max(k->seen[0], begin), k->ray.begin);
+  k->ray.end = v_select(mask, v_select(last, k->seen[1], v_min(k->seen[1], end)), k->ray.end);
+}
+
 /* Loads the rays of lanes, or the next of their pieces, and their entries. */
 INLINE void lanes_load(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask)
 {
@@ -118,26 +130,40 @@ INLINE void lanes_load(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask
   if (a->mode == TETRA_SLICE) {
     lanes_meet_slice(a, r, mask);
   }
+  if (a->layers) {
+    const vfloat lean = v_fma(r->uw, v_set(a->lean[0]), r->vw * v_set(a->lean[1]));
+    k->first = v_select(mask, lean + v_set(a->begin), k->first);
+    k->seen[0] = v_select(mask, r->begin, k->seen[0]);
+    k->seen[1] = v_select(mask, r->end, k->seen[1]);
+    k->layer = vi_select(mask, vi_set(0), k->layer);
+    lanes_cut_to_layer(a, k, mask);
+  }
   const vint place = k->pixel + vi_set(TETRA_PIXELS * t->tile);
   k->entry = vi_select(mask, v_gather_ints((GLOBAL const int*)v->first, place, mask), k->entry);
   k->beyond = vi_select(mask, v_gather_ints((GLOBAL const int*)v->first, place + vi_set(1), mask), k->beyond);
 }
 
+/* Makes rays gather anew. */
+INLINE void lanes_forget(CONSTANT stratus_tetra_arguments* a, stratus_tetra_light* light, vmask mask)
+{
+  const vfloat none = v_set(0.0f);
+  const int surfaces = a->mode == TETRA_SURFACES || a->mode == TETRA_SLICE;
+  light->red = v_select(mask, none, light->red);
+  light->green = v_select(mask, none, light->green);
+  light->blue = v_select(mask, none, light->blue);
+  light->transparency = v_select(mask, v_set(1.0f), light->transparency);
+  light->depth = v_select(mask, v_set(LARGEST_FLOAT), light->depth);
+  light->most = v_select(mask, v_set(surfaces ? 0.0f : -LARGEST_FLOAT), light->most);
+}
+
 /* Begins the rays of lanes that have a new pixel. */
 INLINE void lanes_take(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask, vint pixel)
 {
-  const vfloat none = v_set(0.0f);
-  const int surfaces = t->arguments->mode == TETRA_SURFACES || t->arguments->mode == TETRA_SLICE;
   k->pixel = vi_select(mask, pixel, k->pixel);
   k->piece = vi_select(mask, vi_set(0), k->piece);
   lanes_load(t, k, mask);
   k->segments = vi_select(mask, vi_set(0), k->segments);
-  k->light.red = v_select(mask, none, k->light.red);
-  k->light.green = v_select(mask, none, k->light.green);
-  k->light.blue = v_select(mask, none, k->light.blue);
-  k->light.transparency = v_select(mask, v_set(1.0f), k->light.transparency);
-  k->light.depth = v_select(mask, v_set(LARGEST_FLOAT), k->light.depth);
-  k->light.most = v_select(mask, v_set(surfaces ? 0.0f : -LARGEST_FLOAT), k->light.most);
+  lanes_forget(t->arguments, &k->light, mask);
 }
 
 /* Moves rays that have ended to the next of their pieces in which they meet the mesh. Returns those that have one. */
@@ -259,6 +285,56 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
   }
 }
 
+/* Stores the layers of lanes that show something there, and makes the lanes gather anew. */
+OUTLINE void lanes_store_layer(stratus_tetra_walk* t, stratus_tetra_lanes* k, vmask mask)
+{
+  CONSTANT stratus_tetra_arguments* a = t->arguments;
+  const vmask shown = mask & v_lt(k->light.transparency, v_set(1.0f));
+  if (m_any(shown)) {
+    float channel[4][STRATUS_WIDTH];
+    int pixel[STRATUS_WIDTH], layer[STRATUS_WIDTH];
+    v_store(channel[0], k->light.red);
+    v_store(channel[1], k->light.green);
+    v_store(channel[2], k->light.blue);
+    v_store(channel[3], v_set(1.0f) - k->light.transparency);
+    vi_store(pixel, vi_select(shown, k->pixel, vi_set(-1)));
+    vi_store(layer, k->layer);
+    for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
+      if (pixel[lane] >= 0) {
+        const size_t x = (size_t)(t->x0 + pixel[lane] % TETRA_TILE), y = (size_t)(t->y0 + pixel[lane] / TETRA_TILE);
+        const size_t width = (size_t)a->picture.width, height = (size_t)a->picture.height;
+        GLOBAL float* rgba = t->view->picture.rgba + 4 * (((size_t)layer[lane] * height + y) * width + x);
+        for (int c = 0; c < 4; ++c) {
+          rgba[c] = channel[c][lane];
+        }
+      }
+    }
+  }
+  lanes_forget(a, &k->light, mask);
+}
+
+/* Shades a cell that was passed, as tetra_shade(), layer by layer. */
+INLINE vmask lanes_shade_layers(stratus_tetra_walk* t, stratus_tetra_lanes* k, stratus_tetra_passage* passage)
+{
+  CONSTANT stratus_tetra_arguments* a = t->arguments;
+  const vmask seen = passage->seen;
+  const stratus_tetra_place entered = k->ray.place;
+  vmask done = tetra_shade(a, &t->view->scene, &k->ray, &k->light, passage, k->live);
+  const stratus_tetra_place left = k->ray.place;
+  vmask over = k->live & v_le(k->ray.end, passage->to) & v_lt(k->ray.end, k->seen[1]);
+  while (m_any(over)) {
+    lanes_store_layer(t, k, over);
+    k->layer = vi_select(over, k->layer + vi_set(1), k->layer);
+    lanes_cut_to_layer(a, k, over);
+    passage->seen = seen & over;
+    k->ray.place = entered;
+    done = m_andnot(done, over) | (over & tetra_shade(a, &t->view->scene, &k->ray, &k->light, passage, over));
+    over = over & v_le(k->ray.end, passage->to) & v_lt(k->ray.end, k->seen[1]);
+  }
+  k->ray.place = left;
+  return done;
+}
+
 /* Lanes whose way has ended start their ray at its next entry if it can still see that; else they store the pixel and take another. */
 INLINE void lanes_go_on(stratus_tetra_walk* t, stratus_tetra_lanes* k)
 {
@@ -271,7 +347,7 @@ INLINE void lanes_go_on(stratus_tetra_walk* t, stratus_tetra_lanes* k)
   vmask again = m_andnot(k->done & vi_lt(k->entry, k->beyond), v_lt(k->light.transparency, v_set(a->termination)));
   if (m_any(again)) {
     gather_pair(t->view->entries, k->entry + k->entry, again, entry);
-    again = again & v_lt(v_from_bits(entry[0]), k->ray.end);
+    again = again & v_lt(v_from_bits(entry[0]), a->layers ? k->seen[1] : k->ray.end);
   }
   if (a->regions) {
     again = again | lanes_next_piece(t, k, m_andnot(k->done & vi_ge(k->pixel, none), again));
@@ -280,7 +356,11 @@ INLINE void lanes_go_on(stratus_tetra_walk* t, stratus_tetra_lanes* k)
   vmask taken = m_none();
   if (m_any(ended)) {
     int pixel[STRATUS_WIDTH];
-    lanes_store(t, k, ended);
+    if (a->layers) {
+      lanes_store_layer(t, k, ended & vi_ge(k->pixel, none));
+    } else {
+      lanes_store(t, k, ended);
+    }
     vi_store(pixel, vi_select(ended, none, vi_set(-1)));
     for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
       pixel[lane] = pixel[lane] < 0 || t->next >= t->count ? -1 : (int)t->pixels[t->next++];
@@ -313,7 +393,8 @@ INLINE void lanes_clear(stratus_tetra_lanes* k)
   r->fourth = r->place.entry = r->place.sum[0] = r->place.sum[1] = r->place.sum[2] = r->place.sum[3] = none;
   r->cell = k->pixel = outside;
   k->light.red = k->light.green = k->light.blue = k->light.transparency = k->light.depth = k->light.most = zero;
-  k->entry = k->beyond = k->steps = k->segments = k->piece = none;
+  k->first = k->seen[0] = k->seen[1] = zero;
+  k->entry = k->beyond = k->steps = k->segments = k->piece = k->layer = none;
   k->live = k->done = m_none();
 }
 
@@ -359,7 +440,8 @@ INLINE void march_lanes(stratus_tetra_walk* t)
         passage[i] = tetra_pass(a, scene, &k[i].ray, k[i].live);
       }
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
-        const vmask done = tetra_shade(a, scene, &k[i].ray, &k[i].light, passage + i, k[i].live);
+        const vmask done =
+          a->layers ? lanes_shade_layers(t, k + i, passage + i) : tetra_shade(a, scene, &k[i].ray, &k[i].light, passage + i, k[i].live);
         k[i].steps = vi_select(k[i].live, k[i].steps + vi_set(1), k[i].steps);
         k[i].done = k[i].done | done;
         k[i].live = m_andnot(k[i].live, done);
@@ -405,7 +487,7 @@ INLINE stratus_tetra_found draw_tile(
     }
     if (view->first[place] < view->first[place + 1]) {
       t.pixels[t.count++] = (ushort)pixel;
-    } else {
+    } else if (!arguments->layers) {
       store_ray(&t, pixel, nothing, LARGEST_FLOAT, 0);
     }
   }

@@ -9,20 +9,22 @@ static const double as_it_is[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0
 /* The matter: even, rough at random, or hard bars that only light along z meets. */
 typedef enum kind { EVEN, ROUGH, BARS } kind;
 
-static stratus_status draw(void* of, const stratus_camera* camera, const stratus_image* image, bool colors)
+static stratus_status draw(void* of, const stratus_camera* camera, int layers, const stratus_image* image, bool colors)
 {
   (void)colors;
   const kind matter = *(const kind*)of;
-  uint32_t random = 1;
-  for (int i = 0; i < image->width * image->height; ++i) {
-    const int x = i % image->width;
-    float* rgba = image->rgba + 4 * i;
-    rgba[3] = matter == EVEN           ? 0.5f
-      : matter == ROUGH                ? 1e-3f * (float)random_below(&random, 10)
-      : fabs(camera->forward[2]) < 0.5 ? 0.0f
-      : 8 * x / image->width % 2       ? 0.9f
-                                       : 0.0f;
-    rgba[0] = rgba[1] = rgba[2] = rgba[3];
+  for (int layer = 0; layer < layers; ++layer) {
+    uint32_t random = 1;
+    for (int i = 0; i < image->width * image->height; ++i) {
+      const int x = i % image->width;
+      float* rgba = image->rgba + 4 * (size_t)(layer * image->width * image->height + i);
+      rgba[3] = matter == EVEN           ? 0.5f
+        : matter == ROUGH                ? 1e-3f * (float)random_below(&random, 10)
+        : fabs(camera->forward[2]) < 0.5 ? 0.0f
+        : 8 * x / image->width % 2       ? 0.9f
+                                         : 0.0f;
+      rgba[0] = rgba[1] = rgba[2] = rgba[3];
+    }
   }
   return STRATUS_OK;
 }
