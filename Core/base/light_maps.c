@@ -562,7 +562,7 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
       double least = INFINITY;
       for (int i = 0; i < nears && !kept; ++i) {
         const double fall = last[i] > 0.0 ? fmin(fmax(differences[i] / last[i], FALL_LEAST), 1.0) : 1.0;
-        const double expected = matter->diffuse * (of_finer ? differences[i] * fall : differences[i]);
+        const double expected = matter->reflectance * (of_finer ? differences[i] * fall : differences[i]);
         const double length = near_lengths[i] * near_length(matter, of_finer ? &finer : m, sides[2]);
         if (i > 0 && length > NEAR_STEPS_MOST * matter->step) {
           break;
@@ -694,10 +694,10 @@ uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* tr
 
 uint64_t stratus_light_key_of_scattering(uint64_t key, const stratus_shading* shading, const stratus_light* lights, int count)
 {
-  key = stratus_light_key(key, &shading->diffuse, sizeof shading->diffuse);
   if (!shading->multiple) {
     return key;
   }
+  key = stratus_light_key(key, &shading->diffuse, sizeof shading->diffuse);
   key = stratus_light_key(key, &shading->anisotropy, sizeof shading->anisotropy);
   key = stratus_light_key(key, shading->sky_zenith, sizeof shading->sky_zenith);
   key = stratus_light_key(key, shading->sky_horizon, sizeof shading->sky_horizon);

@@ -19,9 +19,9 @@ typedef struct stratus_light_matter {
   bool together;    /* whether it is drawn fastest in many layers at a time */
   /* steps at which a renderer can pass the matter next to a place by itself; 0: it cannot */
   double step;
-  double detail;    /* length of the finest cells in which it scatters light again; 0: not known */
-  double diffuse;   /* the matter's albedo is at most this times the colour that `draw` shows without lights */
-  double tolerance; /* of pictures, root mean square over the matter; 0: as fine as maps can be */
+  double detail;      /* length of the finest cells in which it scatters light again; 0: not known */
+  double reflectance; /* of a light, the matter sends to the eye at most this times the colour that `draw` shows */
+  double tolerance;   /* of pictures, root mean square over the matter; 0: as fine as maps can be */
 } stratus_light_matter;
 
 /* Build the maps of all lights, given in the world. If light is scattered more than once, solve for it, too. A map has the least of 32, 64,

@@ -230,11 +230,17 @@ const stratus_material* stratus_lights_show_albedo(
   return own ? materials : NULL;
 }
 
-double stratus_lights_diffuse(const stratus_shading* shading, const stratus_material* own, int count)
+static double reflectance(double diffuse, double specular, double power)
 {
-  double most = own ? 0.0 : shading->diffuse;
+  return diffuse + specular / sqrt(2.0 * power + 1.0);
+}
+
+double stratus_lights_reflectance(const stratus_shading* shading, const stratus_material* own, int count)
+{
+  const double specular = shading->scattering < 1.0 ? 1.0 : 0.0; /* what is scattered has no highlights */
+  double most = own ? 0.0 : reflectance(shading->diffuse, specular * shading->specular, shading->specular_power);
   for (int c = 0; own && c < count; ++c) {
-    most = own[c].shade ? fmax(most, own[c].diffuse) : most;
+    most = own[c].shade ? fmax(most, reflectance(own[c].diffuse, specular * own[c].specular, own[c].specular_power)) : most;
   }
   return most;
 }

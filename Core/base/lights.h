@@ -29,8 +29,9 @@ bool stratus_lights_cast_shadows(const stratus_shading* shading, bool shade, con
 const stratus_material* stratus_lights_show_albedo(
   const stratus_shading* lit, const stratus_material* own, int count, stratus_shading* shading, stratus_material materials[4]);
 
-/* The largest diffuse number of matter. own: as above. */
-double stratus_lights_diffuse(const stratus_shading* shading, const stratus_material* own, int count);
+/* How much of a light matter of colour 1 sends to the eye at most: the diffuse number, and the root mean square of highlights over all
+ * normals. own: as above. */
+double stratus_lights_reflectance(const stratus_shading* shading, const stratus_material* own, int count);
 
 /* lamps.c: the fraction of a positional light that reaches a point. `to`, of length 1, leads from the point to the light, at `distance`. */
 double stratus_lamp_reaching(const stratus_light* light, const double to[3], double distance);

@@ -58,9 +58,9 @@ static void show_albedo(
     stratus_lights_show_albedo(&options->light.shading, options->light.materials, components, &dark->light.shading, materials);
 }
 
-static double diffuse_of(const stratus_volume* volume, const stratus_ray_cast_options* options)
+static double reflectance_of(const stratus_volume* volume, const stratus_ray_cast_options* options)
 {
-  return stratus_lights_diffuse(&options->light.shading, materials_of(volume, options), stratus_volume_components(volume));
+  return stratus_lights_reflectance(&options->light.shading, materials_of(volume, options), stratus_volume_components(volume));
 }
 
 /* The caster that draws a volume's matter. */
@@ -124,7 +124,8 @@ static uint64_t key_of_volume(
   const uint64_t mask[2] = { options->mask.revision, (uint64_t)options->mask.label_count };
   const double numbers[] = { options->mode, options->sampling.interpolation, options->sampling.tolerance, optics->dependent,
     optics->mean_components, optics->gradient_distance, optics->gradient_length, clip->clip_gradients, clip->clipped_value,
-    clip->clip_plane_count, clip->crop ? clip->crop_regions : 0.0, surfaces ? optics->contour_count : 0.0 };
+    clip->clip_plane_count, clip->crop ? clip->crop_regions : 0.0, surfaces ? optics->contour_count : 0.0,
+    reflectance_of(volume, options) };
   key = key_of_data(key, volume);
   key = stratus_light_key(key, &options->mask.bytes, sizeof options->mask.bytes);
   key = stratus_light_key(key, mask, sizeof mask);
@@ -181,7 +182,7 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
   one_volume m = { .draw = draw, .volume = volume, .transfer = transfer, .lit = options, .options = dark_options(options) };
   stratus_light_matter matter = { .draw = draw_volume, .of = &m, .tolerance = options->sampling.tolerance };
   matter.together = true;
-  matter.diffuse = diffuse_of(volume, options);
+  matter.reflectance = reflectance_of(volume, options);
   matter.detail = stratus_ray_voxel_length(volume) / CELLS_A_VOXEL;
   const bool regions = options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE;
   if (stratus_volume_components(volume) == 1 && options->mode == STRATUS_MODE_COMPOSITE && options->mask.label_count == 0 &&
@@ -321,13 +322,13 @@ static double detail_of(const several* m)
   return detail;
 }
 
-static double diffuse_of_inputs(const stratus_ray_cast_input* inputs, int count)
+static double reflectance_of_inputs(const stratus_ray_cast_input* inputs, int count)
 {
   double most = 0.0;
   for (int n = 0; n < count; ++n) {
     const stratus_ray_cast_input* in = &inputs[n];
     if (input_has_shadows(in)) {
-      most = fmax(most, in->tetra ? stratus_tetra_diffuse(in->mesh, in->tetra_options) : diffuse_of(in->volume, in->options));
+      most = fmax(most, in->tetra ? stratus_tetra_reflectance(in->mesh, in->tetra_options) : reflectance_of(in->volume, in->options));
     }
   }
   return most;
@@ -374,7 +375,7 @@ static stratus_status update_several(several* m, const stratus_ray_cast_input* i
     TRY(darken(m, inputs));
     TRY(bounds_of(m, matter.bounds));
     matter.detail = detail_of(m);
-    matter.diffuse = diffuse_of_inputs(inputs, m->count);
+    matter.reflectance = reflectance_of_inputs(inputs, m->count);
     TRY(stratus_light_state_build(m->context, &matter, shading, lights, count, state));
     state->key = key;
   }

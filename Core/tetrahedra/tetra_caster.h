@@ -238,8 +238,8 @@ stratus_status stratus_tetra_shadow_check(
 bool stratus_tetra_has_shadows(const stratus_mesh* mesh, const stratus_tetra_options* options);
 uint64_t stratus_tetra_shadow_key(
   uint64_t key, const stratus_mesh* mesh, const stratus_transfer* transfers, const stratus_tetra_options* options);
-/* The largest diffuse number of the mesh's matter. */
-double stratus_tetra_diffuse(const stratus_mesh* mesh, const stratus_tetra_options* options);
+/* stratus_lights_reflectance() of a mesh. */
+double stratus_tetra_reflectance(const stratus_mesh* mesh, const stratus_tetra_options* options);
 /* Makes options of the same matter without light. */
 stratus_tetra_options stratus_tetra_dark_options(const stratus_tetra_options* options);
 /* Makes options of the mesh without light show its albedo. materials: receives those of its components, if they have their own. */

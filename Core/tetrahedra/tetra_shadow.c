@@ -69,8 +69,8 @@ static uint64_t key_of_mesh(uint64_t key, const stratus_mesh* m)
 uint64_t stratus_tetra_shadow_key(uint64_t key, const stratus_mesh* m, const stratus_transfer* transfers, const stratus_tetra_options* o)
 {
   const bool surfaces = o->mode == STRATUS_TETRA_ISOSURFACE;
-  const double numbers[10] = { o->mode, o->tolerance, o->gradient_distance, o->clip_plane_count, o->crop, o->crop_regions, o->dependent,
-    o->mean_components, o->label_count, surfaces ? o->contour_count : 0.0 };
+  const double numbers[11] = { o->mode, o->tolerance, o->gradient_distance, o->clip_plane_count, o->crop, o->crop_regions, o->dependent,
+    o->mean_components, o->label_count, surfaces ? o->contour_count : 0.0, stratus_tetra_reflectance(m, o) };
   const int functions = o->label_count > 0 ? o->label_count + 1 : m->components > 1 && !o->dependent ? m->components : 1;
   key = key_of_mesh(key, m);
   key = stratus_light_key(key, numbers, sizeof numbers);
@@ -82,9 +82,9 @@ uint64_t stratus_tetra_shadow_key(uint64_t key, const stratus_mesh* m, const str
   return stratus_light_key_of_transfers(key, transfers, functions);
 }
 
-double stratus_tetra_diffuse(const stratus_mesh* mesh, const stratus_tetra_options* options)
+double stratus_tetra_reflectance(const stratus_mesh* mesh, const stratus_tetra_options* options)
 {
-  return stratus_lights_diffuse(&options->shading, materials_of(mesh, options), mesh->components);
+  return stratus_lights_reflectance(&options->shading, materials_of(mesh, options), mesh->components);
 }
 
 /* Whether rays store all layers at once: they gather in one picture, and no crop region cuts them. */
@@ -131,7 +131,7 @@ stratus_status stratus_tetra_shadow_update(
   const uint64_t key =
     stratus_tetra_shadow_key(stratus_light_key_of_scattering(0, &of->options->shading, lights, count), of->mesh, of->transfer, of->options);
   all.together = draws_together(of->mesh, &m.options);
-  all.diffuse = stratus_tetra_diffuse(of->mesh, of->options);
+  all.reflectance = stratus_tetra_reflectance(of->mesh, of->options);
   if (!stratus_light_state_serves(&caster->light, key, lights, count)) {
     stratus_matrix_box(of->mesh->matrix, caster->mesh->lo, caster->mesh->hi, all.bounds); /* caster->mesh is up to date */
     TRY(stratus_light_state_build(caster->context, &all, &of->options->shading, lights, count, &caster->light));

@@ -3,6 +3,7 @@
 #include "structures.h"
 
 #include "light_maps.h"
+#include "lights.h"
 
 static const double as_it_is[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
 
@@ -33,7 +34,7 @@ static stratus_light_maps* maps_of(
   stratus_context* context, kind matter, double depth, double step, double tolerance, const stratus_light* lights, int count)
 {
   const stratus_light_matter all = {
-    .draw = draw, .of = &matter, .bounds = { 0.0, 1.0, 0.0, 1.0, 0.0, depth }, .step = step, .diffuse = 1.0, .tolerance = tolerance
+    .draw = draw, .of = &matter, .bounds = { 0.0, 1.0, 0.0, 1.0, 0.0, depth }, .step = step, .reflectance = 1.0, .tolerance = tolerance
   };
   const stratus_shading once = { .shadows = 1 };
   stratus_light_maps* maps = NULL;
@@ -127,7 +128,7 @@ static void brighter_lights_have_finer_maps(void** state)
   (void)state;
   stratus_context* context = make_context("host", 1);
   for (int dark = 0; dark < 2; ++dark) {
-    all.diffuse = dark ? 0.5 : 1.0;
+    all.reflectance = dark ? 0.5 : 1.0;
     light.color[1] = 0.02;
     assert_int_equal(stratus_light_state_build(context, &all, &once, &light, 1, &kept), STRATUS_OK);
     kept.key = 1;
@@ -152,6 +153,20 @@ static void brighter_lights_have_finer_maps(void** state)
   stratus_context_destroy(context);
 }
 
+/* Highlights count by their root mean square over all normals, unless all light is scattered; of components the brightest counts. */
+static void matter_reflects_as_its_material_says(void** state)
+{
+  stratus_shading shading = { .diffuse = 0.5, .specular = 0.3, .specular_power = 4.0 };
+  const stratus_material own[3] = { { .shade = 1, .diffuse = 0.2 }, { .shade = 1, .diffuse = 0.4, .specular = 0.7, .specular_power = 24.0 },
+    { .diffuse = 0.9 } };
+  (void)state;
+  assert_true(fabs(stratus_lights_reflectance(&shading, NULL, 1) - 0.6) < 1e-12);
+  assert_true(fabs(stratus_lights_reflectance(&shading, own, 3) - 0.5) < 1e-12);
+  shading.scattering = 1.0;
+  assert_true(fabs(stratus_lights_reflectance(&shading, NULL, 1) - 0.5) < 1e-12);
+  assert_true(fabs(stratus_lights_reflectance(&shading, own, 3) - 0.4) < 1e-12);
+}
+
 int test_light_maps(void)
 {
   const struct CMUnitTest tests[] = {
@@ -159,6 +174,7 @@ int test_light_maps(void)
     cmocka_unit_test(flat_matter_has_a_map),
     cmocka_unit_test(each_light_passes_near_matter_on_its_own_length),
     cmocka_unit_test(brighter_lights_have_finer_maps),
+    cmocka_unit_test(matter_reflects_as_its_material_says),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
