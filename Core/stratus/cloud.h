@@ -18,7 +18,7 @@ extern "C" {
 /* Single-scattering albedo, and anisotropy of the phase function of Henyey and Greenstein, of cloud particles in visible light. */
 #define STRATUS_CLOUD_ALBEDO 1.0
 #define STRATUS_CLOUD_ANISOTROPY 0.85
-/* A water content, kg/m3, above that of all clouds, which have some g/m3 at most. */
+/* A water content, kg/m3, that no cloud reaches: clouds have some g/m3 at most. */
 #define STRATUS_CLOUD_MOST_CONTENT 0.1
 /* Largest relative error of the extinction of stratus_cloud_opacity(). */
 #define STRATUS_CLOUD_ERROR 0.001

@@ -123,7 +123,7 @@ typedef struct stratus_shading {
   int shadows;
   /* Composite and isosurface: the share of light that the matter scatters, 0..1; the rest is reflected by the gradient as above. A light of
    * colour l scatters diffuse l p C, where p is the phase function of Henyey and Greenstein (1941) times 4 pi:
-   * (1 - g^2) / (1 + g^2 - 2 g cos)^1.5. cos is between the ways of light before and after. So diffuse C is the single-scattering
+   * (1 - g^2) / (1 + g^2 - 2 g cos)^1.5. cos is between the directions of light before and after. So diffuse C is the single-scattering
    * albedo, and an irradiance of E is a colour of E / (4 pi). 1 needs no gradients. Default 0. */
   double scattering;
   double anisotropy; /* g, -.99...99; above 0 light scatters forward. Default 0: to all sides alike. */

@@ -204,7 +204,7 @@ public:
   //@{
   /**
    * Set/Get whether only some of the 27 regions that CroppingRegionPlanes make in the input's coordinates are drawn: xmin, xmax, ymin,
-   * ymax, zmin, zmax. Planes whose ends do not rise are refused. CroppingRegionFlags are those of vtkVolumeMapper: bit x + 3 y + 9 z shows
+   * ymax, zmin, zmax. Planes whose ends do not rise are refused. CroppingRegionFlags are as in vtkVolumeMapper: bit x + 3 y + 9 z shows
    * the region below (0), between (1) or above (2) the planes of each axis. Regions other than the inside are marched. Default off, 0 to 1,
    * and the inside (0x2000).
    */

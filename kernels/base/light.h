@@ -127,8 +127,8 @@ INLINE vfloat lamp_reaching(CONSTANT stratus_light_arguments* a, int i, const vf
   return part;
 }
 
-/* The light that scatters from a direction to the eye, 1 if it scatters evenly to all sides. The cosine is between the ways before and
- * after. */
+/* The light that scatters from a direction to the eye, 1 if it scatters evenly to all sides. The cosine is between the directions before
+ * and after. */
 INLINE vfloat light_phase(CONSTANT stratus_light_arguments* a, vfloat cosine)
 {
   const vfloat root = v_inverse_root(v_max(v_set(a->phase[1]) - cosine * v_set(a->phase[2]), v_set(1e-12f)));
@@ -183,7 +183,7 @@ INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps
     diffuse[axis] = v_set(material[0]);
     specular[axis] = zero;
   }
-  vfloat sent = zero, all = v_set(1e-30f); /* what the phase function sends to the eye of all lights */
+  vfloat sent = zero, all = v_set(1e-30f); /* the light that the phase function sends to the eye, of all lights */
   for (int i = 0; i < a->count; ++i) {
     vfloat light[3], half_way[3];
     for (int axis = 0; axis < 3; ++axis) {

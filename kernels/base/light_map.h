@@ -3,7 +3,7 @@
  * nodes. A node is a word of 32 bits: below, in 16 bits, the part of light, 0..65535, that passes to the layer's near side there, and above
  * the part that passes to its far side. The words of a node's layers follow one another, then come the nodes across, then up.
  *
- * The map of a direction is parallel. That of a position is in perspective; if it may lie in the volume, it has six faces, the sides of a
+ * The map of a direction is parallel. That of a position is in perspective; if it may be in the volume, it has six faces, the sides of a
  * cube along the axes: +x -x +y -y +z -z. */
 #ifndef STRATUS_LIGHT_MAP_H
 #define STRATUS_LIGHT_MAP_H

@@ -2,8 +2,8 @@
  * Light that matter scatters more than once, on a grid of nodes in a box of the world. A node has five words. Two numbers of 16 bits are in
  * the first, the lower one first: the mean radiance over all directions, red and green, 0..65535 times a factor; in the second is blue. The
  * others have three numbers of 10 bits each, 0..1022, of which 511 is 0: moments of the radiance, the mean of it times x, y, z, xx - 1/3,
- * yy - 1/3, xy, yz and zx of the way of light, as parts of the mean: the largest is 1, 1, 1, 2/3, 2/3, 1/2, 1/2, 1/2. The last number,
- * 0..1022, is the part of the mean that was scattered once. Nodes along x follow one another, then come those along y, then z. */
+ * yy - 1/3, xy, yz and zx of the direction of light, as parts of the mean: the largest is 1, 1, 1, 2/3, 2/3, 1/2, 1/2, 1/2. The last
+ * number, 0..1022, is the part of the mean that was scattered once. Nodes along x follow one another, then come those along y, then z. */
 #ifndef STRATUS_LIGHT_SCATTER_KERNEL_H
 #define STRATUS_LIGHT_SCATTER_KERNEL_H
 
@@ -11,7 +11,7 @@
 #include "light_arguments.h"
 
 /* The light that goes from the places x along d, of length 1 in the world, after one scattering more. The part that a scattering sends on
- * along its way, scatter_way, is of the radiance along d, which the mean and the moments tell up to the second order in d. The solution
+ * along its way, scatter_way, is of the radiance along d, which the mean and the moments give up to the second order in d. The solution
  * scatters evenly; `phase`, by the first scattering's phase function, is what that sends along d. */
 OUTLINE void light_scattered(
   CONSTANT stratus_light_arguments* a, GLOBAL const int* maps, const vfloat x[3], const vfloat d[3], vfloat phase, vfloat rgb[3])

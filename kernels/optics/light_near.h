@@ -58,7 +58,7 @@ INLINE vmask RAY_NAME(near_opaque)(CONSTANT stratus_ray_cast_arguments* a, GLOBA
 #endif
 }
 
-/* Cuts the part *from..*to of the way from x to the planes within which matter is seen. */
+/* Cuts the part *from..*to of the path from x to the planes within which matter is seen. */
 INLINE void RAY_NAME(near_bounds)(CONSTANT stratus_ray_cast_arguments* a, const vfloat x[3], const vfloat way[3], vfloat* from, vfloat* to)
 {
   const vfloat zero = v_set(0.0f), hair = v_set(1e-20f);

@@ -58,7 +58,7 @@ INLINE void lanes_meet_slice(CONSTANT stratus_tetra_arguments* a, stratus_tetra_
   const vfloat last = v_select(v_lt(second, none), second, v_select(v_lt(first, none), first, v_set(-LARGEST_FLOAT)));
   r->slice[0] = v_select(mask, first, r->slice[0]);
   r->slice[1] = v_select(mask, second, r->slice[1]);
-  /* a hair farther: what is at the end of a stretch belongs to the next */
+  /* a hair farther: the value at the end of a stretch belongs to the next */
   r->end = v_select(mask, v_min(r->end, v_fma(v_abs(last), v_set(1e-6f), last) + v_set(1e-30f)), r->end);
 }
 
