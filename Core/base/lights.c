@@ -194,6 +194,7 @@ void stratus_lights_set(const stratus_camera* camera, const stratus_shading* sha
 {
   const double g = shading->anisotropy;
   a->two_sided = !shading->one_sided;
+  a->turns = a->two_sided && shading->scattering < 1.0 && shading->light_count >= 0; /* a light at the eye sees both alike */
   a->scattered = (float)shading->scattering;
   a->phase[0] = (float)(1.0 - g * g);
   a->phase[1] = (float)(1.0 + g * g);

@@ -160,9 +160,13 @@ INLINE int light_reflects(CONSTANT stratus_light_arguments* a) { return a->scatt
 
 /* Lights component m at the places x where the gradient is g, on rays of direction d. A colour C of opacity A becomes C diffuse + A
  * specular. diffuse includes the ambient light. maps: of the lights; not read if none has one. passing: the part of each light that passes
- * to the places, read of lights that have a map; NULL: maps are read at the places. */
+ * to the places, read of lights that have a map; NULL: maps are read at the places.
+ *
+ * turned: receives by how much diffuse and specular would change where the ray has passed the place at which the field turns along it, as
+ * far behind it as these places are in front: there the part of the normal along the ray is the same, and the rest is turned round. NULL:
+ * not wanted. */
 INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps, const vfloat* passing, int m, const vfloat x[3],
-  const vfloat d[3], const vfloat g[3], vfloat diffuse[3], vfloat specular[3])
+  const vfloat d[3], const vfloat g[3], vfloat diffuse[3], vfloat specular[3], vfloat turned[6])
 {
   CONSTANT float* material = a->material[m];
   const vfloat zero = v_set(0.0f);
@@ -182,6 +186,14 @@ INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps
     }
     diffuse[axis] = v_set(material[0]);
     specular[axis] = zero;
+  }
+  vfloat behind[3] = { zero, zero, zero };
+  if (turned) {
+    const vfloat twice = v_set(2.0f) * v_dot3(normal, eye);
+    for (int axis = 0; axis < 3; ++axis) {
+      behind[axis] = v_fma(twice, eye[axis], zero - normal[axis]);
+      turned[axis] = turned[3 + axis] = zero;
+    }
   }
   vfloat sent = zero, all = v_set(1e-30f); /* the light that the phase function sends to the eye, of all lights */
   for (int i = 0; i < a->count; ++i) {
@@ -228,6 +240,20 @@ INLINE void light_at(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps
     for (int c = 0; c < 3; ++c) {
       diffuse[c] = v_fma(matt, v_set(a->color[i][c]), diffuse[c]);
       specular[c] = v_fma(shine, v_set(a->specular_color[i][c]), specular[c]);
+    }
+    if (turned) {
+      const vfloat other = v_max(v_dot3(behind, light), zero), more = (other - cosine) * v_set(material[1]) * reaching;
+      vfloat shines_more = zero - shine;
+      if (material[2] > 0.0f) {
+        const vfloat other_gloss = v_dot3(behind, half_way);
+        const vmask other_shines = v_lt(zero, other) & v_lt(v_set(1e-9f), other_gloss);
+        const vfloat power = v_power(v_select(other_shines, v_min(other_gloss, v_set(1.0f)), v_set(1.0f)), material[3]);
+        shines_more = v_select(other_shines, v_fma(power * v_set(material[2]), reaching, shines_more), shines_more);
+      }
+      for (int c = 0; c < 3; ++c) {
+        turned[c] = v_fma(more, v_set(a->color[i][c]), turned[c]);
+        turned[3 + c] = v_fma(shines_more, v_set(a->specular_color[i][c]), turned[3 + c]);
+      }
     }
   }
   if (a->scatter_at >= 0) {

@@ -8,6 +8,7 @@
 
 typedef struct stratus_light_arguments {
   int on, two_sided, count;        /* on: bit c where component c is lit */
+  int turns;                       /* 1: reflected light jumps where a normal is turned round */
   float scattered;                 /* the share of light that matter scatters, 0..1; the rest is reflected as by surfaces */
   float phase[3];                  /* Henyey and Greenstein's 1 - g^2, 1 + g^2 and 2 g */
   float normal[9];                 /* 3x3, by rows: takes a gradient to a normal, of any length */

@@ -7,7 +7,7 @@
  *
  * Where normals are turned towards the eye, light jumps where the field turns along the ray, since there the normal is turned round. The
  * jump is found between the places of two bundles, where the slope along the ray is 0 if it is straight between them. The part of a bundle
- * that is on the other side takes the other's light: its stretches count as even over the extent that has their spread.
+ * that is on the other side takes the light that it has there: its stretches count as even over the extent that has their spread.
  *
  * Closed bundles wait until the packet has one for each lane. A bundle follows from its ray, and a ray adds up the light of its
  * bundles in their order, so that no pixel depends on the others of its packet. Included by ray_cast.h. */
@@ -168,22 +168,17 @@ INLINE float lit_behind(const stratus_lit_bundle* b, float place)
   return part > 0.0f ? part < 1.0f ? part : 1.0f : 0.0f;
 }
 
-/* Gives a part of a bundle the light of another. */
-INLINE void lit_exchange(stratus_lit_places* p, int lane, const stratus_lit_bundle* b, float part, const stratus_lit_bundle* other)
-{
-  for (int c = 0; c < 3; ++c) {
-    p->lit[c][lane] += part * (b->color[c] * (other->diffuse[c] - b->diffuse[c]) + b->opacity * (other->specular[c] - b->specular[c]));
-  }
-}
-
-/* Finds where light jumps between the last bundle of a ray and the next one, and shares their light there. */
+/* Finds where light jumps between the last bundle of a ray and the next one, and turns the light of their parts that are on the other side.
+ */
 INLINE void lit_turn(stratus_lit_places* p, int lane, const stratus_lit_bundle* next)
 {
   const stratus_lit_bundle* last = &p->last[lane];
   if ((last->slope < 0.0f) != (next->slope < 0.0f) && last->slope != 0.0f) {
     const float turn = last->place + (next->place - last->place) * (last->slope / (last->slope - next->slope));
-    lit_exchange(p, lane, last, lit_behind(last, turn), next);
-    lit_exchange(p, lane, next, 1.0f - lit_behind(next, turn), last);
+    const float behind = lit_behind(last, turn), before = 1.0f - lit_behind(next, turn);
+    for (int c = 0; c < 3; ++c) {
+      p->lit[c][lane] += behind * last->turned[c] + before * next->turned[c];
+    }
   }
   p->last[lane] = *next;
 }
@@ -213,24 +208,25 @@ OUTLINE void RAY_NAME(lit_shade)(
   if (a->light.near) {
     RAY_NAME(light_near)(a, values, hidden, table, k, x, mask, passing);
   }
-  light_at(&a->light, k->lights, a->light.near ? passing : 0, 0, x, d, g, diffuse, specular);
-  const int turns = a->light.two_sided && light_reflects(&a->light);
-  float light[3][STRATUS_WIDTH], falls[6][STRATUS_WIDTH], slope[STRATUS_WIDTH];
-  v_store(slope, v_dot3(g, d));
+  vfloat turned[6];
+  light_at(&a->light, k->lights, a->light.near ? passing : 0, 0, x, d, g, diffuse, specular, a->light.turns ? turned : 0);
+  float light[3][STRATUS_WIDTH], other[3][STRATUS_WIDTH], slope[STRATUS_WIDTH];
   for (int c = 0; c < 3; ++c) {
     v_store(light[c], v_fma(v_load(p->color[c]), diffuse[c], opacity * specular[c]));
-    v_store(falls[c], diffuse[c]);
-    v_store(falls[3 + c], specular[c]);
+  }
+  if (a->light.turns) {
+    v_store(slope, v_dot3(g, d));
+    for (int c = 0; c < 3; ++c) {
+      v_store(other[c], v_fma(v_load(p->color[c]), turned[c], opacity * turned[3 + c]));
+    }
   }
   for (int i = 0; i < count; ++i) { /* one after the other, so that sums do not depend on how many are lit at once */
     const int lane = p->lane[i];
     for (int c = 0; c < 3; ++c) {
       p->lit[c][lane] += light[c][i];
     }
-    if (turns) {
-      const stratus_lit_bundle next = { p->place[i], p->extent[i], slope[i], p->opacity[i],
-        { p->color[0][i], p->color[1][i], p->color[2][i] }, { falls[0][i], falls[1][i], falls[2][i] },
-        { falls[3][i], falls[4][i], falls[5][i] } };
+    if (a->light.turns) {
+      const stratus_lit_bundle next = { p->place[i], p->extent[i], slope[i], { other[0][i], other[1][i], other[2][i] } };
       lit_turn(p, lane, &next);
     }
   }

@@ -54,7 +54,7 @@ OUTLINE void RAY_NAME(surface_show)(CONSTANT stratus_ray_cast_arguments* a, valu
     if (light_reflects(&a->light)) {
       RAY_NAME(ray_gradient)(a, FOLLOWED_VALUES(a, values), k->grid, x, mask, g);
     }
-    light_at(&a->light, k->lights, 0, 0, x, k->d, g, lighting.diffuse, lighting.specular);
+    light_at(&a->light, k->lights, 0, 0, x, k->d, g, lighting.diffuse, lighting.specular, 0);
     light_layer(&lighting, layer);
   }
   for (int c = 0; c < 4; ++c) {

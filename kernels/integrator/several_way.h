@@ -78,7 +78,7 @@ OUTLINE void several_light(const several_source* from, const several_volume* v, 
     way->lighting.specular[c] = v_set(0.0f);
   }
   if (a->light.on) {
-    light_at(&a->light, k->lights, 0, 0, x, k->d, g, way->lighting.diffuse, way->lighting.specular);
+    light_at(&a->light, k->lights, 0, 0, x, k->d, g, way->lighting.diffuse, way->lighting.specular, 0);
   }
 }
 

@@ -95,7 +95,7 @@ OUTLINE vmask RAY_NAME(two_at)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL co
     if (!by_gradient && light_reflects(&a->light)) {
       RAY_NAME(ray_gradient)(a, sample->values, k->grid, x, mask, g);
     }
-    light_at(&a->light, k->lights, 0, 0, x, k->d, g, lighting->diffuse, lighting->specular);
+    light_at(&a->light, k->lights, 0, 0, x, k->d, g, lighting->diffuse, lighting->specular, 0);
   }
   return mask;
 }

@@ -26,7 +26,7 @@ OUTLINE void RAY_NAME(ray_light_by)(CONSTANT stratus_ray_cast_arguments* a, cons
     if (a->light.near) {
       RAY_NAME(light_near)(a, sample->values, sample->hidden, table, k, x, mask, passing);
     }
-    light_at(&a->light, k->lights, a->light.near ? passing : 0, c, x, k->d, g, lighting->diffuse, lighting->specular);
+    light_at(&a->light, k->lights, a->light.near ? passing : 0, c, x, k->d, g, lighting->diffuse, lighting->specular, 0);
   } else {
     for (int i = 0; i < 3; ++i) {
       lighting->diffuse[i] = one;

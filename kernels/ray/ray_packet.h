@@ -12,10 +12,10 @@
 #endif
 
 #if RAY_LIT
-/* A bundle that was lit (lit_places.h): its place on the ray, half of its length, and the field's slope along the ray there; 0: there is
- * none. */
+/* A bundle that was lit (lit_places.h): its place on the ray, half of its length, the field's slope along the ray there (0: there is no
+ * bundle), and by how much its colour would change where the normal is turned round. */
 typedef struct stratus_lit_bundle {
-  float place, extent, slope, opacity, color[3], diffuse[3], specular[3];
+  float place, extent, slope, turned[3];
 } stratus_lit_bundle;
 
 /* The bundles of rays. The colours of a ray's open bundle are the packet's own. Closed bundles of all rays wait in a queue, so that light

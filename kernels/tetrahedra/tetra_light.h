@@ -62,7 +62,7 @@ OUTLINE void tetra_light_at(CONSTANT stratus_tetra_arguments* a, GLOBAL const fl
     }
   }
   if (a->light.on >> c & 1) {
-    light_at(&a->light, s->lights, 0, c, x, d, g, lit->diffuse, lit->specular);
+    light_at(&a->light, s->lights, 0, c, x, d, g, lit->diffuse, lit->specular, 0);
   }
 }
 
