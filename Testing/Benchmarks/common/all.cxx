@@ -22,7 +22,7 @@ const char* const help = R"(stratus-bench all --out FOLDER [options]
   --out FOLDER   tables (CSV), charts (PNG, SVG), index.html and the parts' output (log.txt)
   --quick        the same in ten minutes or so: fewer scenes and settings, small windows, one frame a view
   --resume       go on with a run of the same kind and commit that was interrupted, after the last whole scene
-  --part P,...   volume, tetra, tree, distance, octree (default: all of them)
+  --part P,...   volume, light, tetra, tree, distance, octree (default: all of them)
 
 Each method runs over its own settings: ours over tolerances, peers over steps, trees over sizes of leaves. A method that cannot be measured
 and a part that crashes are named at the end and on the page, and the exit status is 1. A table is replaced as a whole after each scene.
@@ -31,7 +31,7 @@ stratus-bench compare A B reports the changes between two such folders.
 
 struct options {
   std::string folder;
-  std::vector<std::string> parts = { "volume", "tetra", "tree", "distance", "octree" };
+  std::vector<std::string> parts = parts_of_all();
   bool quick = false, resume = false;
 };
 
@@ -90,6 +90,25 @@ void add_volumes(const options& o, std::vector<unit>& units)
   }
 }
 
+void add_light(const options& o, std::vector<unit>& units)
+{
+  std::vector<std::string> scenes = { "cloud" };
+  if (!o.quick) {
+    scenes.insert(scenes.end(), { "cumulus-rectilinear", "bone", "plume" });
+    if (std::ifstream("../shared/data/bluntfin.vtk") || std::ifstream("../shared/data/bluntfin.vtu")) {
+      scenes.emplace_back("bluntfin/ramp");
+    }
+  }
+  for (const std::string& scene : scenes) {
+    unit u = { "light", scene, { "--scene", scene } };
+    const std::vector<std::string> how = o.quick ? std::vector<std::string>{ "--light", "local,single", "--tolerance", ".0126,.005",
+      "--size", "128", "--error-size", "32", "--seconds", "1" }
+                                                 : std::vector<std::string>{ "--seconds", "8" };
+    u.words.insert(u.words.end(), how.begin(), how.end());
+    units.push_back(u);
+  }
+}
+
 void add_tetrahedra(const options& o, std::vector<unit>& units)
 {
   std::vector<std::string> meshes = { "wavelet" };
@@ -121,6 +140,9 @@ std::vector<unit> units_of(const options& o)
   using names = std::vector<std::string>;
   if (has("volume")) {
     add_volumes(o, units);
+  }
+  if (has("light")) {
+    add_light(o, units);
   }
   if (has("tetra")) {
     add_tetrahedra(o, units);

@@ -205,6 +205,8 @@ std::string family_of(const std::string& method);
 bool is_ours(const std::string& method);
 // The curves of a part: volume, light, tetra, tree (two: primary and random rays), distance, octree.
 std::vector<curves> curves_of(const std::string& part, const std::vector<row>& rows);
+// The parts that stratus-bench all runs, in their order.
+const std::vector<std::string>& parts_of_all();
 std::vector<std::string> scenes_of(const curves& c);
 // A peer's point, and the point of ours that is faster and more exact by most; without one `by` is nullptr. Where the peer has no error at
 // all, one without error counts.

@@ -180,6 +180,12 @@ bool is_ours(const std::string& method)
   return method.rfind("stratus:", 0) == 0;
 }
 
+const std::vector<std::string>& parts_of_all()
+{
+  static const std::vector<std::string> parts = { "volume", "light", "tetra", "tree", "distance", "octree" };
+  return parts;
+}
+
 std::vector<curves> curves_of(const std::string& part, const std::vector<row>& rows)
 {
   if (part == "volume") {

@@ -169,7 +169,7 @@ void write_table(std::ostream& out, const chapter& c)
 void write_page(const std::string& folder, const std::vector<std::string>& failures)
 {
   std::vector<chapter> chapters;
-  for (const char* part : { "volume", "tetra", "tree", "distance", "octree" }) {
+  for (const std::string& part : parts_of_all()) {
     const table data = read_csv(folder + '/' + part + ".csv");
     if (!data.rows.empty()) {
       chapters.push_back({ part, data, curves_of(part, data.rows) });
