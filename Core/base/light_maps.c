@@ -25,7 +25,7 @@ static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
 #define LAYERS 32                        /* and so many of its layers are compared from the side */
 #define PICTURES_BYTES ((size_t)1 << 24) /* of layers that are drawn together, which should be in the cache until they are summed */
 #define ROWS 16                          /* of nodes are drawn at once at least */
-#define NODES_A_THREAD 4096              /* fewer are faster summed by one */
+#define NODES_A_BLOCK 512                /* of nodes that a thread sums at a time */
 /* A map has at most so many words, 64 MiB. NODES_LAST nodes along each side are within it, but not in six faces of a cube. */
 #define WORDS_MOST ((size_t)NODES_LAST * NODES_LAST * NODES_LAST)
 /* A position whose light meets the matter at a greater slope than this, or is in it, has a cube of maps. */
@@ -253,17 +253,17 @@ static size_t drawn_nodes(const drawing* d)
   return (size_t)d->nodes.count[0] * (size_t)d->nodes.count[1];
 }
 
-/* The opacity at a node of the layer that was drawn last. */
-static float opacity_at(const drawing* d, size_t node)
+/* The opacity at a node of a layer's picture. */
+static float opacity_at(const float* rgba, size_t node)
 {
-  const float opacity = d->rgba[4 * node + 3];
+  const float opacity = rgba[4 * node + 3];
   return opacity < 1.0f ? opacity > 0.0f ? opacity : 0.0f : 1.0f;
 }
 
 /* The part of light that passes the layer there. */
-static float passes(const drawing* d, size_t node)
+static float passes(const drawing* d, const float* rgba, size_t node)
 {
-  const float passed = 1.0f - opacity_at(d, node);
+  const float passed = 1.0f - opacity_at(rgba, node);
   return d->goes_on > 0.0 && passed < 1.0f ? powf(passed, (float)(1.0 - d->goes_on)) : passed;
 }
 
@@ -287,7 +287,7 @@ static void add_difference(const drawing* d, int face, int x, int y, int layer, 
 {
   const int *n = d->map->size, *c = d->coarse->size, at[2] = { x, y };
   const size_t node = (size_t)y * (size_t)d->nodes.count[0] + (size_t)x;
-  const float here = d->passed[node] * 0.5f * (1.0f + passes(d, node));
+  const float here = d->passed[node] * 0.5f * (1.0f + passes(d, d->rgba, node));
   part *= color_at(d, node);
   double place[3] = { 0.0, 0.0, 0.0 };
   for (int i = 0; i < 2; ++i) {
@@ -312,7 +312,7 @@ static void look_along(drawing* d, int face, int layer, int line, bool column)
   for (int i = 0; i < n[column]; ++i) {
     for (int back = 0; back < 2; ++back) {
       const int at = back ? n[column] - 1 - i : i, x = column ? line : at, y = column ? at : line;
-      const float opacity = opacity_at(d, (size_t)y * (size_t)n[0] + (size_t)x), part = left[back] * opacity;
+      const float opacity = opacity_at(d->rgba, (size_t)y * (size_t)n[0] + (size_t)x), part = left[back] * opacity;
       if (part > FAINT) {
         add_difference(d, face, x, y, layer, part, sum[back]);
       }
@@ -340,7 +340,7 @@ static void compare_layer(drawing* d, int face, int layer)
     for (int x = 0; x < n[0]; x += column ? 1 : stride) {
       const size_t node = (size_t)y * (size_t)n[0] + (size_t)x;
       float* along = d->along + NEARS * node;
-      const float part = d->passed[node] * opacity_at(d, node);
+      const float part = d->passed[node] * opacity_at(d->rgba, node);
       if (part > FAINT) {
         add_difference(d, face, x, y, layer, part, along);
       }
@@ -377,6 +377,21 @@ static void fill_row(const void* data, int y, uint64_t counts[STRATUS_TILE_COUNT
   }
 }
 
+/* Multiplies the light that passes to the nodes from..beyond - 1 of `count` layers, whose pictures follow one another, by the part that
+ * passes each. */
+static void pass_layers(const drawing* d, const float* pictures, int first, int count, size_t from, size_t beyond)
+{
+  const size_t nodes = drawn_nodes(d);
+  for (int layer = first; layer < first + count; ++layer) {
+    const float* rgba = pictures + 4 * (size_t)(layer - first) * nodes;
+    uint16_t* plane = d->planes + (size_t)(layer + 1) * nodes;
+    for (size_t i = from; i < beyond; ++i) {
+      d->passed[i] *= passes(d, rgba, i);
+      plane[i] = (uint16_t)(d->passed[i] * 65535.0f + 0.5f);
+    }
+  }
+}
+
 /* Draws some rows of a face's nodes, `together` layers at a time, and compares them, or fills their words. */
 static stratus_status draw_rows(drawing* d, int face, int from, int rows, int together)
 {
@@ -403,17 +418,17 @@ static stratus_status draw_rows(drawing* d, int face, int from, int rows, int to
     camera.near_k = near + first * layer_depth;
     camera.far_k = near + (first + count) * layer_depth;
     TRY_CLEANUP(d->matter->draw(d->matter->of, &camera, count, &image, false));
-    for (int layer = first; layer < first + count; ++layer) {
-      uint16_t* plane = d->planes + (size_t)(layer + 1) * nodes;
-      d->rgba = d->pictures + 4 * (size_t)(layer - first) * nodes;
-      if (!d->words) {
-        compare_layer(d, face, layer);
+    if (d->words) {
+#pragma omp parallel for num_threads(d->context->threads)
+      for (size_t i = 0; i < nodes; i += NODES_A_BLOCK) {
+        pass_layers(d, d->pictures, first, count, i, i + NODES_A_BLOCK < nodes ? i + NODES_A_BLOCK : nodes);
       }
-#pragma omp parallel for num_threads(d->context->threads) if (nodes > NODES_A_THREAD)
-      for (size_t i = 0; i < nodes; ++i) {
-        d->passed[i] *= passes(d, i);
-        plane[i] = (uint16_t)(d->passed[i] * 65535.0f + 0.5f);
-      }
+      continue;
+    }
+    for (int layer = 0; layer < count; ++layer) {
+      d->rgba = d->pictures + 4 * (size_t)layer * nodes;
+      compare_layer(d, face, first + layer);
+      pass_layers(d, d->rgba, first + layer, 1, 0, nodes);
     }
   }
   if (d->words) {
