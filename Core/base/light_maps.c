@@ -54,7 +54,7 @@ typedef struct map {
   double near;        /* the length on which rays pass near matter, in near_steps */
   int near_steps;
   double error; /* that is expected of a picture, if the light is white */
-  bool finest;  /* no map of this light can be finer */
+  bool finest;  /* even the finest map errs by more than was wanted, so that none built anew would err less */
 } map;
 
 struct stratus_light_maps {
@@ -409,7 +409,7 @@ static stratus_status draw_rows(drawing* d, int face, int from, int rows, int to
     d->passed[i] = 1.0f;
     d->planes[i] = 65535;
   }
-  if (!sees) {
+  if (!sees && d->words) { /* all light passes */
     memset(d->planes, 255, ((size_t)layers + 1) * nodes * sizeof *d->planes);
   }
   for (int first = 0; sees && first < layers; first += together) {

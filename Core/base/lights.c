@@ -238,7 +238,7 @@ static double reflectance(double diffuse, double specular, double power)
 
 double stratus_lights_reflectance(const stratus_shading* shading, const stratus_material* own, int count)
 {
-  const double specular = shading->scattering < 1.0 ? 1.0 : 0.0; /* what is scattered has no highlights */
+  const double specular = shading->scattering < 1.0 ? 1.0 : 0.0; /* scattered light has no highlights */
   double most = own ? 0.0 : reflectance(shading->diffuse, specular * shading->specular, shading->specular_power);
   for (int c = 0; own && c < count; ++c) {
     most = own[c].shade ? fmax(most, reflectance(own[c].diffuse, specular * own[c].specular, own[c].specular_power)) : most;

@@ -23,6 +23,8 @@ static void RAY_NAME(tile)
   const stratus_ray_cast_arguments* a = frame->arguments;
   tile_counts mine = { vi_set(0), vi_set(0), vi_set(0), 0 };
   const int pieces = a->crop.regions ? CROP_PIECES : 1, layers = a->camera.layers > 0 ? a->camera.layers : 1;
+  const size_t picture = 4 * (size_t)a->picture.width * (size_t)a->picture.height;
+  stratus_ray_cast_frame pictures = *frame; /* with the rgba of a layer */
   for (int y = y0; y < y1; y += PACKET_Y) {
     for (int x = x0; x < x1; x += PACKETS_TOGETHER * PACKET_X) {
       stratus_packet k[PACKETS_TOGETHER];
@@ -30,8 +32,8 @@ static void RAY_NAME(tile)
       for (int i = 0; i < PACKETS_TOGETHER; ++i) {
         RAY_NAME(begin_packet)(frame, x + i * PACKET_X, y, &k[i], &crop[i]); /* beyond the picture, no ray is live and nothing is stored */
       }
-      stratus_ray_cast_frame pictures = *frame;
-      for (int layer = 0; layer < layers; ++layer, pictures.rgba += 4 * (size_t)a->picture.width * (size_t)a->picture.height) {
+      for (int layer = 0; layer < layers; ++layer) {
+        pictures.rgba = frame->rgba + (size_t)layer * picture;
         for (int piece = 0; piece < pieces; ++piece) {
           for (int i = 0; (a->crop.regions || a->camera.layers) && i < PACKETS_TOGETHER; ++i) {
             crop_enter(a, &crop[i], piece, layer, &k[i]);
