@@ -35,6 +35,7 @@
 #include "stratus/quantities.h"
 #include "stratus/path.h"
 #include "stratus/cloud.h"
+#include "stratus/color_map.h"
 #include "stratus/scenes.h"
 
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command line draws a volume to a picture file. `stratus --help` describes it.
+#include "colors.h"
 #include "compare.h"
 #include "grid.h"
 #include "input.h"
@@ -219,6 +220,8 @@ bool run(const cli::options& o)
     alike = cli::compare(o);
   } else if (o.command == "devices") {
     devices();
+  } else if (o.command == "colors") {
+    std::printf("%s\n", cli::color_names("\n").c_str());
   } else if (o.command == "version") {
     version();
   } else {

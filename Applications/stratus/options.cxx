@@ -22,6 +22,19 @@ static std::string method_names()
   return names + ", ac-edges, hybrid-paper-raw";
 }
 
+// Breaks a text into lines of at most 140 columns, indented. The first line has `first` columns left.
+static std::string wrapped(const std::string& text, size_t indent, size_t first)
+{
+  std::string result;
+  size_t left = first;
+  for (const std::string& word : split(text, ' ')) {
+    const bool breaks = word.size() + 1 > left;
+    result += breaks ? "\n" + std::string(indent, ' ') + word : (result.empty() ? "" : " ") + word;
+    left = breaks ? 140 - indent - word.size() : left - word.size() - 1;
+  }
+  return result;
+}
+
 std::string help()
 {
   return R"(stratus - draws volumes
@@ -61,9 +74,9 @@ Data and appearance
   --frames OUT-%04d.png   one image for each time step (--time all), all with one transfer function and one camera
   --opacity LIST          "value:alpha,..." with alpha in 0..1 per unit distance (default: the scene's own, otherwise guessed from
                           the histogram: transparent at the background's value, a ramp beyond it)
-  --color NAME|LIST       a colour map, )" +
-    color_names() + R"(, stretched over the values shown,
-                          or "value:r:g:b,..." with r, g, b in 0..1
+  --color NAME|LIST       a colour map, stretched over the values shown; NAME_r reverses it; or "value:r:g:b,..." with r, g, b in 0..1.
+                          --color list prints the names: )" +
+    wrapped(color_names(", "), 26, 140 - 26 - 31) + R"(
   --crop X,X,Y,Y,Z,Z      draw only the box between these planes across the grid's axes, in the file's coordinates
   --crop-regions N        regions to draw of the 27 that the planes of --crop make: the sum of bits x + 3 y + 9 z, 0..134217727
                           (default 8192: the box between all planes)
@@ -790,6 +803,10 @@ options parse(int argc, char* argv[])
     if (const auto* entry = find_word(with_value, word)) {
       if (i + 1 == argc) {
         throw usage(word + " needs a value");
+      }
+      if (word == "--color" && std::string(argv[i + 1]) == "list") {
+        o.command = "colors";
+        return o;
       }
       if (o.companions.empty() || !set_companion(o.companions.back(), entry, argv[i + 1])) {
         entry->set(o, word, argv[i + 1]);

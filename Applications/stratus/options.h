@@ -18,7 +18,7 @@ struct companion {
 };
 
 struct options {
-  std::string command; // render, info, tree, sort, compare, devices, version, help
+  std::string command; // render, info, tree, sort, compare, devices, colors, version, help
   std::string source;
   std::vector<companion> companions; // render: the INPUTs behind the first
   std::string output;

@@ -14,10 +14,11 @@ distance_field(data)      distances to the voxels whose values show
 Tree, first_hits          the first of these voxels along rays
 partition, VisibilityOrder  meshes cut into leaves, and the order in which cells hide one another
 Octree                    which of many boxes a camera sees
+color_maps()              names of colour maps
 """
 from ._cells import Partition, VisibilityOrder, partition
 from ._cloud import cloud
-from ._core import Cancelled, Context, DeviceError, Unsupported, devices
+from ._core import Cancelled, Context, DeviceError, Unsupported, color_maps, devices
 from ._core import version as __version__
 from ._draw import render, render_tetrahedra, show, turn
 from ._media import slab
@@ -31,5 +32,5 @@ from ._volume import Volume
 from ._voxels import Hits, Tree, distance_field, first_hits
 
 __all__ = ["Cancelled", "Context", "DeviceError", "Film", "Hits", "NothingShown", "Octree", "Partition", "Picture", "Rendering", "Tetrahedra", "Tree",
-           "Unsupported", "View", "VisibilityOrder", "Visible", "Volume", "cloud", "devices", "distance_field", "first_hits", "partition", "render",
+           "Unsupported", "View", "VisibilityOrder", "Visible", "Volume", "cloud", "color_maps", "devices", "distance_field", "first_hits", "partition", "render",
            "render_several", "render_tetrahedra", "show", "slab", "turn", "view"]

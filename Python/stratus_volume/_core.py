@@ -6,7 +6,10 @@ import os
 import threading
 import weakref
 
+import numpy
+
 from . import _declarations as c
+from . import _values
 
 _FOLDER = os.path.dirname(os.path.abspath(__file__))
 _MISSING = {
@@ -201,6 +204,29 @@ def context(device=None, threads=None):
         if key not in _contexts:
             _contexts[key] = Context(*key)
         return _contexts[key]
+
+
+def color_maps():
+    """Returns the names of the colour maps that need no other package: matplotlib's, cmocean's, ParaView's and Stratus' own. Any of them
+    with "_r" at its end is reversed."""
+    names = []
+    while name := library.stratus_color_map_name(len(names)):
+        names.append(name.decode())
+    return names
+
+
+def _core_map(name):
+    """The rows (256, 3) of red, green and blue in 0..1 of a colour map of the core, or None for another name."""
+    points, owner = numpy.empty((c.CONSTANTS["STRATUS_COLOR_MAP_COLORS"], 4)), context("host", 1)
+    with owner.lock:
+        try:
+            owner.call(library.stratus_color_map_points, owner.pointer, name.encode(), 0.0, 1.0, address(points))
+        except ValueError:
+            return None
+    return points[:, 1:]
+
+
+_values.core_map = _core_map
 
 
 def devices():

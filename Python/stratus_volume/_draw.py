@@ -34,8 +34,8 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
                    ramp away from the most frequent value, or the opacity of the whole volume if all values are equal; default 0.3, in mode
                    slice 1 for all values. For several components one of these for all, or a list with one for each
     color          (r, g, b) in 0..1 for all values, or several (value, r, g, b), two at one value being a step; or a colour map over the range of
-                   the values: a function of 0..1, or the name of one or of a colour of matplotlib's, if that is installed. For several
-                   components one of these for all, or a list with one for each
+                   the values: a function of 0..1, or the name of one of `color_maps()`, or of a map or colour of matplotlib's, if that is
+                   installed. For several components one of these for all, or a list with one for each
     size           width and height in pixels, 1..16384
     camera         dict of azimuth, elevation (degrees) and zoom; or dict of position, focal_point, view_up (x, y, z), view_angle (degrees) and,
                    for parallel rays, parallel_scale (half the window's height); or (position, focal point, view up); or a vtkCamera

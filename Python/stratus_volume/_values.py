@@ -221,19 +221,27 @@ def is_color_map(color):
     return isinstance(color, str) or callable(color)
 
 
+# Returns the rows (256, 3) of a colour map of the core, or None for another name. The package that this module is a part of sets it.
+core_map = None
+
+
 def _color_map(name):
-    """matplotlib's colour map, or a single colour, of a name."""
+    """A function of 0..1 or a single colour of a name: a colour map of the core, or a colour map or a colour of matplotlib's, if that is
+    installed."""
+    rows = core_map(name)
+    if rows is not None:
+        return lambda place: rows[min(int(256 * place), 255)]
     try:
         import matplotlib
         from matplotlib.colors import to_rgb
     except ImportError:
-        raise ValueError(f"color is {name!r}: names need matplotlib, which is not installed") from None
+        raise ValueError(f"color is {name!r}, which is no colour map of Stratus; more names need matplotlib, which is not installed") from None
     if name in matplotlib.colormaps:
         return matplotlib.colormaps[name]
     try:
         return to_rgb(name)
     except ValueError:
-        raise ValueError(f"color is {name!r}, which is no colour map and no colour of matplotlib's") from None
+        raise ValueError(f"color is {name!r}, which is no colour map of Stratus or matplotlib, and no colour of matplotlib") from None
 
 
 def color_points(color, low, high, power):

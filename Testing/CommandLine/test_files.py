@@ -386,9 +386,14 @@ def test_annotations():
 
 def test_colors_and_logarithm():
     text = run("--help").stdout.replace("\n", " ")
-    names = re.search(r"--color NAME\|LIST +a colour map, ([a-z, -]+), stretched", text).group(1).split(", ")
-    if not {"viridis", "cividis", "temperature", "salinity", "algae", "sediment", "oxygen", "depth"} <= set(names):
-        fail(f"colour maps are {names}")
+    names = run("--color", "list").stdout.split()
+    listed = re.sub(" +", " ", re.search(r"--color list prints the names: ([a-z., -]+)--crop ", text).group(1)).strip()
+    if not {"viridis", "turbo", "thermal", "balance", "cool-warm", "storm"} <= set(names) or listed.split(", ") != names:
+        fail(f"colour maps are {names}, and the help lists {listed}")
+    for name, same in ("temperature", "cmo.thermal"), ("viridis_r", "0:1:1:1"):
+        if (picture("image.vti", "--color", name) == picture("image.vti", "--color", same)) != (name == "temperature"):
+            fail(f"{name} and {same}")
+    expect(2, "'viridi' is no colour map, must be one of viridis, magma.*or a list value:r:g:b", "render", "image.vti", "-o", "no.png", "--color", "viridi")
     names = names[::3] if FEW else names
     if len({picture("image.vti", "--color", name) for name in names}) != len(names):
         fail("two colour maps are the same")

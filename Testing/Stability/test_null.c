@@ -364,6 +364,15 @@ static void clouds(void)
   REFUSES(stratus_sun_direction(context, 0, 0, 2, NULL));
 }
 
+static void color_maps(void)
+{
+  static double points[4 * STRATUS_COLOR_MAP_COLORS];
+  TAKES(stratus_color_map_name(-1));
+  IS_SILENT(stratus_color_map_points(NULL, "viridis", 0, 1, points));
+  REFUSES(stratus_color_map_points(context, NULL, 0, 1, points));
+  REFUSES(stratus_color_map_points(context, "viridis", 0, 1, NULL));
+}
+
 static void path_tracers(const small_scene* scene)
 {
   static float rgba[4 * SMALL_PIXELS];
@@ -665,6 +674,7 @@ static void no_public_function_falls_over_null(void** state)
   voxel_sets(&scene);
   ray_casters(&scene);
   clouds();
+  color_maps();
   path_tracers(&scene);
   frustums(&scene);
   meshes(&scene);

@@ -19,6 +19,24 @@ import stratus_volume
 warnings.simplefilter("error")
 
 
+def color_maps():
+    function = vtk.vtkColorTransferFunction()
+    function.SetColorSpaceToHSV()
+    check(stratus.vtkStratusColorMap.SetColors(function, "viridis_r", -2, 3) and function.GetSize() == 256 and list(function.GetRange()) == [-2, 3],
+          "the points of a map")
+    for value, expected in (-2, (253, 231, 36)), (3, (68, 1, 84)):
+        check(tuple(round(255 * part) for part in function.GetColor(value)) == expected, f"viridis_r at {value}: {function.GetColor(value)}")
+    for name, low, high in ("viridi", 0, 1), (None, 0, 1), ("viridis", 1, 0):
+        check(not stratus.vtkStratusColorMap.SetColors(function, name, low, high) and function.GetSize() == 256, f"{name} {low} {high} changes nothing")
+    names = []
+    while stratus.vtkStratusColorMap.GetName(len(names)):
+        names.append(stratus.vtkStratusColorMap.GetName(len(names)))
+    check(names == stratus_volume.color_maps() and stratus.vtkStratusColorMap.GetName(-1) is None, f"names {names}")
+    field = ball((8, 10, 12), (4, 5, 6), 4)
+    pictures = [package.show(field, color="magma", size=(40, 30)) for package in (stratus, stratus_volume)]
+    check(numpy.abs(numpy.subtract(*pictures, dtype=int)).max() <= 1, "both packages draw one map")
+
+
 def shares_memory():
     for dtype in numpy.float32, numpy.float64, numpy.int16, numpy.uint8, numpy.int64, bool:
         array = (100 * ball((8, 10, 12), (4, 5, 6), 4)).astype(dtype)
@@ -330,6 +348,7 @@ def helps():
         check(len(function.__doc__ or "") > 50, f"{function} is described")
 
 
+color_maps()
 shares_memory()
 axes()
 pictures()
