@@ -22,12 +22,12 @@ INLINE void several_advance(const several_source* from, several_volume* v, int i
     v->next = SEVERAL_NEVER;
     return;
   }
-  i = several_aligned(from, v, i);
   const vfloat s0 = v_from_int(vi_set(i) - v->offset), s1 = s0 + v_set((float)from->stride);
   const vfloat lo = v_min(v_max(s0, k->begin), k->end), hi = v_max(v_min(s1, k->end), lo);
-  const vmask inside = live & k->live & v_lt(lo, hi);
+  /* the values of rays that have ended are read, too: the read need not wait for the colour of the last segment */
+  const vmask within = k->live & v_lt(lo, hi), inside = live & within;
   if (from->a->map.structure && i >= v->run) {
-    v->next = several_leap(from, v, i, s0, inside, live);
+    v->next = several_leap(from, v, i, live);
     if (v->next > i) {
       v->knows = m_none();
       return;
@@ -42,7 +42,7 @@ INLINE void several_advance(const several_source* from, several_volume* v, int i
     s = v_set(0.5f) * (lo + hi);
   }
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
-  const vfloat value = several_value_at(from, x, inside);
+  const vfloat value = several_value_at(from, x, within);
   vfloat front = value;
   k->samples -= mask_int(inside);
   if (from->preintegrated) {
@@ -95,11 +95,10 @@ INLINE void several_number(
       offset[lane] = meets[n][lane] ? (int)(whole[n][lane] - least) : 0;
     }
     v->offset = vi_load(offset);
-    v->phase = (int)(least % from[n].stride);
-    v->phase += v->phase < 0 ? from[n].stride : 0;
-    v->next = several_least(v->k.i + v->offset, v->k.live);
-    const int beyond = several_least(vi_set(0) - (v->k.last + v->offset), v->k.live);
-    v->last = beyond == SEVERAL_NEVER ? 0 : -beyond;
+    v->shown_from = v->shown_until = several_aligned_rays(&from[n], v, v->k.i) + v->offset;
+    v->next = v->began = several_least(v->shown_until, v->k.live);
+    const int last = several_most(v->k.last + v->offset, v->k.live);
+    v->last = last == -SEVERAL_NEVER ? 0 : last;
     if (several_has_stretches(&from[n])) { /* it takes them where the others' ways are composited */
       v->next = SEVERAL_NEVER;
     }
@@ -117,9 +116,11 @@ INLINE void several_load(
     CONSTANT stratus_ray_cast_arguments* a = from[n].a;
     several_volume* v = &volumes[n];
     stratus_rays rays;
+    int phase[STRATUS_WIDTH];
     v->now = v->shows = v->comes = 0;
     v->knows = m_none();
     v->ahead = v_set(0.0f);
+    v->phase = vi_set(0);
 #if SEVERAL_MESHES
     if (from[n].mesh) {
       several_mesh_load(&from[n], v, x, y, whole[n]);
@@ -140,10 +141,13 @@ INLINE void several_load(
     for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
       const float far = rays.whole[0][lane] < SEVERAL_FARTHEST ? rays.whole[0][lane] : SEVERAL_FARTHEST;
       whole[n][lane] = (several_number_t)far + (several_number_t)rays.whole[1][lane];
+      phase[lane] = (int)(whole[n][lane] % from[n].stride);
+      phase[lane] += phase[lane] < 0 ? from[n].stride : 0;
     }
+    v->phase = vi_load(phase);
 #if SEVERAL_CELLS
     if (from[n].cells) {
-      several_cells_load(&from[n], v, whole[n]);
+      several_cells_load(&from[n], v);
     }
 #endif
     k->hits = k->hits | v->k.hits;
@@ -156,9 +160,10 @@ INLINE void several_load(
 INLINE void several_march(const several_source* from, several_volume* volumes, int count, stratus_packet* k)
 {
   vint since = vi_set(0);
-  int i = 0, stretches = 0;
+  int i = 0, stretches = 0, middles = 1;
   for (int n = 0; n < count; ++n) {
     stretches |= several_has_stretches(&from[n]) && volumes[n].shows;
+    middles &= !several_has_stretches(&from[n]) && !from[n].preintegrated;
   }
   for (int n = 0; stretches && n < count; ++n) { /* places are counted from where each ray meets anything, so that they round alike */
     const vint first = vi_select(volumes[n].k.live, volumes[n].offset, vi_set(SEVERAL_NEVER));
@@ -171,7 +176,7 @@ INLINE void several_march(const several_source* from, several_volume* volumes, i
       several_volume* v = &volumes[n];
       shows |= v->shows;
       if (v->next <= i && v->next != SEVERAL_NEVER) {
-        several_advance(&from[n], v, i, k->live);
+        several_advance(&from[n], v, v->next, k->live); /* the first sample may begin before segment 0 */
         changed = changed | several_shown(&v->ways[v->now], v->shows) | several_shown(&v->ways[1 - v->now], v->comes);
       } else {
         v->comes = -1; /* stays on its way */
@@ -179,7 +184,9 @@ INLINE void several_march(const several_source* from, several_volume* volumes, i
       next = v->next < next ? v->next : next;
     }
     if (m_any(changed)) {
-      if (shows) {
+      if (shows && middles) {
+        several_interval_of_middles(from, volumes, count, since, i, changed & k->live, k);
+      } else if (shows) {
         several_interval(from, volumes, count, since, i, changed & k->live, stretches, k);
       }
       since = vi_select(changed, vi_set(i), since);

@@ -10,16 +10,6 @@
 /* Rays that have a stretch go on once they are one in so many; the others wait, so that the walk has most of the lanes at work. */
 #define SEVERAL_WAITING 3
 
-/* The number of the sample, of `stride` segments each, in which segment i is. */
-INLINE vint several_sample_of(const several_source* from, vint i)
-{
-  const vint stride = vi_set(from->stride), zero = vi_set(0), one = vi_set(1);
-  vint sample = v_to_int((v_from_int(i) + v_set(0.5f)) * v_set(1.0f / (float)from->stride));
-  const vint rest = i - sample * stride; /* the product is rounded */
-  sample = sample + vi_select(vi_ge(rest, stride), one, vi_select(vi_lt(rest, zero), zero - one, zero));
-  return sample;
-}
-
 /* Finds the next runs of the rays of the mask, which are at the end of one, and puts them there. */
 INLINE void several_cells_run(const several_source* from, several_volume* v, vmask mask)
 {
@@ -39,6 +29,7 @@ INLINE void several_cells_run(const several_source* from, several_volume* v, vma
   c->rough = r.rough;
   w->end = v_select(mask, r.to, w->end);
   w->run = v_select(mask, v_select(r.rough, v_set(LARGEST_FLOAT), v_set(a->map.structure ? -1.0f : LARGEST_FLOAT)), w->run);
+  c->began = v_select(mask, r.begin, c->began);
   k->live = k->live | mask;
   cell_enter(a, k, w);
 }
@@ -147,14 +138,15 @@ INLINE vmask several_cells_leap(const several_source* from, several_volume* v, v
   const vmask occupied = asks & vi_ge(byte, vi_set(128)), leaps = m_andnot(asks, occupied);
   const vfloat leave = v_clamp(cube_exit(a, k, block, byte & vi_set(127)), 0.0f, 8e6f);
   /* the first sample whose middle may lie outside the cube */
-  const vint stride = vi_set(from->stride), phase = v->cells.phase;
+  const vint stride = vi_set(from->stride), phase = v->phase;
   vint sample = several_sample_of(from, v_to_int(leave) + phase);
   const vfloat to_middle = v_set(0.5f * (float)from->stride);
   sample = sample + vi_select(v_lt(v_from_int(sample * stride - phase) + to_middle, leave), vi_set(1), vi_set(0));
   const vfloat first = v_min(v_max(v_from_int(sample * stride - phase), hi), w->end);
-  w->run = v_select(occupied, v_max(first, hi), w->run);
+  w->run = v_select(occupied, v_fma(w->s - v->cells.began, v_set(1.0f / SEVERAL_LOOKS), v_max(first, hi)), w->run);
   k->skipped = k->skipped + vi_select(leaps, v_to_int((first - w->s) * v_set(1.0f / (float)from->stride)), vi_set(0));
   w->s = v_select(leaps, first, w->s);
+  v->cells.began = v_select(leaps, first, v->cells.began);
   return m_andnot(mask, leaps);
 }
 
@@ -165,8 +157,8 @@ INLINE vmask several_cells_sample(const several_source* from, several_volume* v,
   stratus_packet* k = &v->k;
   several_cells_rays* c = &v->cells;
   cell_walk* w = &c->walk;
-  const vint sample = several_sample_of(from, v_to_int(w->s) + c->phase) + vi_set(1);
-  const vfloat lo = w->s, hi = v_min(v_max(v_from_int(sample * vi_set(from->stride) - c->phase), lo), w->end);
+  const vint sample = several_sample_of(from, v_to_int(w->s) + v->phase) + vi_set(1);
+  const vfloat lo = w->s, hi = v_min(v_max(v_from_int(sample * vi_set(from->stride) - v->phase), lo), w->end);
   const vfloat middle = v_set(0.5f) * (lo + hi);
   vmask stays = mask, shown = m_none();
   if (a->map.structure) {
@@ -233,7 +225,7 @@ OUTLINE vmask several_cells_next(const several_source* from, several_volume* v, 
 }
 
 /* Makes the volume's rays ready, before their first stretch. */
-INLINE void several_cells_load(const several_source* from, several_volume* v, several_number_t whole[STRATUS_WIDTH])
+INLINE void several_cells_load(const several_source* from, several_volume* v)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
   stratus_packet* k = &v->k;
@@ -242,7 +234,6 @@ INLINE void several_cells_load(const several_source* from, several_volume* v, se
   const vfloat zero = v_set(0.0f);
   const int nearest = RAY_RARE(RAY_NEAREST, a->values.nearest) != 0,
             halves = nearest & ((RAY_RARE(RAY_HIDDEN, a->values.has_hidden) & HIDDEN_CELLS) != 0) & !a->values.clamp;
-  int phase[STRATUS_WIDTH];
   if (nearest) {
     cell_boxes(a, k, halves);
   }
@@ -252,14 +243,10 @@ INLINE void several_cells_load(const several_source* from, several_volume* v, se
   c->way.from = c->way.front = c->way.share = c->way.left = zero;
   c->waiting = m_none();
   c->rough = v_le(zero, zero);
-  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    phase[lane] = (int)(whole[lane] % from->stride);
-    phase[lane] += phase[lane] < 0 ? from->stride : 0;
-  }
-  c->phase = vi_load(phase);
+  c->began = zero;
   if (from->cells == SEVERAL_LOCAL) { /* samples begin and end with the lattice, wherever the structure's box does */
-    const vint stride = vi_set(from->stride), first = several_sample_of(from, v_to_int(c->walk.s) + c->phase) * stride - c->phase;
-    const vint last = (several_sample_of(from, behind + c->phase) + vi_set(1)) * stride - c->phase;
+    const vint stride = vi_set(from->stride), first = several_sample_of(from, v_to_int(c->walk.s) + v->phase) * stride - v->phase;
+    const vint last = (several_sample_of(from, behind + v->phase) + vi_set(1)) * stride - v->phase;
     c->walk.s = v_select(k->live, v_max(v_from_int(first), k->begin), zero);
     c->walk.end = v_select(k->live, v_min(v_from_int(last), k->end), zero);
     c->end = c->walk.end;

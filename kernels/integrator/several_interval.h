@@ -258,6 +258,30 @@ OUTLINE void several_interval(
   } while (stretches && m_any(mask));
 }
 
+/* Does what several_interval() does where every path has one value, that of its middle. Then no path is cut, and no ray ends at a wall. */
+INLINE void several_interval_of_middles(
+  const several_source* from, const several_volume* volumes, int count, vint since, int i, vmask mask, stratus_packet* k)
+{
+  const vfloat zero = v_set(0.0f), stop = v_from_int(vi_set(i) - since);
+  vfloat sum[4] = { zero, zero, zero, zero }, nearest = v_set(LARGEST_FLOAT);
+  for (int n = 0; n < count; ++n) {
+    const several_volume* v = &volumes[n];
+    if (v->shows) {
+      vfloat begin, end;
+      several_part(v, since, zero, stop, &begin, &end);
+      for (int c = 0; c < 4; ++c) {
+        sum[c] = v_fma(v->ways[v->now].rate[c], end - begin, sum[c]);
+      }
+      if (from[0].a->picture.want_depth) {
+        const vmask here = v_lt(begin, end) & v_lt(zero, v->ways[v->now].rate[3]);
+        nearest = v_select(here, v_min(begin + v->k.first, nearest), nearest);
+      }
+    }
+  }
+  several_composite(from[0].a, k, mask & v_lt(zero, sum[3]), sum, nearest);
+  k->live = m_andnot(k->live, v_lt(k->transparency, v_set(from[0].a->termination)));
+}
+
 /* Lanes on which a path shows anything. */
 INLINE vmask several_shown(const several_way* way, int shows)
 {

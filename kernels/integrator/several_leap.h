@@ -6,49 +6,59 @@
 #include "several_state.h"
 #include "tree_map.h"
 
-/* Read the structure along the rays `inside` from s0 on. Returns the segment at which the volume is to be looked at again, i if it is to be
- * sampled. */
-INLINE int several_leap(const several_source* from, several_volume* v, int i, vfloat s0, vmask inside, vmask live)
+/* Asks the structure once, from segment `i` on or where less is known of a ray, which part of each ray of the mask comes next. */
+INLINE void several_look(const several_source* from, several_volume* v, vint i, vmask mask)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
   stratus_packet* k = &v->k;
-  const vfloat length = v_set((float)from->stride);
-  const vfloat lo = v_max(s0, k->begin);
+  const vint at = vi_max(v->shown_until, i), last = k->last + v->offset;
+  const vfloat length = v_set((float)from->stride), s0 = v_from_int(at - v->offset), lo = v_max(s0, k->begin);
   vfloat s = lo;
   if (!from->preintegrated) {
     s = v_set(0.5f) * (lo + v_min(s0 + length, k->end));
   }
-  const vmask waiting = live & k->live & v_le(s0 + length, k->begin);
-  int next = several_aligned(from, v, several_least(v->offset, waiting));
-  if (m_any(inside)) {
-    vint block[3], byte;
-    packet_blocks(a, k, s, block);
-    if (a->map.tree) {
-      byte = tree_bytes(a, from->map, block, inside);
-    } else {
-      byte = gather_map(from->map, block[0] + (block[1] + block[2] * vi_set(a->map.rows)) * vi_set(a->map.pitch) + k->octant, inside);
-    }
-    const vmask occupied = inside & vi_ge(byte, vi_set(128));
-    const vfloat leave = v_min(cube_exit(a, k, block, byte & vi_set(127)), v_set(8e6f));
-    const vmask beyond = m_andnot(inside, occupied) & v_le(k->end, leave); /* nothing shows on the rest of these rays */
-    k->lookups -= mask_int(inside);
-    /* pre-integrated: the first way that ends outside the cube; else the first whose middle may lie outside */
-    const vint at = v_to_int(leave + v_set(from->preintegrated ? 0.0f : 0.5f) * length) + v->offset;
-    const int leap = several_aligned(from, v, several_least(at, m_andnot(inside, occupied | beyond)));
-    if (m_any(occupied) || (from->preintegrated && leap <= i)) {
-      const int until = several_aligned(from, v, several_least(at, occupied));
-      v->run = until != SEVERAL_NEVER && until > i + from->stride ? until : i + from->stride;
+  vint block[3], byte;
+  packet_blocks(a, k, s, block);
+  if (a->map.tree) {
+    byte = tree_bytes(a, from->map, block, mask);
+  } else {
+    byte = gather_map(from->map, block[0] + (block[1] + block[2] * vi_set(a->map.rows)) * vi_set(a->map.pitch) + k->octant, mask);
+  }
+  k->lookups -= mask_int(mask);
+  const vmask occupied = mask & vi_ge(byte, vi_set(128));
+  const vfloat leave = v_min(cube_exit(a, k, block, byte & vi_set(127)), v_set(8e6f));
+  /* pre-integrated: the first way that ends outside the cube; else the first whose middle may lie outside */
+  vint next = v_to_int(leave + v_set(from->preintegrated ? 0.0f : 0.5f) * length);
+  next = several_aligned_rays(from, v, next) + v->offset;
+  const vmask stays = occupied | (mask & vi_ge(at, next)), leaps = m_andnot(mask, stays);
+  next = vi_max(next, at + vi_set(from->stride));
+  const vfloat passed = v_from_int(vi_min(next, last) - at) * v_set(1.0f / (float)from->stride);
+  k->skipped = k->skipped + vi_select(leaps, v_to_int(passed + v_set(0.999f)), vi_set(0));
+  next = vi_select(leaps & (vi_ge(next, last) | v_le(k->end, leave)), vi_set(SEVERAL_NEVER), next);
+  v->shown_from = vi_select(mask, vi_select(stays, at, next), v->shown_from);
+  v->shown_until = vi_select(mask, next, v->shown_until);
+}
+
+/* Returns the segment, of those from i on, at which the volume is to be sampled or looked at again; i if it is to be sampled. */
+INLINE int several_leap(const several_source* from, several_volume* v, int i, vmask live)
+{
+  const vint now = vi_set(i);
+  live = live & v->k.live;
+  for (;;) {
+    const vmask behind = live & vi_lt(now, v->shown_until), shown = behind & vi_ge(now, v->shown_from);
+    if (m_any(shown)) { /* all are sampled as long as one of them is in a block that is not transparent */
+      const int until = several_most(vi_min(v->shown_until, v->k.last + v->offset), shown), more = (i - v->began) / SEVERAL_LOOKS;
+      v->run = until + (from->stride == 1 ? more : more - more % from->stride);
       return i;
     }
-    next = leap < next ? leap : next;
+    if (!m_any(m_andnot(live, behind))) {
+      const int next = several_least(v->shown_from, live);
+      v->began = next;
+      return next < v->last ? next : SEVERAL_NEVER;
+    }
+    /* all rays on whose way nothing is known to show, since a look takes the same time for one of them */
+    several_look(from, v, now, live & vi_ge(vi_max(v->shown_from, now), v->shown_until) & vi_lt(v->shown_until, vi_set(SEVERAL_NEVER)));
   }
-  next = next > i + from->stride ? next : i + from->stride;
-  next = next < v->last ? next : SEVERAL_NEVER;
-  if (m_any(inside)) {
-    const int segments = (next < v->last ? next : v->last) - i;
-    k->skipped -= mask_int(inside) * vi_set(from->stride == 1 ? segments : (segments + from->stride - 1) / from->stride);
-  }
-  return next;
 }
 
 #endif

@@ -42,6 +42,8 @@
 #define SEVERAL_MOST 8
 #endif
 #define SEVERAL_NEVER 0x7fffffff
+/* Where something has shown for so many segments, the structure is asked a segment later than it has to be. */
+#define SEVERAL_LOOKS 8
 /* Place of a ray that has no stretch left. */
 #define SEVERAL_BEYOND 1e30f
 /* Segments between a ray's places are ints. */
@@ -118,18 +120,22 @@ typedef struct several_cells_rays {
   vmask waiting;  /* rays that have pieces of `way` left */
   vmask rough;    /* rays that go from cell to cell */
   vfloat end;     /* where rays end */
-  vint phase;     /* segments from the beginning of a sample to the one in which a ray enters */
+  vfloat began;   /* where rays began to take samples */
 } several_cells_rays;
 #endif
 
 typedef struct several_volume {
   stratus_packet k; /* the rays in this volume's coordinates */
   vint offset;      /* the packet's number for the segment in which a ray enters */
-  int phase;        /* segments from the beginning of a sample's path to the packet's first segment */
-  int next, run;    /* the segment at which a sample or a look-up is due; before `run` the structure need not be read */
-  int last;         /* the first segment behind all rays' ends */
-  vfloat ahead;     /* pre-integrated: the value at the path's end, which is the front value of the next path */
-  vmask knows;      /* the rays for which `ahead` is known */
+  vint phase;       /* segments from the beginning of a sample's path to the one in which a ray enters */
+  /* the segments, by the packet's numbers, from which on and up to which the structure has something to show; before shown_from nothing
+   * shows, and from shown_until on nothing is known yet */
+  vint shown_from, shown_until;
+  int began;     /* the segment since which the volume has been sampled */
+  int next, run; /* the segment at which a sample or a look-up is due; before `run` the structure need not be read */
+  int last;      /* the first segment behind all rays' ends */
+  vfloat ahead;  /* pre-integrated: the value at the path's end, which is the front value of the next path */
+  vmask knows;   /* the rays for which `ahead` is known */
   several_way ways[2];
   int now;          /* index in `ways` of the path that rays are on; the other is the coming path */
   int shows, comes; /* whether anything shows on the present path, and on the coming one */
@@ -198,10 +204,26 @@ INLINE int several_least(vint a, vmask mask)
 #endif
 }
 
-/* Return the segment in which the path of segment i's sample begins. */
-INLINE int several_aligned(const several_source* from, const several_volume* v, int i)
+/* The largest number in the lanes of the mask, of numbers above -SEVERAL_NEVER; -SEVERAL_NEVER if there is none. */
+INLINE int several_most(vint a, vmask mask) { return -several_least(vi_set(0) - a, mask); }
+
+/* The number of the sample, of `stride` segments each, in which segment i is. */
+INLINE vint several_sample_of(const several_source* from, vint i)
 {
-  return i == SEVERAL_NEVER || from->stride == 1 ? i : i - (i + v->phase) % from->stride;
+  const vint stride = vi_set(from->stride), zero = vi_set(0), one = vi_set(1);
+  vint sample = v_to_int((v_from_int(i) + v_set(0.5f)) * v_set(1.0f / (float)from->stride));
+  const vint rest = i - sample * stride; /* the product is rounded */
+  sample = sample + vi_select(vi_ge(rest, stride), one, vi_select(vi_lt(rest, zero), zero - one, zero));
+  return sample;
+}
+
+/* The segments in which the paths of the samples begin that have segments i of the rays. */
+INLINE vint several_aligned_rays(const several_source* from, const several_volume* v, vint i)
+{
+  if (from->stride > 1) {
+    i = several_sample_of(from, i + v->phase) * vi_set(from->stride) - v->phase;
+  }
+  return i;
 }
 
 #endif
