@@ -36,6 +36,7 @@
 #include "stratus/path.h"
 #include "stratus/cloud.h"
 #include "stratus/color_map.h"
+#include "stratus/look.h"
 #include "stratus/scenes.h"
 
 #endif

@@ -70,7 +70,7 @@ text_image turn(const text_image& image)
 
 double share_of_bar(const options& o)
 {
-  return o.axes && o.color_bar ? std::min(bar_room / o.width, 0.4) : 0.0;
+  return (o.axes || (o.about.earth && !o.has_azimuth)) && o.color_bar ? std::min(bar_room / o.width, 0.4) : 0.0;
 }
 
 // An edge of the box in the picture, along which an axis has its numbers.
@@ -198,14 +198,11 @@ private:
   std::vector<pixels> Taken, Lines;
 };
 
-annotation::annotation(const options& o) : Axes(o.axes), Bar(o.color_bar), Caption(o.caption)
+annotation::annotation(const options& o)
+    : Axes(o.axes), Bar(o.color_bar), Caption(o.caption + (o.caption.empty() || o.heights.empty() ? "" : ", ") + o.heights)
 {
   const background behind = parse_background(o.background);
-  double light = 0.0;
-  for (int c = 0; c < 3; ++c) {
-    light += (behind.bottom[c] + behind.top[c]) / 6.0;
-  }
-  this->Ink = behind.transparent ? 0.5 : light > 0.4 ? 0.1 : 0.9;
+  this->Ink = behind.transparent ? 0.5 : is_bright(behind) ? 0.1 : 0.9;
 }
 
 // An edge is near if one of its two faces looks towards the eye.

@@ -17,7 +17,7 @@ struct axis_label {
   std::string name, units;
 };
 
-// Returns the part of a picture's width that axes leave to the colour bar.
+// Returns the part of a picture's width that axes, and boxes that fill the picture, leave to the colour bar.
 double share_of_bar(const options& o);
 
 struct scene_frame {

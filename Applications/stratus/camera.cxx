@@ -57,6 +57,26 @@ void fit(double around, double upward, double elevation, double away, bool paral
   }
 }
 
+// The tangents between which a view shows all corners of the bounds, from left to right and from bottom to top. In a parallel view these
+// are lengths.
+void fit_corners(const double bounds[6], const double eye[3], const double axes[3][3], bool parallel, double sides[4])
+{
+  for (int corner = 0; corner < 8; ++corner) {
+    double along[3] = { 0.0, 0.0, 0.0 }; // to the right, up, forward
+    for (int a = 0; a < 3; ++a) {
+      const double place = bounds[2 * a + (corner >> a & 1)] - eye[a];
+      for (int axis = 0; axis < 3; ++axis) {
+        along[axis] += axes[axis][a] * place;
+      }
+    }
+    for (int axis = 0; axis < 2; ++axis) {
+      const double at = along[axis] / (parallel ? 1.0 : along[2]);
+      sides[2 * axis] = corner == 0 ? at : std::min(sides[2 * axis], at);
+      sides[2 * axis + 1] = corner == 0 ? at : std::max(sides[2 * axis + 1], at);
+    }
+  }
+}
+
 } // namespace
 
 namespace cli {
@@ -104,6 +124,30 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
   double wide;
   double high;
   fit(around, half[up], elevation, away, o.parallel, wide, high);
+  if (o.about.earth && !o.has_azimuth) { // a view that nobody turns: the box fills it
+    const double level = std::hypot(direction[(up + 1) % 3], direction[(up + 2) % 3]);
+    double axes[3][3], sides[4];
+    axes[0][up] = 0.0;
+    axes[0][(up + 1) % 3] = -direction[(up + 2) % 3] / level;
+    axes[0][(up + 2) % 3] = direction[(up + 1) % 3] / level;
+    for (int a = 0; a < 3; ++a) {
+      axes[2][a] = -direction[a];
+    }
+    for (int a = 0; a < 3; ++a) {
+      axes[1][a] = axes[0][(a + 1) % 3] * axes[2][(a + 2) % 3] - axes[0][(a + 2) % 3] * axes[2][(a + 1) % 3];
+    }
+    for (int pass = 0; pass < 4; ++pass) { // each moves the middle of what is seen to the middle of the picture, to first order
+      fit_corners(bounds, eye, axes, o.parallel, sides);
+      for (int a = 0; a < 3; ++a) {
+        const double move = 0.5 * (o.parallel ? 1.0 : away) * ((sides[0] + sides[1]) * axes[0][a] + (sides[2] + sides[3]) * axes[1][a]);
+        eye[a] += move;
+        focal[a] += move;
+      }
+    }
+    fit_corners(bounds, eye, axes, o.parallel, sides);
+    wide = std::max(-sides[0], sides[1]);
+    high = std::max(-sides[2], sides[3]);
+  }
   const double room = o.axes ? 1.3 : 1.02; // leaves space for the numbers next to the box
   const double bar = share_of_bar(o);
   const double scale = room * std::max(high, wide / (aspect * (1.0 - bar))) / o.zoom;

@@ -326,6 +326,11 @@ std::string axis_name_of(vtkAlgorithm* reader, int axis)
   return by_name ? by_name->GetNameOfAxis(axis) : "";
 }
 
+bool is_netcdf(vtkAlgorithm* reader)
+{
+  return reader->IsA("vtkStratusCFReader") || reader->IsA("vtkStratusUgridReader");
+}
+
 std::string axis_units_of(vtkAlgorithm* reader, int axis)
 {
   vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);

@@ -50,6 +50,8 @@ std::string time_units_of(vtkAlgorithm* reader);
 std::string time_calendar_of(vtkAlgorithm* reader);
 std::string description_of(vtkAlgorithm* reader);
 std::string choice_of(vtkAlgorithm* reader);
+// Whether a reader of variables reads netCDF.
+bool is_netcdf(vtkAlgorithm* reader);
 std::string axis_name_of(vtkAlgorithm* reader, int axis);
 std::string axis_units_of(vtkAlgorithm* reader, int axis);
 std::string value_units_of(vtkAlgorithm* reader); // of the chosen variable

@@ -155,7 +155,8 @@ heat_scale frame::scale_of(size_t number) const
 
 void frame::annotate(const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time)
 {
-  if (wish.any()) {
+  const bool shows_colors = !this->IsExr && !this->ShowsSamples && this->Wanted.empty();
+  if (wish.any() && shows_colors) {
     wish.draw(this->Rgba, this->Width, this->Height, place, look, time);
   }
 }

@@ -29,7 +29,7 @@ public:
   std::vector<std::string> describe_numbers() const;
   // Describes the samples per pixel in a line, or returns "" where they were not counted.
   std::string describe_samples() const;
-  // Puts annotations around the picture.
+  // Puts annotations around the picture, unless it shows other numbers than colours.
   void annotate(const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time);
   void write(output_file& file) const;
 

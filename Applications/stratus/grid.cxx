@@ -66,6 +66,7 @@ public:
 
 private:
   stratus_tetra_options how() const;
+  int up() const { return this->Options.up.empty() ? 2 : this->Options.up[0] - 'x'; }
 
   const cli::options& Options;
   cli::context& Core;
@@ -86,8 +87,7 @@ void grid_drawing::take(const cli::routed& data)
 void grid_drawing::look()
 {
   const cli::options& o = this->Options;
-  const stratus_volume box = this->Mesh.box();
-  this->Transfer = cli::make_transfer({ &box }, nullptr, o);
+  this->Transfer = cli::make_transfer(this->Core, this->Mesh.values(this->up()), nullptr, o);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
   this->Camera = cli::place_camera(this->Core, o, this->Mesh, view);
@@ -95,9 +95,8 @@ void grid_drawing::look()
 
 std::pair<double, double> grid_drawing::range() const
 {
-  const stratus_volume box = this->Mesh.box();
-  const cli::histogram h = cli::histogram_of({ &box });
-  return { h.low, h.high };
+  const stratus_look_values found = cli::count_values(this->Core, this->Mesh.values(this->up()));
+  return { found.low, found.high };
 }
 
 cli::scene_frame grid_drawing::place() const
@@ -106,7 +105,7 @@ cli::scene_frame grid_drawing::place() const
   frame.camera = this->Camera;
   const stratus_volume box = this->Mesh.box();
   this->Core.check(stratus_volume_bounds(this->Core, &box, frame.bounds), "bounds");
-  frame.scale[this->Options.up.empty() ? 2 : this->Options.up[0] - 'x'] = this->Options.exaggeration;
+  frame.scale[this->up()] = this->Options.exaggeration;
   frame.title = this->Mesh.array_name;
   return frame;
 }
@@ -124,8 +123,8 @@ stratus_tetra_options grid_drawing::how() const
   std::copy(o.average.begin(), o.average.end(), how.average_range);
   how.contour_count = static_cast<int>(o.contours.size());
   std::copy(o.contours.begin(), o.contours.end(), how.contours);
-  how.slice = cli::slice_of(o, o.up.empty() ? 2 : o.up[0] - 'x');
-  cli::set_light(o, o.up.empty() ? 2 : o.up[0] - 'x', how.shade, how.shading);
+  how.slice = cli::slice_of(o, this->up());
+  cli::set_light(o, this->up(), how.shade, how.shading);
   how.shade = how.shade || o.mode == STRATUS_MODE_FIRST_HIT;
   how.normals = o.normals;
   return how;

@@ -161,8 +161,7 @@ void cli::print_grid(const options& o, vtkDataSet* grid)
     mesh m;
     m.set(grid, o);
     core.check(stratus_mesh_check(core, &m.view()), "'" + o.source + "'");
-    const stratus_volume box = m.box();
-    const transfer look = make_transfer({ &box }, nullptr, o);
+    const transfer look = make_transfer(core, m.values(o.up.empty() ? 2 : o.up[0] - 'x'), nullptr, o);
     const stratus_transfer view = look.view();
     core.check(stratus_transfer_check(core, &view), "transfer function");
     const stratus_tetra_report report = draw(core, m.view(), view, place_camera(core, o, m, view), o.width, o.height);

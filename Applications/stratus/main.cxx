@@ -3,6 +3,7 @@
 #include "colors.h"
 #include "compare.h"
 #include "grid.h"
+#include "heights.h"
 #include "input.h"
 #include "options.h"
 #include "reading.h"
@@ -48,7 +49,8 @@ void list_arrays(vtkDataSet* image)
 void print_volume(
   const cli::options& o, cli::context& core, const cli::input& in, const std::vector<std::unique_ptr<cli::input>>& blocks = {})
 {
-  cli::volumes all = { &in.volume };
+  cli::look_input all;
+  all.volumes.push_back(in.volume);
   double bounds[6];
   core.check(stratus_volume_bounds(core, &in.volume, bounds), "bounds");
   for (const auto& block : blocks) {
@@ -57,9 +59,9 @@ void print_volume(
     for (int side = 0; side < 6; ++side) {
       bounds[side] = side % 2 ? std::max(bounds[side], own[side]) : std::min(bounds[side], own[side]);
     }
-    all.push_back(&block->volume);
+    all.volumes.push_back(block->volume);
   }
-  const cli::histogram h = cli::histogram_of(all);
+  const stratus_look_values h = cli::count_values(core, all);
   row("volume", (blocks.empty() ? "" : "the first block of ") + cli::describe(in.volume));
   row("origin", cli::format("%.10g %.10g %.10g", in.volume.origin[0], in.volume.origin[1], in.volume.origin[2]));
   row("bounds",
@@ -74,7 +76,7 @@ void print_volume(
     row("range", cli::format("%.9g .. %.9g", h.low, h.high));
   }
   row("not finite", cli::grouped(static_cast<unsigned long long>(h.not_finite)) + " values");
-  row("opacity", cli::make_transfer(all, in.scene, o).origin);
+  row("opacity", cli::make_transfer(core, all, in.scene, o).origin);
 }
 
 void print_time(const cli::series& in)
@@ -95,8 +97,9 @@ void print_time(const cli::series& in)
   row("time", text + (in.units().empty() ? "" : " " + in.units()));
 }
 
-void info(const cli::options& o)
+void info(const cli::options& given)
 {
+  cli::options o = given;
   if (cli::is_scene(o.source)) {
     cli::context core("host", o.threads);
     const cli::input in(core, o.source, o.reading());
@@ -108,6 +111,7 @@ void info(const cli::options& o)
   const size_t step = in.find(o.time);
   const std::vector<cli::variable_entry> variables = in.variables(step); // before the step, because the reader's output is one object
   const cli::routed data = cli::route(in.read(step), o.source, o.array);
+  cli::set_heights(o, &in, data.image ? data.image : data.grid);
   cli::context core("host", o.threads);
   const std::unique_ptr<cli::input> image(data.image ? new cli::input(core, o.source, data.image, o.array) : nullptr);
   std::printf("%s\n", o.source.c_str());

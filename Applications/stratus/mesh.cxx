@@ -58,6 +58,47 @@ stratus_volume mesh::box() const
   return box;
 }
 
+// Height of a point of a lattice. Only the axis of heights is stretched.
+static double height_of(const stratus_mesh& m, size_t point, int up)
+{
+  const double own = m.points ? m.points[3 * point + static_cast<size_t>(up)] : m.float_points[3 * point + static_cast<size_t>(up)];
+  return own * m.matrix[5 * up];
+}
+
+look_input mesh::values(int up) const
+{
+  const stratus_mesh& m = this->view();
+  look_input result;
+  result.volumes.push_back(this->box());
+  result.unordered = m.lattice[0] == 0;
+  if (result.unordered) {
+    return result;
+  }
+  stratus_volume& box = result.volumes[0];
+  for (int a = 0; a < 3; ++a) {
+    const double extent = box.spacing[a] * static_cast<double>(box.dimensions[a]);
+    box.dimensions[a] = m.lattice[a] - (m.cell_values ? 1 : 0);
+    box.spacing[a] = extent / static_cast<double>(box.dimensions[a]);
+  }
+  const int64_t* n = box.dimensions;
+  const size_t layer = static_cast<size_t>(m.lattice[0]) * static_cast<size_t>(m.lattice[1]);
+  result.thickness.reserve(static_cast<size_t>(n[0] * n[1] * n[2]));
+  for (int64_t k = 0; k < n[2]; ++k) {
+    // From the layer of points below to the one above; points at an end have half a layer.
+    const int64_t below = m.cell_values ? k : std::max<int64_t>(k - 1, 0),
+                  above = m.cell_values ? k + 1 : std::min<int64_t>(k + 1, n[2] - 1);
+    for (int64_t j = 0; j < n[1]; ++j) {
+      for (int64_t i = 0; i < n[0]; ++i) {
+        const size_t place = static_cast<size_t>(i + m.lattice[0] * j);
+        const double length =
+          height_of(m, place + static_cast<size_t>(above) * layer, up) - height_of(m, place + static_cast<size_t>(below) * layer, up);
+        result.thickness.push_back((m.cell_values ? 1.0 : 0.5) * std::fabs(length));
+      }
+    }
+  }
+  return result;
+}
+
 stratus_volume mesh::outline() const
 {
   static const uint8_t nothing[8] = {}; // of no value, so that the whole box counts as shown

@@ -4,6 +4,7 @@
 
 #include "options.h"
 #include "support.h"
+#include "transfer.h"
 
 #include "vtkStratusMeshView.h"
 
@@ -23,8 +24,10 @@ public:
   void set(vtkDataSet* grid, const options& o);
   const stratus_mesh& view() const { return this->View.GetMesh(); }
   vtkIdType ignored() const { return this->View.GetLeftOut(); }
-  // Returns a volume of the grid's size with all of the grid's values but the last few, in no spatial order. It serves to guess an opacity
-  // from the frequency of values and the length of rays.
+  // Returns the grid's values to guess an opacity from: those of a structured grid in their order, with the world lengths along its
+  // columns, and others in no spatial order, without the last few. up: the world's axis of heights.
+  look_input values(int up) const;
+  // Returns a volume of the grid's size, whose values have no spatial order.
   stratus_volume box() const;
   // Returns a volume of the grid's size, all of which counts as shown, to place a camera by.
   stratus_volume outline() const;

@@ -83,7 +83,8 @@ Data and appearance
   --mask FILE             an image of one byte a value; a value is hidden if its byte is 0
   --mask-raw ...          layout of a headerless mask file, as for --raw
   --unit-distance D       world length to which alpha applies (default: a voxel's edge)
-  --exaggerate F          multiply heights (along the upward axis) by F
+  --exaggerate F          multiply heights (along the upward axis) by F (default 1; of a flat netCDF file on the Earth as much as makes its
+                          height a fifth of its width, which the picture says)
   --log                   map colours, and a guessed opacity, to the logarithm of the value, over at most four decades
   --axes                  draw a box around the data, with its coordinates
   --color-bar             draw the colours of values, with the variable's name and unit
@@ -99,8 +100,8 @@ Data and appearance
 
 Camera
   --size WxH              pixels (default 512x512)
-  --azimuth DEG           about the upward axis (default 30)
-  --elevation DEG         above the ground, -90..90 (default 30)
+  --azimuth DEG           about the upward axis, 0 from +x, 90 from +y (default 30; of a netCDF file on the Earth -70, from the south)
+  --elevation DEG         above the ground, -90..90 (default 30; of a netCDF file on the Earth 35)
   --zoom F                2 shows everything twice as large (default 1: everything fits)
   --parallel              parallel instead of perspective projection
   --up x|y|z              which axis points upward (default z; a scene has its own)
@@ -350,6 +351,24 @@ void set_method(options& o, const std::string&, const std::string& value)
   }
 }
 
+void set_exaggeration(options& o, const std::string& word, const std::string& value)
+{
+  o.exaggeration = positive(value, word);
+  o.has_exaggeration = true;
+}
+
+void set_azimuth(options& o, const std::string& word, const std::string& value)
+{
+  o.azimuth = number(value, word);
+  o.has_azimuth = true;
+}
+
+void set_elevation(options& o, const std::string& word, const std::string& value)
+{
+  o.elevation = within(value, word, -90.0, 90.0);
+  o.has_elevation = true;
+}
+
 void set_up(options& o, const std::string& word, const std::string& value)
 {
   if (value != "x" && value != "y" && value != "z") {
@@ -510,12 +529,12 @@ constexpr struct {
   { "--mask", keep<&options::mask> },
   { "--mask-raw", keep<&options::mask_raw> },
   { "--unit-distance", keep_positive<&options::unit_distance> },
-  { "--exaggerate", keep_positive<&options::exaggeration> },
+  { "--exaggerate", set_exaggeration },
   { "--caption", keep<&options::caption> },
   { "--background", keep<&options::background> },
   { "--size", [](options& o, text, text value) { set_size(o, value); } },
-  { "--azimuth", keep_number<&options::azimuth> },
-  { "--elevation", [](options& o, text word, text value) { o.elevation = within(value, word, -90.0, 90.0); } },
+  { "--azimuth", set_azimuth },
+  { "--elevation", set_elevation },
   { "--zoom", [](options& o, text word, text value) { o.zoom = within(value, word, 0.15, 1e6); } },
   { "--up", set_up },
   { "--sample-distance", keep_positive<&options::sample_distance> },

@@ -17,6 +17,12 @@ struct companion {
   double unit_distance = 0.0;
 };
 
+// What a file says about the drawn variable and its grid, for defaults.
+struct data_about {
+  bool earth = false; // a netCDF file whose coordinates are lengths or degrees
+  std::string name, standard_name, units;
+};
+
 struct options {
   std::string command; // render, info, tree, sort, compare, devices, colors, version, help
   std::string source;
@@ -35,6 +41,7 @@ struct options {
   double unit_distance = 0.0;
   double azimuth = 30.0;
   double elevation = 30.0;
+  bool has_azimuth = false, has_elevation = false;
   double zoom = 1.0;
   double sample_distance = 0.0;
   double cell_error = 0.0;
@@ -46,6 +53,9 @@ struct options {
   double read_timeout = usual_read_timeout; // seconds; 0: no limit
   int depth = 3;                            // sort: depth of the K-D tree
   double exaggeration = 1.0;                // of heights
+  bool has_exaggeration = false;
+  std::string heights; // for the caption, if set_heights() chose the exaggeration; otherwise ""
+  data_about about;
   bool logarithmic = false;
   bool axes = false;
   bool color_bar = false;

@@ -116,6 +116,15 @@ static uint8_t to_byte(double level)
   return static_cast<uint8_t>(std::lround(255.0 * std::min(std::max(level, 0.0), 1.0)));
 }
 
+bool is_bright(const background& behind)
+{
+  double light = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    light += (behind.bottom[c] + behind.top[c]) / 6.0;
+  }
+  return !behind.transparent && light > 0.4;
+}
+
 double to_screen(double linear)
 {
   return linear <= 0.0031308 ? 12.92 * std::max(linear, 0.0) : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;

@@ -16,6 +16,8 @@ struct background {
 
 // Parses "dark", "light", "black", "white", "transparent", "r:g:b", or "r:g:b,r:g:b" from bottom to top.
 background parse_background(const std::string& text);
+// Whether dark text shows better on it than bright text. A transparent background is dark.
+bool is_bright(const background& behind);
 
 // Encodes a linear level for a screen, and decodes it: sRGB (IEC 61966-2-1), at least 0.
 double to_screen(double linear);

@@ -5,6 +5,7 @@
 #include "cloud.h"
 #include "drawing.h"
 #include "frame.h"
+#include "heights.h"
 #include "input.h"
 #include "series.h"
 #include "sun.h"
@@ -33,7 +34,7 @@ cli::routed route_for(vtkDataObject* data, size_t step, const cli::options& o, c
   return routed;
 }
 
-// Sets what --cloud and --sun-time find out from the data. Returns a line about the sun, or "".
+// Sets what --cloud, --sun-time and defaults of the Earth's data find out from the data. Returns a line about the sun, or "".
 std::string set_by_data(
   cli::options& o, const cli::options& given, const cli::routed& data, const cli::series* in, size_t step, const cli::cloud* water)
 {
@@ -41,6 +42,7 @@ std::string set_by_data(
   if (water) {
     water->set_function(o, grid);
   }
+  cli::set_heights(o, in, grid);
   return cli::set_sun(o, given, in, grid, step);
 }
 
@@ -82,13 +84,16 @@ std::unique_ptr<cli::drawing> drawing_of(const cli::options& o, cli::context& co
 }
 
 // Prints which variable is drawn, on which grid. `in` is null for a scene.
-void print_reading(const cli::series* in, const cli::cloud* water, const std::string& sun)
+void print_reading(const cli::options& o, const cli::series* in, const cli::cloud* water, const std::string& sun)
 {
   if (in && !in->choice().empty()) {
     row("variable", in->choice());
   }
   if (in && !in->grid().empty()) {
     row("coordinates", in->grid());
+  }
+  if (!o.heights.empty()) {
+    row("heights", cli::format("x %.15g, because the data are flat; --exaggerate 1 for true heights", o.exaggeration));
   }
   if (water) {
     water->print_rows();
@@ -118,7 +123,7 @@ void render_one(const cli::options& given, const cli::routed& data, const cli::s
   }
   annotate(frame, o, *drawing, in, step);
   std::printf("%s\n", o.source.c_str());
-  print_reading(in, water, sun);
+  print_reading(o, in, water, sun);
   if (!time.empty()) {
     row("time", time);
   }
@@ -211,7 +216,8 @@ void render_film(const cli::options& given, cli::series& in, const cli::cloud* w
   } // a path that cannot be written is reported at once
   std::printf("%s\n", o.source.c_str());
   cli::routed data = read_apart(in, 0, o, water);
-  print_reading(&in, water, set_by_data(o, given, data, &in, 0, water));
+  const std::string sun = set_by_data(o, given, data, &in, 0, water);
+  print_reading(o, &in, water, sun);
   const std::unique_ptr<cli::drawing> drawing = drawing_of(o, core, data);
   look_at_widest(*drawing, in, o, water);
   const stratus_image image = frame.view();

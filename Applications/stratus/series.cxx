@@ -310,6 +310,23 @@ std::string series::value_units() const
   return this->Reader ? value_units_of(this->Reader) : "";
 }
 
+data_about series::about() const
+{
+  data_about result;
+  result.earth = this->Reader && is_netcdf(this->Reader);
+  for (int axis = 0; axis < 3; ++axis) {
+    result.earth = result.earth && this->axis_units(axis) == "m";
+  }
+  for (const variable_name& one : this->names()) {
+    if (result.name.empty() && (this->Variable.empty() || one.name == this->Variable)) {
+      result.name = one.name;
+      result.standard_name = one.standard_name;
+      result.units = one.units;
+    }
+  }
+  return result;
+}
+
 std::string series::describe(size_t step) const
 {
   return this->Times.empty() ? "" : format("step %zu of %zu, at ", step, this->Times.size()) + this->time_of(step);

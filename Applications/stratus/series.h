@@ -3,6 +3,7 @@
 #pragma once
 
 #include "formats.h"
+#include "options.h"
 
 #include <vtkDataObject.h>
 
@@ -32,6 +33,8 @@ public:
   std::string axis_name(int axis) const;
   std::string axis_units(int axis) const;
   std::string value_units() const;
+  // The drawn variable's name, standard name and unit, and whether the file is netCDF with coordinates that are lengths.
+  data_about about() const;
   // Returns "step 3 of 24, at 1.5 hours since ...", or "" for a file without time.
   std::string describe(size_t step) const;
   // The file's variables at a step, none of a file that is not read by variables.

@@ -29,6 +29,10 @@ struct member {
   stratus_tetra_caster* tetra = nullptr;
   stratus_ray_cast_report report = {};
 
+  cli::look_input values(int up) const
+  {
+    return this->mesh ? this->mesh->values(up) : cli::look_input{ { this->input->volume }, {}, false };
+  }
   const stratus_volume& shape() const { return this->mesh ? this->outline : this->input->volume; }
   const std::string& array_name() const { return this->mesh ? this->mesh->array_name : this->input->array_name; }
 };
@@ -88,6 +92,7 @@ void several_drawing::take(const cli::routed& data)
     o.opacity = companion.opacity;
     o.color = companion.color;
     o.unit_distance = companion.unit_distance;
+    o.about = { o.about.earth, o.array, "", "" };
     this->take_member(o, cli::is_scene(o.source) ? cli::routed() : cli::route(cli::read_data(o.source, o.reading()), o.source, o.array));
   }
 }
@@ -138,8 +143,7 @@ void several_drawing::look()
 {
   std::vector<cli::shown_volume> shown;
   for (member& one : this->Members) {
-    const stratus_volume values = one.mesh ? one.mesh->box() : one.input->volume;
-    one.functions = cli::make_transfer({ &values }, one.mesh ? nullptr : one.input->scene, one.o);
+    one.functions = cli::make_transfer(this->Core, one.values(this->Up), one.mesh ? nullptr : one.input->scene, one.o);
     const stratus_transfer view = one.functions.view();
     this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function of '" + one.o.source + "'");
     shown.push_back({ &one.shape(), view });
@@ -149,10 +153,8 @@ void several_drawing::look()
 
 std::pair<double, double> several_drawing::range() const
 {
-  const member& first = this->Members[0];
-  const stratus_volume values = first.mesh ? first.mesh->box() : first.input->volume;
-  const cli::histogram h = cli::histogram_of({ &values });
-  return { h.low, h.high };
+  const stratus_look_values found = cli::count_values(this->Core, this->Members[0].values(this->Up));
+  return { found.low, found.high };
 }
 
 cli::scene_frame several_drawing::place() const

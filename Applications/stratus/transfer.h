@@ -2,7 +2,6 @@
 // Transfer functions given by the user, taken from the scene, or guessed from the histogram.
 #pragma once
 
-#include "histogram.h"
 #include "options.h"
 #include "support.h"
 
@@ -10,6 +9,16 @@
 #include <vector>
 
 namespace cli {
+
+// The values that a guess is made from: a volume, its blocks, or the values of a mesh as a volume.
+struct look_input {
+  std::vector<stratus_volume> volumes;
+  std::vector<double> thickness; // see stratus_look_options
+  bool unordered = false;
+};
+
+// A volume, or its blocks, which have values of one type.
+using volumes = std::vector<const stratus_volume*>;
 
 // A transfer function that owns its points.
 class transfer
@@ -28,11 +37,10 @@ public:
   void shown(double& low, double& high) const;
 };
 
-// Guesses an opacity that is transparent over the dominant value (the air, the background) and a ramp away from it. The ramp's height suits
-// a view through the whole volume.
-void guess_opacity(const histogram& values, transfer& result);
 // Parses "value:alpha,value:alpha,...".
 std::vector<double> parse_opacity(const std::string& text);
 // Options that were not given take the scene's own function, or a guess where `scene` is null or the scale is logarithmic.
-transfer make_transfer(const volumes& all, const stratus_scene* scene, const options& o);
+transfer make_transfer(const context& core, const look_input& data, const stratus_scene* scene, const options& o);
+// Counts the finite values and finds their range.
+stratus_look_values count_values(const context& core, const look_input& data);
 } // namespace cli

@@ -48,6 +48,7 @@ public:
 
 private:
   cli::volumes all() const;
+  cli::look_input values() const;
   std::vector<stratus_ray_cast_input> inputs();
   void trace(const stratus_image& image);
 
@@ -103,11 +104,20 @@ cli::volumes volume_drawing::all() const
   return result;
 }
 
+cli::look_input volume_drawing::values() const
+{
+  cli::look_input result;
+  for (const stratus_volume* volume : this->all()) {
+    result.volumes.push_back(*volume);
+  }
+  return result;
+}
+
 void volume_drawing::look()
 {
   const cli::options& o = this->Options;
   const cli::input& in = *this->Input;
-  this->Transfer = cli::make_transfer(this->all(), in.scene, o);
+  this->Transfer = cli::make_transfer(this->Core, this->values(), in.scene, o);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
   std::vector<cli::shown_volume> shown;
@@ -119,8 +129,8 @@ void volume_drawing::look()
 
 std::pair<double, double> volume_drawing::range() const
 {
-  const cli::histogram h = cli::histogram_of(this->all());
-  return { h.low, h.high };
+  const stratus_look_values found = cli::count_values(this->Core, this->values());
+  return { found.low, found.high };
 }
 
 cli::scene_frame volume_drawing::place() const

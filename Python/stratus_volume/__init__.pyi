@@ -61,7 +61,9 @@ class Volume:
     context: Context
     def __init__(
         self, data: Any, spacing: Sequence[float] | None = ..., origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ...,
-        scalars: str | None = ..., component: _Component = ..., device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ...) -> None: ...
+        scalars: str | None = ..., component: _Component = ..., device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ...,
+        exaggerate: float | None = ...) -> None: ...
+    exaggeration: float
     @property
     def bounds(self) -> tuple[float, float, float, float, float, float]: ...
     def modified(self) -> None: ...
@@ -176,7 +178,8 @@ def partition(
 def render(
     data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: Any = ..., spacing: Sequence[float] | None = ...,
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
-    device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., **options: Any) -> Rendering: ...
+    device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., exaggerate: float | None = ...,
+    **options: Any) -> Rendering: ...
 def show(
     data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: Any = ..., background: _Background = ...,
     **options: Any) -> Picture: ...
@@ -184,7 +187,8 @@ def turn(
     data: Any, frames: int = ..., opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., elevation: float = ..., zoom: float = ...,
     background: _Background = ..., seconds: float = ..., progress: _Progress = ..., spacing: Sequence[float] | None = ...,
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
-    device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., **options: Any) -> Film: ...
+    device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., exaggerate: float | None = ...,
+    **options: Any) -> Film: ...
 def cloud(
     data: Any, radius: float | None = ..., ice: bool | None = ..., units: str | None = ..., metres: float | None = ...,
     density: ArrayLike | None = ..., variable: str | None = ..., step: int = ..., sun: Sequence[float] | None = ..., time: Any = ...,

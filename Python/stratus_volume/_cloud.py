@@ -67,7 +67,8 @@ def cloud(data, radius=None, ice=None, units=None, metres=None, density=None, va
     if isinstance(values, (Volume, Tetrahedra)):
         drawn, context = values, values.context
     else:
-        drawn = drawn_of(values, device=context, **place_of)
+        own = {"exaggerate": 1.0} if _is_xarray(values) else {}  # a photograph has true heights
+        drawn = drawn_of(values, device=context, **place_of, **own)
     length = positive(metres, "metres") if metres is not None else _metres_of(drawn)
     sun = _sun(context, sun, time, place)
     opacity, unit_distance = _function(context, factor, length, radius, bool(ice))

@@ -7,29 +7,30 @@ from ._values import background_color, number, positive
 from ._volume import Volume
 
 
-def drawn_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None):
+def drawn_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, exaggerate=None):
     """What draws the data: a Volume or Tetrahedra."""
     if isinstance(data, (Volume, Tetrahedra)):
-        given = dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, device=device, threads=threads, matrix=matrix)
+        given = dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, device=device, threads=threads, matrix=matrix,
+                     exaggerate=exaggerate)
         for name, value in given.items():
             if value is not None:
                 raise ValueError(f"{name} is {value!r}, but a {type(data).__name__} has its own")
         return data
     if hasattr(data, "IsA") and (data.IsA("vtkUnstructuredGrid") or data.IsA("vtkStructuredGrid")):
-        for name, value in dict(spacing=spacing, origin=origin, axes=axes).items():
+        for name, value in dict(spacing=spacing, origin=origin, axes=axes, exaggerate=exaggerate).items():
             if value is not None:
                 raise ValueError(f"{name} is {value!r}, but a {data.GetClassName()} has none")
         return Tetrahedra(data, scalars=scalars, device=device, threads=threads, matrix=matrix, component=component)
-    return Volume(data, spacing, origin, axes, scalars, component, device, threads, matrix)
+    return Volume(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate)
 
 
 def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing=None, origin=None, axes=None, scalars=None, component=None,
-           device=None, threads=None, matrix=None, **options):
+           device=None, threads=None, matrix=None, exaggerate=None, **options):
     """Draws a volume and returns a Rendering: rgba, depth, counters.
 
     data           a NumPy array, an xarray.DataArray, a vtkImageData or vtkRectilinearGrid, a vtkUnstructuredGrid or vtkStructuredGrid,
                    pyvista's too; or a Volume or Tetrahedra, which are drawn again without building anew. See `Volume` and `Tetrahedra`
-                   for the accepted data, and for spacing, origin, axes, scalars, component, device, threads and matrix
+                   for the accepted data, and for spacing, origin, axes, scalars, component, device, threads, matrix and exaggerate
     opacity        pairs of a value and its opacity in 0..1 per unit_distance. Two pairs at one value are a step. A number is the top of a
                    ramp away from the most frequent value, or the opacity of the whole volume if all values are equal; default 0.3, in mode
                    slice 1 for all values. For several components one of these for all, or a list with one for each
@@ -86,7 +87,7 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
     Cells of unstructured and structured grids have no interpolation, structure, sampling, sample_distance, jitter, audit, labels, looks,
     and function_2d, but a method: auto, march or project. A picture that shows nothing gives one warning, NothingShown, that names the reason.
     """
-    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix)
+    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate)
     return drawn.render(opacity, color, size, camera, **options)
 
 
@@ -110,7 +111,8 @@ def render_tetrahedra(points, tetrahedra, values, opacity=None, color=None, size
 
 
 def turn(data, frames=36, opacity=None, color=None, size=(320, 240), elevation=25.0, zoom=1.15, background=(0.08, 0.1, 0.14), seconds=4.0,
-         progress=None, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, **options):
+         progress=None, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None,
+         exaggerate=None, **options):
     """Returns a Film of the data as it turns once about the z axis: a list of Pictures, which notebooks show as a film.
 
     frames     number of pictures, 1..1000
@@ -122,7 +124,7 @@ def turn(data, frames=36, opacity=None, color=None, size=(320, 240), elevation=2
     whole(frames, "frames", 1, 1000)
     background, seconds = background_color(background), positive(seconds, "seconds")
     view = dict(elevation=number(elevation, "elevation"), zoom=number(zoom, "zoom"))
-    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix)
+    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate)
     film, report = Film(seconds=seconds), Progress.of(progress)
     for n in range(frames):
         part = None if report is None else lambda stage, fraction, n=n: report(stage, (n + fraction) / frames)

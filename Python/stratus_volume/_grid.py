@@ -6,7 +6,8 @@ import importlib
 import numpy
 
 from . import _declarations as c
-from ._core import address, library, type_of
+from . import _earth
+from ._core import address, context as context_of, library, type_of
 from ._values import Spread, mask_of, native, none_visible, numbers, scaled, visible
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
@@ -21,6 +22,8 @@ class Grid:
     def __init__(self, values, mask, spacing, origin, world=(0, 1, 2), direction=None, coordinates=(None, None, None), cell_centered=False,
                  flags=None, own=(2, 1, 0)):
         self.own, self.matrix = own, None
+        # Of an xarray.DataArray: what it says of its variable, whether its places are on the Earth, and the metres of their unit.
+        self.about, self.earth, self.metres = None, False, None
         self.components = values.shape[3] if values.ndim == 4 else 1
         self.mask, self.flags, self.world, self.cell_centered = mask, flags, world, cell_centered
         self.spacing, self.origin, self.coordinates = spacing, origin, coordinates
@@ -169,17 +172,24 @@ def _of_xarray(data, spacing, origin, axes):
         for name in "_FillValue", "missing_value":
             if name in where and where is data.attrs:  # values in the encoding were replaced as the file was read
                 values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | numpy.isin(values.data, where[name]), values.data)
-    coordinates = None
+    coordinates, earth = None, None
     if spacing is None and origin is None and all(name in data.coords for name in data.dims):
         places = [numpy.asarray(data.coords[name].values) for name in data.dims]
         units = {str(data.coords[name].attrs.get("units", "")) for name in data.dims}
         if all(place.ndim == 1 and place.size > 1 and place.dtype.kind in "iuf" for place in places):
             places = [numpy.ascontiguousarray(place, numpy.float64) for place in places]
-            if len(units) > 1:
-                # If units differ, as degrees and metres do, each axis gets the length of its number of values with a spacing of 1.
+            ordered = ["".join(axes).index(axis) for axis in "xyz"]
+            earth = _earth.places_of(context_of("host", 1), [str(data.dims[at]) for at in ordered], [data.coords[data.dims[at]] for at in ordered])
+            if earth is not None:
+                for at, place in zip(ordered, earth[0]):
+                    places[at] = numpy.ascontiguousarray(place)
+            elif len(units) > 1:
+                # If units differ and are not known, each axis gets the length of its number of values with a spacing of 1.
                 places = [(place - place[0]) * ((place.size - 1) / abs(place[-1] - place[0])) for place in places]
             coordinates = places
-    return _of_array(values, spacing, origin, axes, coordinates)
+    grid = _of_array(values, spacing, origin, axes, coordinates)
+    grid.about, grid.earth, grid.metres = _earth.About(data), earth is not None, earth[1] if earth else None
+    return grid
 
 
 def chosen(values, component, name):

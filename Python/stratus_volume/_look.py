@@ -135,10 +135,13 @@ _METRES = {"m": 1, "meter": 1, "meters": 1, "metre": 1, "metres": 1, "km": 1000,
 class Units:
     """The units of quantities. `metres`: of a unit of the world's x, y and z before `matrix`; None: unknown. `values`: the unit of the values."""
 
-    def __init__(self, data=None, axes=None, values=None, matrix=None):
-        """data: of any kind; an xarray.DataArray or a VTK data set may know. axes: the dimensions of the first along the world's x, y and z."""
+    def __init__(self, data=None, axes=None, values=None, matrix=None, metres=None):
+        """data: of any kind; an xarray.DataArray or a VTK data set may know. axes: the dimensions of the first along the world's x, y and z.
+        metres: of a unit of the world, if it is known."""
         self.metres, self.values, self.linear = None, values or "", None
-        if axes is not None:
+        if metres is not None:
+            self.metres = [metres] * 3
+        elif axes is not None:
             self.metres = self._of_axes([data.coords[axis] for axis in axes if axis in data.coords])
         elif hasattr(data, "GetFieldData"):
             array = data.GetFieldData().GetArray("MetresPerUnit")

@@ -8,6 +8,7 @@ from ._core import library
 from ._values import dot, length_of, number, numbers
 
 _AROUND = dict(azimuth=30.0, elevation=25.0, zoom=1.15)
+_EARTH, _MARGIN = dict(azimuth=20.0, elevation=35.0, zoom=1.0), 1.02
 _PLACED = dict(position=None, focal_point=None, view_up=(0.0, 0.0, 1.0), view_angle=30.0, parallel_scale=None)
 _WANTED = ("a dict of azimuth, elevation (degrees) and zoom, or of position, focal_point, view_up, view_angle (degrees) and parallel_scale, "
            "or three points (position, focal point, view up), or a vtkCamera")
@@ -24,6 +25,11 @@ def _turned(vector, axis, degrees):
 
 def _cross(a, b):
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def _scaled_to_1(vector):
+    length = length_of(vector)
+    return tuple(part / length for part in vector)
 
 
 def _around(camera, bounds, aspect):
@@ -80,12 +86,35 @@ def _as_placed(camera, bounds, aspect):
     raise TypeError(f"camera is {camera!r}, it must be {_WANTED}")
 
 
-def make(context, camera, bounds, size):
-    """Returns the core's camera. Call it with the context's lock held."""
+def _filling(bounds, aspect):
+    """A camera that looks from the south, a little from the east, and from above, and whose window the corners of bounds fill."""
+    wishes = _around(_EARTH, bounds, aspect)
+    forward = _scaled_to_1([f - p for f, p in zip(wishes["focal_point"], wishes["position"])])
+    right = _scaled_to_1(_cross(forward, (0.0, 0.0, 1.0)))
+    up = _cross(right, forward)
+    corners = [[bounds[2 * axis + (n >> axis & 1)] for axis in range(3)] for n in range(8)]
+    for last in False, False, False, True:  # moves the middle of what is seen to the middle of the window, to first order
+        seen = []
+        for corner in corners:
+            place = [a - b for a, b in zip(corner, wishes["position"])]
+            seen.append((dot(place, right) / dot(place, forward), dot(place, up) / dot(place, forward)))
+        across, along = ((min(each), max(each)) for each in zip(*seen))
+        if last:
+            half = max(across[1] / aspect, -across[0] / aspect, along[1], -along[0])
+            wishes["view_angle"] = 2 * math.degrees(math.atan(_MARGIN * half))
+        else:
+            away = length_of([f - p for f, p in zip(wishes["focal_point"], wishes["position"])])
+            for name in "position", "focal_point":
+                wishes[name] = [place + 0.5 * away * (sum(across) * r + sum(along) * u) for place, r, u in zip(wishes[name], right, up)]
+    return wishes
+
+
+def make(context, camera, bounds, size, earth=False):
+    """Returns the core's camera. Call it with the context's lock held. earth: of data on the Earth, the default camera is another one."""
     if isinstance(camera, c.stratus_camera):
         return camera
     aspect = size[0] / size[1]
-    wishes, result = _as_placed(camera, bounds, aspect), c.stratus_camera()
+    wishes, result = _filling(bounds, aspect) if earth and camera is None else _as_placed(camera, bounds, aspect), c.stratus_camera()
     three = ctypes.c_double * 3
     places = [three(*wishes[name]) for name in ("position", "focal_point", "view_up")]
     if wishes["parallel_scale"] is None:

@@ -2,13 +2,15 @@
 """Pictures of volumes by ray casting."""
 import ctypes
 
+import numpy
+
 from . import _declarations as c
-from . import _view
+from . import _earth, _view
 from ._core import Owned, address, as_dict, choice, context as context_of, library
 from ._grid import affine, grid_of
 from ._look import Image, Quantities, Units, crop_box, set_contours, set_planes, set_shading, value_interval
 from ._media import Function2D, Labels, explain_each, functions_of, looks_of, materials_of, set_surface
-from ._values import explain, length_of, number, own_points, pixels, positive, unit_length, warn
+from ._values import explain, is_number, length_of, number, own_points, pixels, positive, unit_length, warn
 
 
 class Volume:
@@ -28,9 +30,16 @@ class Volume:
     threads       number of threads on the host, 1..1024; default: as many as OpenMP offers
     matrix        (4, 4) affine, row by row, which may turn, stretch, mirror, shear and move the volume in the world, after spacing and
                   origin; default: none
+    exaggerate    factor of heights z of an xarray.DataArray on the Earth (see below), above 0. Default: if there is no matrix, and the data are
+                  lower than a tenth of their width, the factor that makes them a fifth as high as wide, otherwise 1
+
+    A DataArray is on the Earth if its coordinates are longitude and latitude in degrees, or lengths, and a height, depth or pressure. Its
+    places are metres on a sphere at the middle latitude; depths are below 0, and pressures are heights in the standard atmosphere. Lengths
+    that all have one unit keep it. `exaggeration` is the factor of heights that is used.
     """
 
-    def __init__(self, data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None):
+    def __init__(self, data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None,
+                 exaggerate=None):
         self.grid = grid_of(data, spacing, origin, axes, scalars, component)
         of_xarray = hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs")
         self._named = (getattr(data, "name", None), data.attrs.get("units")) if of_xarray else None
@@ -38,8 +47,14 @@ class Volume:
         if of_xarray and spacing is None and origin is None:
             dims = [data.dims[own] for _, own in sorted(zip(self.grid.world, self.grid.own))]
         self._place(matrix)
-        self._units = Units(data, dims, self._named[1] if of_xarray else None, matrix)
         self.context = context_of(device, threads)
+        self.exaggeration = self._exaggerate(exaggerate)
+        if self.exaggeration != 1.0:
+            stretch = numpy.diag([1.0, 1.0, self.exaggeration, 1.0])
+            matrix = stretch if self.grid.matrix is None else self.grid.matrix.reshape(4, 4) @ stretch
+            self._place(matrix)
+        self._units = Units(data, dims, self._named[1] if of_xarray else None, None if matrix is None else self.grid.matrix.reshape(4, 4),
+                            self.grid.metres)
         self._caster = Owned(self.context, library.stratus_ray_caster_destroy)
         with self.context.lock:
             self.context.call(library.stratus_ray_caster_create, self.context.pointer, ctypes.byref(self._caster.pointer))
@@ -52,6 +67,14 @@ class Volume:
 
     def _place(self, matrix):
         self.grid.matrix = affine(matrix)
+
+    def _exaggerate(self, factor):
+        """The factor of heights, given or by the data."""
+        if factor is not None:
+            return positive(factor, "exaggerate")
+        if not self.grid.earth or self.grid.matrix is not None or self.grid.nothing:
+            return 1.0
+        return _earth.height_factor(self.bounds)
 
     def modified(self):
         """Call it after values changed in place: the next picture reads them again. Values of a copy stay as they were copied."""
@@ -70,7 +93,7 @@ class Volume:
                           gradient_opacity, contours, crop, clip_planes, average_range, jitter, audit, dependent, weights, mean_components, labels,
                           looks, function_2d, surface)
             if not self.grid.nothing:
-                view = _view.make(self.context, camera, asked.bounds, size)
+                view = _view.make(self.context, camera, asked.bounds, size, self.grid.earth)
                 self.context.call(library.stratus_ray_caster_render, self._caster.pointer, ctypes.byref(asked.volume), asked.functions,
                                   ctypes.byref(view), ctypes.byref(asked.options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
                 own = c.stratus_ray_cast_input(caster=self._caster.pointer, volume=ctypes.pointer(asked.volume), transfer=asked.functions,
@@ -126,6 +149,10 @@ class Asked:
             if grid.components == 1:
                 own_points(opacity)
             return
+        self._automatic = opacity is None or is_number(opacity)
+        if opacity is None and self._is_guessed(mode, looks, function_2d):
+            opacity, colors, own_unit = _earth.functions(drawn.context, grid.about, grid.view(0), grid.earth, grid.world.index(2))
+            color, unit_distance = colors if color is None else color, own_unit if unit_distance is None else unit_distance
         wanted = self._wanted = functions_of(grid, opacity, color, gradient_opacity, weights, dependent, looks)
         own = [point for each in wanted for point in own_points(each.opacity) or ()]
         self.power = power = grid.power(own or None)
@@ -141,6 +168,12 @@ class Asked:
             options.optics.transfer_2d = ctypes.pointer(self._function_2d.struct)
         self.volume = grid.view(power)
 
+    def _is_guessed(self, mode, looks, function_2d):
+        """Whether the core guesses the functions, by what an xarray.DataArray says of its variable and its grid."""
+        grid = self.grid
+        known = grid.about is not None and (grid.earth or grid.about.is_known)
+        return known and grid.components == 1 and grid.power() == 0 and mode != "slice" and not looks and function_2d is None
+
     def explain(self, rgba, rays=None):
         """Warns once where a picture shows nothing of the volume."""
         if self.grid.nothing:
@@ -148,5 +181,4 @@ class Asked:
         elif self._function_2d or len(self.transfers) > 1 or self._wanted[0].name:
             explain_each(rgba, () if self._function_2d else self._wanted, self.transfers, self.power, self.unit)
         else:
-            explain(rgba, self.transfers[0].points, self.grid.spread, self.power, own_points(self._wanted[0].opacity) is None, self.mode, self.unit,
-                    rays, self._contours)
+            explain(rgba, self.transfers[0].points, self.grid.spread, self.power, self._automatic, self.mode, self.unit, rays, self._contours)

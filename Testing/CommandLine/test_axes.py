@@ -51,7 +51,10 @@ def run(*words):
 
 
 def drawn(name, *words, size="512x512"):
-    """The annotations of a picture that shows nothing otherwise, over black: brightness[row, column], bottom row first."""
+    """The annotations of a picture that shows nothing otherwise, over black: brightness[row, column], bottom row first. Of files with and
+    without units heights and view are the same."""
+    for word, usual in ("--exaggerate", "1"), ("--azimuth", "30"), ("--elevation", "30"):
+        words += () if word in words else (word, usual)
     done = run("render", name, "-o", "out.png", "--size", size, "--device", "host", "--variable", "q", "--opacity", "0:0", "--background",
         "black", "--color", "viridis", *words)
     check(done.returncode == 0, "%s %s: %s" % (name, " ".join(words), done.stdout))

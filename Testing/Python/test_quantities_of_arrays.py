@@ -67,7 +67,7 @@ def of_grids():
 
 def units_of_axes(xarray):
     """Lengths are in metres where the axes have units of length, and do not depend on a matrix that stretches the volume."""
-    for units, metres, unit, of_integral in (("km km km", 1000, "m", "kg m-2"), ("km km m", 1, "m", "kg m-2"), ("degrees degrees m", None, "grid units", "kg m-3 grid units")):
+    for units, metres, unit, of_integral in (("km km km", 1000, "m", "kg m-2"), ("km km m", 1, "m", "kg m-2"), ("1 1 m", None, "grid units", "kg m-3 grid units")):
         places = {axis: (axis, 10.0 + 2 * numpy.arange(8.0), {"units": each}) for axis, each in zip("xyz", units.split())}
         data = xarray.DataArray(numpy.full((8, 8, 8), 3.0), dims=("z", "y", "x"), coords=places, attrs={"units": "kg m-3"})
         for stretch in 1, 10:

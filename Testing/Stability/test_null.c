@@ -373,6 +373,22 @@ static void color_maps(void)
   REFUSES(stratus_color_map_points(context, "viridis", 0, 1, NULL));
 }
 
+static void looks(const small_scene* scene)
+{
+  stratus_look look = { .opacity_count = 0 };
+  stratus_look_values values = { .low = 0 };
+  GIVES(1.0, stratus_look_height_factor(NULL, 2));
+  GIVES(STRATUS_LOOK_UNKNOWN, stratus_look_kind_of(NULL, NULL, NULL, 0, NULL));
+  TAKES(stratus_look_options_default());
+  IS_SILENT(stratus_look_count(NULL, &scene->volume, 1, &values));
+  REFUSES(stratus_look_count(context, NULL, 1, &values));
+  REFUSES(stratus_look_count(context, &scene->volume, 1, NULL));
+  IS_SILENT(stratus_look_guess(NULL, &scene->volume, 1, NULL, &look));
+  REFUSES(stratus_look_guess(context, NULL, 1, NULL, &look));
+  ACCEPTS(stratus_look_guess(context, &scene->volume, 1, NULL, &look));
+  REFUSES(stratus_look_guess(context, &scene->volume, 1, NULL, NULL));
+}
+
 static void path_tracers(const small_scene* scene)
 {
   static float rgba[4 * SMALL_PIXELS];
@@ -675,6 +691,7 @@ static void no_public_function_falls_over_null(void** state)
   ray_casters(&scene);
   clouds();
   color_maps();
+  looks(&scene);
   path_tracers(&scene);
   frustums(&scene);
   meshes(&scene);

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Data on the Earth: places in metres from the coordinates of an xarray.DataArray, heights that are exaggerated, and functions by what the
+variable is."""
+import ctypes
+
+import numpy
+
+from . import _declarations as c
+from ._core import address, library
+from ._look import _METRES
+
+_RADIUS = 6371000.0
+_PRESSURES = {"Pa": 1.0, "hPa": 100.0, "mbar": 100.0, "millibar": 100.0, "millibars": 100.0, "mb": 100.0}
+_DOWN = ("depth", "deptht", "depthu", "depthv", "depthw")
+_LENGTHS = {unit: metres for unit, metres in _METRES.items() if metres > 0.1}  # smaller ones are of microscopes and workshops
+_COLORS = c.CONSTANTS["STRATUS_COLOR_MAP_COLORS"]
+
+
+def _units(coordinate):
+    return str(coordinate.attrs.get("units", "")).strip()
+
+
+def is_down(name, coordinate):
+    """Whether a vertical coordinate of a length counts downwards."""
+    positive = str(coordinate.attrs.get("positive", "")).lower()
+    return positive == "down" if positive else str(coordinate.attrs.get("standard_name", name)).lower() in _DOWN
+
+
+def _heights_of(context, pressures):
+    """Heights in metres of pressures in Pa, in the standard atmosphere."""
+    heights, logarithms = numpy.linspace(-2000, 32000, 341), numpy.empty(341)
+    pressure, temperature = ctypes.c_double(), ctypes.c_double()
+    with context.lock:
+        for n, height in enumerate(heights):
+            context.call(library.stratus_air_standard, context.pointer, float(height), ctypes.byref(pressure), ctypes.byref(temperature))
+            logarithms[n] = numpy.log(pressure.value)
+    return numpy.interp(numpy.log(numpy.maximum(pressures, 1e-300)), logarithms[::-1], heights[::-1])
+
+
+def places_of(context, names, coordinates):
+    """Places along x, y and z, and the metres of their unit; or None if the coordinates are not on the Earth: degrees of longitude and latitude,
+    or lengths; and a height, a depth or a pressure. Places are in metres, but lengths that all have one unit keep it.
+
+    names, coordinates: of x, y and z
+    """
+    x, y, z = (numpy.asarray(each.values, numpy.float64) for each in coordinates)
+    units = [_units(each) for each in coordinates]
+    one = _LENGTHS.get(units[0]) if len(set(units)) == 1 else None
+    if all(unit.lower().startswith("degree") for unit in units[:2]):
+        north = numpy.radians(y)
+        east = numpy.radians(numpy.unwrap(x, period=360.0)) * numpy.cos(0.5 * (north.min() + north.max()))
+        x, y = _RADIUS * east, _RADIUS * north
+    elif one is None and all(unit in _LENGTHS for unit in units[:2]):
+        x, y = _LENGTHS[units[0]] * x, _LENGTHS[units[1]] * y
+    elif one is None:
+        return None
+    if units[2] in _PRESSURES:
+        z = _heights_of(context, z * _PRESSURES[units[2]])
+    elif units[2] in _LENGTHS:
+        z = z * (1.0 if one else _LENGTHS[units[2]]) * (-1.0 if is_down(names[2], coordinates[2]) else 1.0)
+    else:
+        return None
+    return (x, y, z), one or 1.0
+
+
+def height_factor(bounds):
+    """The factor by which heights of flat data are exaggerated, 1 of others."""
+    return float(library.stratus_look_height_factor((ctypes.c_double * 6)(*bounds), 2))
+
+
+class About:
+    """What a DataArray says of its variable."""
+
+    def __init__(self, data):
+        self.name, self.standard_name, self.units = (
+            str(text or "").encode() for text in (getattr(data, "name", None), data.attrs.get("standard_name"), data.attrs.get("units")))
+
+    @property
+    def is_known(self):
+        return self.kind()[0] != c.ENUMS["stratus_look_kind"]["STRATUS_LOOK_UNKNOWN"]
+
+    def kind(self):
+        """The core's kind, and the name of a colour map for a dark background or None."""
+        name = ctypes.c_void_p()
+        kind = library.stratus_look_kind_of(self.name, self.standard_name, self.units, 0, ctypes.byref(name))
+        return kind, ctypes.string_at(name.value).decode() if name.value else None
+
+
+def functions(context, about, volume, earth, column_axis):
+    """Returns points of opacity, points of colour and the unit distance, guessed by the core. Call it with the context's lock held."""
+    options, look = library.stratus_look_options_default(), c.stratus_look()
+    options.kind, name = about.kind()
+    if earth:
+        options.column_axis = column_axis
+    context.call(library.stratus_look_guess, context.pointer, ctypes.byref(volume), 1, ctypes.byref(options), ctypes.byref(look))
+    if name is None:
+        name = "cool-warm" if look.kind == c.ENUMS["stratus_look_kind"]["STRATUS_LOOK_SIGNED"] else "viridis"
+    colors = numpy.empty((_COLORS, 4))
+    context.call(library.stratus_color_map_points, context.pointer, name.encode(), look.low, look.high, address(colors))
+    points = numpy.array(look.opacity[:2 * look.opacity_count]).reshape(-1, 2)
+    return points.tolist(), colors.tolist() if look.low < look.high else colors[:1].tolist(), look.unit_distance
