@@ -6,15 +6,9 @@
 
 #include "vtkStratusMetres.h"
 
-#include <vtkCellData.h>
-#include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkFloatArray.h>
-#include <vtkInformation.h>
 #include <vtkNew.h>
-#include <vtkPointData.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace {
 
@@ -36,58 +30,6 @@ vtkDataArray* read_air(
   }
   return values;
 }
-
-// The densities of air at the values of a grid.
-class air
-{
-public:
-  air(const cli::context& core, vtkDataSet* grid, bool on_cells, int up, double metres)
-      : Core(core), Grid(grid), OnCells(on_cells), Up(up), Metres(metres)
-  {
-  }
-  vtkDataArray *Density = nullptr, *Pressure = nullptr, *Temperature = nullptr;
-
-  double at(vtkIdType i)
-  {
-    if (this->Density) {
-      return this->Density->GetComponent(i, 0);
-    }
-    double pressure = 0.0, temperature = 0.0, density = 0.0;
-    if (this->Pressure) {
-      pressure = this->Pressure->GetComponent(i, 0);
-      temperature = this->Temperature->GetComponent(i, 0);
-    } else {
-      const double height = this->height_of(i);
-      if (height == this->Height) { // neighbours along a level
-        return this->Standard;
-      }
-      this->Height = height;
-      this->Core.check(stratus_air_standard(this->Core, height, &pressure, &temperature), "--cloud");
-    }
-    this->Core.check(stratus_air_density(this->Core, pressure, temperature, &density), "--cloud");
-    this->Standard = density;
-    return density;
-  }
-
-private:
-  double height_of(vtkIdType i) const
-  {
-    double place[6];
-    if (this->OnCells) {
-      this->Grid->GetCellBounds(i, place);
-      return 0.5 * (place[2 * this->Up] + place[2 * this->Up + 1]) * this->Metres;
-    }
-    this->Grid->GetPoint(i, place);
-    return place[this->Up] * this->Metres;
-  }
-
-  const cli::context& Core;
-  vtkDataSet* Grid;
-  bool OnCells;
-  int Up;
-  double Metres;
-  double Height = NAN, Standard = 0.0;
-};
 } // namespace
 
 namespace cli {
@@ -101,8 +43,8 @@ void set_cloud_look(options& o)
   o.anisotropy = STRATUS_CLOUD_ANISOTROPY;
   o.sky.assign(zenith, zenith + 3);
   o.sky.insert(o.sky.end(), horizon, horizon + 3);
-  o.background = format("%.4f:%.4f:%.4f,%.4f:%.4f:%.4f", to_screen(horizon[0]), to_screen(horizon[1]), to_screen(horizon[2]),
-    to_screen(zenith[0]), to_screen(zenith[1]), to_screen(zenith[2]));
+  o.background = format("%.4f:%.4f:%.4f,%.4f:%.4f:%.4f", stratus_screen_level(horizon[0]), stratus_screen_level(horizon[1]),
+    stratus_screen_level(horizon[2]), stratus_screen_level(zenith[0]), stratus_screen_level(zenith[1]), stratus_screen_level(zenith[2]));
 }
 
 std::string find_cloud_water(const series& in, const options& o)
@@ -135,19 +77,16 @@ cloud::cloud(const options& o, const series* in)
       standard_name = one.standard_name;
     }
   }
-  const bool ice = stratus_cloud_phase_of(this->Array.c_str(), standard_name.c_str()) == STRATUS_CLOUD_ICE;
-  this->Radius = o.radius > 0.0 ? o.radius : ice ? STRATUS_ICE_RADIUS : STRATUS_WATER_RADIUS;
-  this->ParticleDensity = ice ? STRATUS_ICE_DENSITY : STRATUS_WATER_DENSITY;
-  this->Measure = stratus_cloud_unit(this->Units.c_str(), &this->Factor);
-  if (this->Measure == STRATUS_CLOUD_UNKNOWN) {
+  this->Water.Set(this->Array.c_str(), standard_name.c_str(), this->Units.c_str(), o.radius);
+  if (this->Water.Measure == STRATUS_CLOUD_UNKNOWN) {
     throw failure("--cloud: '" + (this->Array.empty() ? this->Source : this->Array) + "' has " +
       (this->Units.empty() ? "no unit" : "the unit '" + this->Units + "', which is no water in air") +
       ": give --water-units kg/m3, g/m3, kg/kg or g/kg");
   }
-  if (this->Measure == STRATUS_CLOUD_MIXING_RATIO && !in) {
+  if (this->Water.Measure == STRATUS_CLOUD_MIXING_RATIO && !in) {
     throw failure("--cloud: the scene '" + this->Source + "' has no density of air: give --water-units kg/m3 or g/m3");
   }
-  if (this->Measure == STRATUS_CLOUD_MIXING_RATIO) {
+  if (this->Water.Measure == STRATUS_CLOUD_MIXING_RATIO) {
     this->find_air(*in);
   }
 }
@@ -181,7 +120,7 @@ double cloud::metres_of(vtkDataSet* grid) const
 
 void cloud::convert(routed& data, size_t step) const
 {
-  if (this->Measure != STRATUS_CLOUD_MIXING_RATIO) {
+  if (this->Water.Measure != STRATUS_CLOUD_MIXING_RATIO) {
     return;
   }
   const context core("host", 1);
@@ -195,24 +134,18 @@ void cloud::convert(routed& data, size_t step) const
     bool on_cells = false;
     vtkDataArray* const ratios = choose_array(copy, this->Array, on_cells);
     const vtkIdType count = ratios->GetNumberOfTuples();
-    air density(core, copy, on_cells, this->Up, this->metres_of(copy));
+    vtkStratusAir air(core, copy, on_cells, this->Up, this->metres_of(copy));
     routed of_density, of_pressure, of_temperature;
     if (!this->Density.empty()) {
-      density.Density = read_air(this->Source, this->Reading, this->Density, step, count, of_density);
+      air.Density = read_air(this->Source, this->Reading, this->Density, step, count, of_density);
     } else if (!this->Pressure.empty()) {
-      density.Pressure = read_air(this->Source, this->Reading, this->Pressure, step, count, of_pressure);
-      density.Temperature = read_air(this->Source, this->Reading, this->Temperature, step, count, of_temperature);
+      air.Pressure = read_air(this->Source, this->Reading, this->Pressure, step, count, of_pressure);
+      air.Temperature = read_air(this->Source, this->Reading, this->Temperature, step, count, of_temperature);
     }
     vtkNew<vtkFloatArray> contents;
+    core.check(this->Water.ConvertToContents(air, ratios, contents), "--cloud");
     contents->SetName(ratios->GetName());
-    contents->SetNumberOfValues(count);
-    contents->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), "kg m-3");
-    for (vtkIdType i = 0; i < count; ++i) {
-      const double ratio = ratios->GetComponent(i, 0);
-      const bool dry = !(std::fabs(ratio) > 0.0); // or missing; its air is not looked at, which may be missing as well
-      contents->SetValue(i, static_cast<float>(dry ? ratio : ratio * this->Factor * density.at(i)));
-    }
-    vtkDataSetAttributes* const attributes = on_cells ? static_cast<vtkDataSetAttributes*>(copy->GetCellData()) : copy->GetPointData();
+    vtkDataSetAttributes* const attributes = copy->GetAttributes(on_cells ? vtkDataObject::CELL : vtkDataObject::POINT);
     attributes->AddArray(contents); // in place of the ratios, which have its name
     attributes->SetActiveScalars(contents->GetName());
     *grid = copy;
@@ -222,10 +155,8 @@ void cloud::convert(routed& data, size_t step) const
 void cloud::set_function(options& o, vtkDataSet* grid) const
 {
   const context core("host", 1);
-  const double metres = this->metres_of(grid), factor = this->Measure == STRATUS_CLOUD_MIXING_RATIO ? 1.0 : this->Factor;
-  double extinction = 0.0, points[4];
-  core.check(stratus_cloud_extinction(core, factor, this->Radius, this->ParticleDensity, &extinction), "--cloud");
-  core.check(stratus_cloud_opacity(core, extinction * metres, STRATUS_CLOUD_MOST_CONTENT / factor, points, &o.unit_distance), "--cloud");
+  double points[4];
+  core.check(this->Water.MakeFunction(core, this->metres_of(grid), points, &o.unit_distance), "--cloud");
   o.opacity = format("%.17g:%.17g,%.17g:%.17g", points[0], points[1], points[2], points[3]);
   o.color = o.color.empty() ? "0:1:1:1" : o.color;
 }
@@ -234,12 +165,12 @@ void cloud::print_rows() const
 {
   double extinction = 0.0;
   const context core("host", 1);
-  core.check(stratus_cloud_extinction(core, 1e-3, this->Radius, this->ParticleDensity, &extinction), "--cloud");
+  core.check(stratus_cloud_extinction(core, 1e-3, this->Water.Radius, this->Water.ParticleDensity, &extinction), "--cloud");
   row("water",
     "in " + this->Units +
       format(", of %s with an effective radius of %g um: extinction %.3g/m for 1 g/m3",
-        this->ParticleDensity == STRATUS_ICE_DENSITY ? "ice" : "droplets", this->Radius * 1e6, extinction));
-  if (this->Measure == STRATUS_CLOUD_MIXING_RATIO) {
+        this->Water.ParticleDensity == STRATUS_ICE_DENSITY ? "ice" : "droplets", this->Water.Radius * 1e6, extinction));
+  if (this->Water.Measure == STRATUS_CLOUD_MIXING_RATIO) {
     row("air",
       !this->Density.empty()      ? "density '" + this->Density + "'"
         : !this->Pressure.empty() ? "density of dry air by '" + this->Pressure + "' and '" + this->Temperature + "'"

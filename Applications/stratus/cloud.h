@@ -6,6 +6,8 @@
 #include "route.h"
 #include "series.h"
 
+#include "vtkStratusCloudWater.h"
+
 #include <string>
 
 namespace cli {
@@ -35,9 +37,7 @@ private:
 
   std::string Source, Array, Units; // Units: of the values
   double Metres;                    // as given, 0: by the data
-  double Radius, ParticleDensity;   // m, kg/m3
-  double Factor = 1.0;              // to kg/m3 or kg/kg
-  stratus_cloud_measure Measure = STRATUS_CLOUD_UNKNOWN;
+  vtkStratusCloudWater Water;
   reading_options Reading;
   std::string Density, Pressure, Temperature; // the file's variables of air, "": none
   int Up;

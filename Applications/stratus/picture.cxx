@@ -125,11 +125,6 @@ bool is_bright(const background& behind)
   return !behind.transparent && light > 0.4;
 }
 
-double to_screen(double linear)
-{
-  return linear <= 0.0031308 ? 12.92 * std::max(linear, 0.0) : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
-
 double from_screen(double level)
 {
   return level <= 0.04045 ? std::max(level, 0.0) / 12.92 : std::pow((level + 0.055) / 1.055, 2.4);
@@ -150,7 +145,7 @@ std::vector<uint8_t> to_bytes(const std::vector<float>& rgba, int width, int hei
         const double own = static_cast<double>(in[c]);
         const double level = behind.bottom[c] + t * (behind.top[c] - behind.bottom[c]), under = linear ? from_screen(level) : level;
         const double mixed = behind.transparent ? (alpha > 0.0 ? own / alpha : 0.0) : own + (1.0 - alpha) * under;
-        out[c] = to_byte(linear ? to_screen(mixed) : mixed);
+        out[c] = to_byte(linear ? stratus_screen_level(mixed) : mixed);
       }
       if (behind.transparent) {
         out[3] = to_byte(alpha);

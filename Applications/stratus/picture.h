@@ -19,8 +19,7 @@ background parse_background(const std::string& text);
 // Whether dark text shows better on it than bright text. A transparent background is dark.
 bool is_bright(const background& behind);
 
-// Encodes a linear level for a screen, and decodes it: sRGB (IEC 61966-2-1), at least 0.
-double to_screen(double linear);
+// Decodes a screen's level: the inverse of stratus_screen_level().
 double from_screen(double level);
 
 // Returns 3 bytes per pixel, or 4 for a transparent background, bottom row first. With 4 bytes alpha is not premultiplied, as PNG requires.

@@ -159,6 +159,11 @@ stratus_status stratus_cloud_opacity(stratus_context* context, double extinction
   return STRATUS_OK;
 }
 
+double stratus_screen_level(double linear)
+{
+  return linear > 0.0031308 ? 1.055 * pow(linear, 1.0 / 2.4) - 0.055 : 12.92 * fmax(linear, 0.0);
+}
+
 void stratus_cloud_light(double sun[3], double zenith[3], double horizon[3])
 {
   /* A white surface that faces the zenith shows 4 times the colour of a sun there, and the horizon's radiance / 3 + the zenith's 2 / 3:

@@ -71,9 +71,13 @@ STRATUS_API stratus_status stratus_cloud_opacity(
 /* Get light for pictures as a photographer exposes clouds: a surface that reflects 3/4 of all light, as a thick cloud does, and faces the
  * sun at the zenith shows 1 in each colour. Returns the colour of the sun (see stratus_shading: an irradiance of E is a colour of E / (4
  * pi)), and the radiance of a clear sky at the zenith and at the horizon, about a fifth of all light. They are linear, and a screen needs
- * them encoded (sRGB).
+ * them encoded, as by stratus_screen_level().
  */
 STRATUS_API void stratus_cloud_light(double sun[3], double zenith[3], double horizon[3]);
+
+/* Return the level of a screen, 0 for black and 1 for white, that shows a linear level: sRGB (IEC 61966-2-1). Levels below 0 count as 0,
+ * levels above 1 are not limited. */
+STRATUS_API double stratus_screen_level(double linear);
 
 /* Compute the density of dry air, kg/m3: pressure / (STRATUS_DRY_AIR temperature).
  * - pressure: Pa, 0 to 200000

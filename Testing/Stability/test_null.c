@@ -349,6 +349,7 @@ static void clouds(void)
   GIVES(STRATUS_CLOUD_UNKNOWN, stratus_cloud_unit(NULL, &value));
   GIVES(STRATUS_CLOUD_UNKNOWN, stratus_cloud_unit("kg/m3", NULL));
   TAKES(stratus_cloud_light(NULL, NULL, NULL));
+  GIVES(0.0, stratus_screen_level(NAN));
   IS_SILENT(stratus_air_density(NULL, 1e5, 280, &value));
   REFUSES(stratus_air_density(context, 1e5, 280, NULL));
   IS_SILENT(stratus_air_standard(NULL, 0, &value, six));

@@ -258,6 +258,19 @@ static void light_shows_a_thick_cloud_as_white(void** state)
   stratus_cloud_light(NULL, NULL, NULL);
 }
 
+/* The levels of bytes by the standard's inverse, which is another formula. */
+static void screen_levels_are_those_of_srgb(void** state)
+{
+  (void)state;
+  for (int byte = 0; byte < 256; ++byte) {
+    const double level = byte / 255.0, linear = level <= 0.04045 ? level / 12.92 : pow((level + 0.055) / 1.055, 2.4);
+    assert_within(stratus_screen_level(linear), level, 1e-6); /* the standard's limits have five digits */
+  }
+  assert_within(stratus_screen_level(-1.0), 0.0, 0.0);
+  assert_within(stratus_screen_level(NAN), 0.0, 0.0);
+  assert_true(stratus_screen_level(1.5) > 1.0);
+}
+
 static int make(void** state)
 {
   (void)state;
@@ -284,6 +297,7 @@ int test_cloud(void)
     cmocka_unit_test(sun_is_where_an_ephemeris_has_it),
     cmocka_unit_test(direction_turns_from_north_to_east),
     cmocka_unit_test(light_shows_a_thick_cloud_as_white),
+    cmocka_unit_test(screen_levels_are_those_of_srgb),
   };
   return cmocka_run_group_tests(tests, make, destroy);
 }
