@@ -569,12 +569,65 @@ void vtkStratusDisplay::ChooseSelected(vtkRenderer* renderer, const vtkStratusPi
   pixels.WritesDepth = !renderer->GetPreserveDepthBuffer();
 }
 
+namespace {
+// The levels of a screen, between which lines are drawn: within .03 of 255 of stratus_screen_level().
+class ScreenLevels
+{
+public:
+  ScreenLevels()
+  {
+    for (int i = 0; i <= Count; ++i) {
+      this->Levels[i] = static_cast<float>(stratus_screen_level(static_cast<double>(i) / Count));
+    }
+    this->Levels[Count + 1] = this->Levels[Count];
+  }
+  float Find(float linear) const
+  {
+    const float at = std::min(std::max(linear, 0.0f), 1.0f) * Count;
+    const int before = static_cast<int>(at);
+    return this->Levels[before] + (at - static_cast<float>(before)) * (this->Levels[before + 1] - this->Levels[before]);
+  }
+
+private:
+  static constexpr int Count = 4096;
+  float Levels[Count + 2];
+};
+
+void EncodeForScreen(float* rgba, size_t pixels)
+{
+  static const ScreenLevels levels;
+  for (size_t pixel = 0; pixel < pixels; ++pixel, rgba += 4) {
+    for (int c = 0; rgba[3] > 0.0f && c < 3; ++c) {
+      rgba[c] = rgba[3] * levels.Find(rgba[c] / rgba[3]);
+    }
+  }
+}
+} // namespace
+
+void vtkStratusDisplay::Encode(const vtkStratusPicture& picture, Pixels& pixels)
+{
+  const size_t count = static_cast<size_t>(picture.Size[0]) * picture.Size[1];
+  this->Encoded.assign(pixels.Rgba, pixels.Rgba + 4 * count);
+  EncodeForScreen(this->Encoded.data(), count);
+  pixels.Rgba = this->Encoded.data();
+  pixels.Bytes = nullptr;
+  if (pixels.Cast) {
+    pixels.Cast = [cast = pixels.Cast](const float* depths, std::vector<float>& rgba) {
+      const bool done = cast(depths, rgba);
+      EncodeForScreen(rgba.data(), rgba.size() / 4);
+      return done;
+    };
+  }
+}
+
 bool vtkStratusDisplay::Draw(vtkRenderer* renderer, const vtkStratusPicture& picture, const Pixels& wanted, std::string& error)
 {
   Pixels pixels = wanted;
   vtkHardwareSelector* selector = renderer->GetSelector();
   if (selector && pixels.Rgba) {
     this->ChooseSelected(renderer, picture, pixels);
+  } else if (pixels.Encodes && pixels.Rgba) {
+    this->Encode(picture, pixels);
   }
   this->WindowDepth.clear();
   if (pixels.WritesDepth || this->Stage == vtkStratusPeels::FIRST) { // peels are distinguished by depth

@@ -35,6 +35,7 @@ public:
     int Window[4] = { 0, 0, 0, 0 }; // x0, x1, y0, y1: pixels outside are empty
     float Scale = 1.0f;
     float Bias = 0.0f;
+    bool Encodes = false; // each pixel's own colour, not multiplied by alpha, is linear and shown by stratus_screen_level()
     const std::vector<float>* Depth = nullptr; // along each ray, as the core gives it
     // Casts rays of the picture up to window depths, one a ray; empty where a part of a ray has no colour of its own. Valid in this frame.
     std::function<bool(const float* depths, std::vector<float>& rgba)> Cast;
@@ -104,7 +105,10 @@ private:
 
   void ChooseSelected(vtkRenderer* renderer, const vtkStratusPicture& picture, Pixels& pixels);
 
+  void Encode(const vtkStratusPicture& picture, Pixels& pixels);
+
   std::vector<float> Selected;    // colours for picking
+  std::vector<float> Encoded;     // colours for the screen
   std::vector<float> WindowDepth; // of this draw; empty: it shows no depth
   vtkNew<vtkTextureObject> Texture;
   vtkNew<vtkTextureObject> Behind;

@@ -59,7 +59,7 @@ void SetLight(vtkLight* light, vtkCamera* camera, stratus_light& result)
 }
 } // namespace
 
-bool vtkStratusSetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_shading& shading, std::string& error)
+bool vtkStratusSetShading(vtkRenderer* renderer, vtkLight* sun, vtkVolumeProperty* property, stratus_shading& shading, std::string& error)
 {
   shading.one_sided = renderer->GetTwoSidedLighting() ? 0 : 1;
   shading.ambient = property->GetAmbient();
@@ -67,6 +67,12 @@ bool vtkStratusSetShading(vtkRenderer* renderer, vtkVolumeProperty* property, st
   shading.specular = property->GetSpecular();
   shading.specular_power = property->GetSpecularPower();
   shading.light_count = 0;
+  if (sun) {
+    if (shading.on && sun->GetSwitch()) {
+      SetLight(sun, renderer->GetActiveCamera(), shading.lights[shading.light_count++]);
+    }
+    return true;
+  }
   vtkLightCollection* lights = renderer->GetLights();
   vtkCollectionSimpleIterator iterator;
   lights->InitTraversal(iterator);

@@ -8,12 +8,14 @@
 
 #include <string>
 
+class vtkLight;
 class vtkRenderer;
 class vtkVolumeProperty;
 
-// Sets the material of the first component, and the lights that are on, unless `shading` is off.
+// Sets the material of the first component, and the lights, unless `shading` is off. sun: the only light; nullptr: all lights of the
+// renderer that are on.
 VTK_STRATUS_PRIVATE bool vtkStratusSetShading(
-  vtkRenderer* renderer, vtkVolumeProperty* property, stratus_shading& shading, std::string& error);
+  vtkRenderer* renderer, vtkLight* sun, vtkVolumeProperty* property, stratus_shading& shading, std::string& error);
 
 // The anisotropy of a mapper; 0: the property's, where VTK has one.
 VTK_STRATUS_PRIVATE double vtkStratusAnisotropy(double mapper, vtkVolumeProperty* property);

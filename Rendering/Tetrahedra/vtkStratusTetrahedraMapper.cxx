@@ -7,6 +7,7 @@
 #include "vtkCommand.h"
 #include "vtkDataObjectTree.h"
 #include "vtkImageData.h"
+#include "vtkLight.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 #include "vtkRenderer.h"
@@ -109,6 +110,19 @@ void vtkStratusTetrahedraMapper::SetDevice(const char* device)
 }
 
 // Not in the header, because VTK 9.2's smart pointers convert to pointers of complete classes only.
+vtkLight* vtkStratusTetrahedraMapper::GetSun()
+{
+  return this->Sun;
+}
+
+void vtkStratusTetrahedraMapper::SetSun(vtkLight* light)
+{
+  if (this->Sun != light) {
+    this->Sun = light;
+    this->Modified();
+  }
+}
+
 vtkImageData* vtkStratusTetrahedraMapper::GetMaskInput()
 {
   return this->MaskInput;
@@ -267,6 +281,8 @@ void vtkStratusTetrahedraMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SkyZenith: " << this->SkyZenith[0] << " " << this->SkyZenith[1] << " " << this->SkyZenith[2] << "\n";
   os << indent << "SkyHorizon: " << this->SkyHorizon[0] << " " << this->SkyHorizon[1] << " " << this->SkyHorizon[2] << "\n";
   os << indent << "SkyUp: " << this->SkyUp[0] << " " << this->SkyUp[1] << " " << this->SkyUp[2] << "\n";
+  os << indent << "Sun: " << this->Sun.GetPointer() << "\n";
+  os << indent << "ScreenEncoding: " << this->ScreenEncoding << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "ComponentMixing: " << this->ComponentMixing << "\n";
   os << indent << "GradientOpacityDistance: " << this->GradientOpacityDistance << "\n";

@@ -65,13 +65,14 @@
 #define vtkStratusTetrahedraMapper_h
 
 #include "StratusRenderingTetrahedraModule.h" // For export macro
-#include "vtkSmartPointer.h"                  // For MaskInput
+#include "vtkSmartPointer.h"                  // For MaskInput and Sun
 #include "vtkUnstructuredGridVolumeMapper.h"
 
 #include <memory> // For std::unique_ptr
 
 class vtkDataObjectTree;
 class vtkImageData;
+class vtkLight;
 class vtkTable;
 struct vtkStratusMeshDescription;
 
@@ -145,6 +146,25 @@ public:
   vtkGetVector3Macro(SkyHorizon, double);
   vtkSetVector3Macro(SkyUp, double);
   vtkGetVector3Macro(SkyUp, double);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the light that lights the volume in place of the renderer's lights, at its own place in the world. Default nullptr: the
+   * renderer's lights.
+   */
+  virtual void SetSun(vtkLight* light);
+  vtkLight* GetSun();
+  //@}
+
+  //@{
+  /**
+   * Set/Get whether colours are linear, as scattered light is, and encoded for the screen (sRGB, IEC 61966-2-1) where the window shows
+   * them, which blends encoded colours. GetLastImage() has linear ones. Default off: the window shows colours as they are.
+   */
+  vtkSetMacro(ScreenEncoding, vtkTypeBool);
+  vtkGetMacro(ScreenEncoding, vtkTypeBool);
+  vtkBooleanMacro(ScreenEncoding, vtkTypeBool);
   //@}
 
   //@{
@@ -448,6 +468,8 @@ protected:
   double VolumetricScatteringBlending = 0.0, ScatteringAnisotropy = 0.0;
   vtkTypeBool MultipleScattering = 0;
   double SkyZenith[3] = { 0.0, 0.0, 0.0 }, SkyHorizon[3] = { 0.0, 0.0, 0.0 }, SkyUp[3] = { 0.0, 0.0, 1.0 };
+  vtkSmartPointer<vtkLight> Sun;
+  vtkTypeBool ScreenEncoding = 0;
   double Termination = 0.0;
   double GradientOpacityDistance = 0.0;
   int ComponentMixing = ADD_COMPONENTS;

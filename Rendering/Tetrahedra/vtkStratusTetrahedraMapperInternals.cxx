@@ -109,7 +109,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
   options.materials = alike ? nullptr : this->Materials.data();
   options.shade = property->GetShade();
   vtkStratusSetScattering(this->Mapper, property, options.shading);
-  return !lit || vtkStratusSetShading(renderer, property, options.shading, error);
+  return !lit || vtkStratusSetShading(renderer, this->Mapper->GetSun(), property, options.shading, error);
 }
 
 stratus_tetra_mode vtkStratusTetrahedraMapper::Internals::GetMode() const
@@ -400,6 +400,7 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   this->HasPicture = true;
   vtkStratusDisplay::Pixels pixels;
   pixels.Rgba = this->Rgba.data();
+  pixels.Encodes = this->Mapper->ScreenEncoding != 0;
   pixels.Window[1] = this->Picture.Size[0];
   pixels.Window[3] = this->Picture.Size[1];
   pixels.Depth = &this->Depth;

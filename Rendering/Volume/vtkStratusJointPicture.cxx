@@ -89,6 +89,7 @@ bool vtkStratusJointPicture::Render(Scene& scene, std::string& error)
   this->HasPicture = true;
   this->LearnTime(scene);
   pixels.Rgba = this->Rgba.data();
+  pixels.Encodes = scene.Settings->GetScreenEncoding() != 0;
   std::copy_n(scene.Window, 4, pixels.Window);
   pixels.Depth = &this->Depth;
   pixels.WritesDepth = solid;

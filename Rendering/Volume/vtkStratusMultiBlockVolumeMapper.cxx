@@ -324,6 +324,8 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   to->SetSkyZenith(settings->GetSkyZenith());
   to->SetSkyHorizon(settings->GetSkyHorizon());
   to->SetSkyUp(settings->GetSkyUp());
+  to->SetSun(settings->GetSun());
+  to->SetScreenEncoding(settings->GetScreenEncoding());
   to->SetGradientOpacityDistance(settings->GetGradientOpacityDistance());
   to->SetComponentMixing(settings->GetComponentMixing());
   to->SetVectorMode(settings->GetVectorMode());

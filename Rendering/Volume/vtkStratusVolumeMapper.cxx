@@ -7,6 +7,7 @@
 
 #include "vtkCommand.h"
 #include "vtkImageData.h"
+#include "vtkLight.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 #include "vtkRenderWindow.h"
@@ -88,6 +89,19 @@ void vtkStratusVolumeMapper::SetDevice(const char* device)
 }
 
 // Not in the header, because VTK 9.2's smart pointers convert to pointers of complete classes only.
+vtkLight* vtkStratusVolumeMapper::GetSun()
+{
+  return this->Sun;
+}
+
+void vtkStratusVolumeMapper::SetSun(vtkLight* light)
+{
+  if (this->Sun != light) {
+    this->Sun = light;
+    this->Modified();
+  }
+}
+
 vtkImageData* vtkStratusVolumeMapper::GetMaskInput()
 {
   return this->MaskInput;
@@ -252,6 +266,8 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SkyZenith: " << this->SkyZenith[0] << " " << this->SkyZenith[1] << " " << this->SkyZenith[2] << "\n";
   os << indent << "SkyHorizon: " << this->SkyHorizon[0] << " " << this->SkyHorizon[1] << " " << this->SkyHorizon[2] << "\n";
   os << indent << "SkyUp: " << this->SkyUp[0] << " " << this->SkyUp[1] << " " << this->SkyUp[2] << "\n";
+  os << indent << "Sun: " << this->Sun.GetPointer() << "\n";
+  os << indent << "ScreenEncoding: " << this->ScreenEncoding << "\n";
   os << indent << "ImageErrorTolerance: " << this->ImageErrorTolerance << "\n";
   os << indent << "Termination: " << this->Termination << "\n";
   os << indent << "BlockSize: " << this->BlockSize << "\n";

@@ -37,7 +37,7 @@ bool vtkStratusVolumeMapper::Internals::SetShading(
   shading.on = shade || options.light.materials ? 1 : 0;
   options.light.shade = shade ? 1 : 0;
   vtkStratusSetScattering(this->Mapper, property, shading);
-  return vtkStratusSetShading(renderer, property, shading, error);
+  return vtkStratusSetShading(renderer, this->Mapper->GetSun(), property, shading, error);
 }
 
 // Voxels of values reach halfway beyond the first and the last one. A layer of points has half a voxel on either side.

@@ -222,6 +222,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   }
   const double cast = Now();
   pixels.Rgba = this->Rgba.data();
+  pixels.Encodes = this->Mapper->ScreenEncoding != 0;
   std::copy_n(this->Report.window, 4, pixels.Window);
   pixels.Depth = &this->Depth;
   pixels.WritesDepth = this->IsFirstHit();

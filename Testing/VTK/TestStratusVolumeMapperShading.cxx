@@ -512,6 +512,48 @@ void Shadows()
   CHECK(scene.Picture() == bright && scene.Errors->Count == 0, "without them: %s", scene.Errors->Text.c_str());
 }
 
+void OwnSun()
+{
+  Scene scene(96, 80);
+  scene.Volume->GetProperty()->ShadeOn();
+  const std::vector<float> headlight = scene.Picture();
+  vtkNew<vtkLight> sun;
+  sun->SetPosition(3.0, 1.0, 2.0);
+  sun->SetDiffuseColor(0.9, 0.6, 0.3);
+  scene.Mapper->SetSun(sun);
+  CHECK(scene.Mapper->GetSun() == sun, "GetSun() returns another light");
+  const std::vector<float> own = scene.Picture();
+  scene.Mapper->SetSun(nullptr);
+  CHECK(scene.Picture() == headlight && own != headlight, "without the sun, the renderer's light is back");
+  scene.Renderer->RemoveAllLights();
+  scene.Renderer->AddLight(sun);
+  CHECK(scene.Picture() == own, "the volume's own sun lights as a light of the renderer");
+  CHECK(scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+}
+
+// Each pixel's colour is encoded by the standard's formula before it is blended.
+void ScreenEncoding()
+{
+  Scene scene(96, 80);
+  for (const double level : { 0.0, 0.2 }) {
+    scene.Renderer->SetBackground(level, level, level);
+    scene.Mapper->ScreenEncodingOff();
+    const std::vector<float> linear = scene.Picture();
+    const std::vector<unsigned char> plain = scene.Bytes();
+    scene.Mapper->ScreenEncodingOn();
+    CHECK(scene.Picture() == linear, "the image of the mapper is not linear");
+    const std::vector<unsigned char> shown = scene.Bytes();
+    double worst = 0.0;
+    for (size_t i = 0; i < linear.size(); ++i) {
+      const double alpha = linear[4 * (i / 4) + 3], own = alpha > 0.0 ? linear[i] / alpha : 0.0;
+      const double encoded = own <= 0.0031308 ? 12.92 * own : 1.055 * std::pow(own, 1.0 / 2.4) - 0.055;
+      worst = i % 4 < 3 ? std::max(worst, std::fabs(255.0 * (alpha * encoded + (1.0 - alpha) * level) - shown[i])) : worst;
+    }
+    CHECK(worst < 0.6, "a level of the screen is off by %.2f of 255", worst); // a rounding, and a table; the background is 51 of 255
+    CHECK(shown != plain && scene.Errors->Count == 0, "%s", scene.Errors->Text.c_str());
+  }
+}
+
 void Refusals()
 {
   Scene scene;
@@ -538,6 +580,8 @@ int main()
   Materials();
   Lamps();
   Shadows();
+  OwnSun();
+  ScreenEncoding();
   Refusals();
   std::printf("%d failures\n", Failures);
   return Failures ? 1 : 0;
