@@ -1,59 +1,133 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Light that passes through matter, as the panel of a representation sets it, for mappers of volumes and of cells.
+ * @class   vtkStratusPanelLight
+ * @brief   light that passes through matter, and clouds in physical units, as ParaView's panel sets them
+ *
+ * Representations of volumes and of cells have one each, which sets their mapper. Several ranks draw without shadows and scattered light,
+ * because a rank does not have the matter of the others, whose shadows would end at its borders. They draw no clouds.
+ *
+ * A cloud replaces the representation's functions, material and lights in the blend mode composite: values are water in air, and the sun
+ * and a clear sky light it as a photograph shows it (stratus/cloud.h).
+ *
+ * @sa vtkStratusVolumeRepresentation vtkStratusTetrahedraRepresentation
  */
 #ifndef vtkStratusPanelLight_h
 #define vtkStratusPanelLight_h
 
-#include "vtkStratusRanks.h"
+#include "StratusParaViewRepresentationsModule.h" // For export macro
+#include "vtkObject.h"
 
-#include <algorithm>
+#include <memory> // For std::unique_ptr
+#include <string> // For std::string
 
-namespace stratus {
-struct PanelLight {
-  bool Shadows = false, Multiple = false;
-  double Scattering = 0.0, Anisotropy = 0.0;
-  double Zenith[3] = { 0.0, 0.0, 0.0 }, Horizon[3] = { 0.0, 0.0, 0.0 }, Up[3] = { 0.0, 0.0, 1.0 };
+class vtkDataObject;
+class vtkInformation;
+class vtkPVDataRepresentation;
+class vtkStratusTetrahedraMapper;
+class vtkStratusVolumeMapper;
+class vtkVolumeProperty;
 
-  // Whether it is left out, because a rank does not have the matter of the others, whose shadows would end at its borders.
-  bool IsLeftOut() const { return (this->Shadows || this->Scattering > 0.0) && count_ranks() > 1; }
+class STRATUSPARAVIEWREPRESENTATIONS_EXPORT vtkStratusPanelLight : public vtkObject
+{
+public:
+  static vtkStratusPanelLight* New();
+  vtkTypeMacro(vtkStratusPanelLight, vtkObject);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+  void Modified() override;
 
-  template <typename Mapper> void Apply(Mapper* mapper) const
-  {
-    const bool whole = count_ranks() == 1;
-    mapper->SetShadows(whole && this->Shadows);
-    mapper->SetVolumetricScatteringBlending(whole ? this->Scattering : 0.0);
-    mapper->SetScatteringAnisotropy(this->Anisotropy);
-    mapper->SetMultipleScattering(this->Multiple);
-    mapper->SetSkyZenith(this->Zenith);
-    mapper->SetSkyHorizon(this->Horizon);
-    mapper->SetSkyUp(this->Up);
-  }
+  //@{
+  /**
+   * As of the mappers. A cloud has its own values of all but SkyUp.
+   */
+  vtkSetMacro(Shadows, bool);
+  vtkSetMacro(VolumetricScatteringBlending, double);
+  vtkSetMacro(ScatteringAnisotropy, double);
+  vtkSetMacro(MultipleScattering, bool);
+  vtkSetVector3Macro(SkyZenith, double);
+  vtkSetVector3Macro(SkyHorizon, double);
+  vtkSetVector3Macro(SkyUp, double);
+  //@}
+
+  //@{
+  /**
+   * Set/Get whether values are water of clouds. Default off.
+   */
+  vtkSetMacro(Cloud, bool);
+  vtkGetMacro(Cloud, bool);
+  //@}
+
+  /**
+   * Set the unit of the water, such as "g/m3" or "kg/kg" (stratus_cloud_unit()). "auto" (default): the array's own, or kg/m3 if it has
+   * none. Mixing ratios are converted by the density of the standard atmosphere at the height above 0 along SkyUp.
+   */
+  void SetWaterUnits(const char* unit);
+
+  //@{
+  /**
+   * Set the effective radius of droplets or crystals in um, 0.1..10000 (default 0: 10, of ice 30), and the metres of a world unit
+   * (default 0: as the data's MetresPerUnit says, otherwise 1).
+   */
+  vtkSetMacro(EffectiveRadius, double);
+  vtkSetMacro(MetresPerUnit, double);
+  //@}
+
+  //@{
+  /**
+   * Set the sun of a cloud: azimuth, degrees clockwise from north, and elevation, degrees (default 120, 40); or a moment, as
+   * stratus_time_parse() reads it ("", the default: by azimuth and elevation), and latitude and longitude in degrees. If SkyUp is along z,
+   * x is east and y is north.
+   */
+  vtkSetVector2Macro(SunPosition, double);
+  void SetSunTime(const char* time);
+  vtkSetVector2Macro(SunPlace, double);
+  //@}
+
+  /**
+   * Get the water and the sun of the cloud that was drawn last, or why none is drawn; "" without Cloud.
+   */
+  const char* GetCloudUsed();
+
+  /**
+   * Returns whether shadows and scattered light are left out.
+   */
+  bool IsLeftOut() const;
+
+  //@{
+  /**
+   * The representation's part. TakeWater() adds the contents of a cloud of mixing ratios to the representation's own copy of the data. It
+   * must be called for new data and for another array; if settings change so that contents do, the user requests its data again. array: as
+   * an algorithm's input array. GetWater() returns the name of the array that a cloud draws. Apply() sets a mapper, and returns the
+   * property to draw by: `own`, or the cloud's property. mode: the blend mode. TakeProblem() returns the reason why no cloud is drawn, ""
+   * without a reason or if it was returned before.
+   */
+  void SetUser(vtkPVDataRepresentation* user);
+  void TakeWater(vtkDataObject* data, vtkInformation* array);
+  vtkVolumeProperty* Apply(vtkStratusVolumeMapper* mapper, int mode, vtkVolumeProperty* own);
+  vtkVolumeProperty* Apply(vtkStratusTetrahedraMapper* mapper, int mode, vtkVolumeProperty* own);
+  std::string TakeProblem();
+  const std::string& GetWater() const;
+  //@}
+
+protected:
+  vtkStratusPanelLight();
+  ~vtkStratusPanelLight() override;
+
+private:
+  vtkStratusPanelLight(const vtkStratusPanelLight&) = delete;
+  void operator=(const vtkStratusPanelLight&) = delete;
+
+  bool NeedsWater() const;
+  bool UpdateCloud(vtkVolumeProperty* own);
+  template <class Mapper> vtkVolumeProperty* ApplyTo(Mapper* mapper, int mode, vtkVolumeProperty* own);
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+  bool Shadows = false, MultipleScattering = false, Cloud = false;
+  double VolumetricScatteringBlending = 0.0, ScatteringAnisotropy = 0.0;
+  double SkyZenith[3] = { 0.0, 0.0, 0.0 }, SkyHorizon[3] = { 0.0, 0.0, 0.0 }, SkyUp[3] = { 0.0, 0.0, 1.0 };
+  std::string WaterUnits = "auto", SunTime;
+  double EffectiveRadius = 0.0, MetresPerUnit = 0.0;
+  double SunPosition[2] = { 120.0, 40.0 }, SunPlace[2] = { 0.0, 0.0 };
 };
-} // namespace stratus
-
-// Functions of a representation that set its member Light, and with it a mapper. SetScattering() has a name of its own, because a property
-// of ParaView's superclass calls SetVolumetricScatteringBlending().
-#define STRATUS_PANEL_LIGHT(representation, mapper)                                                                                        \
-  STRATUS_PANEL_LIGHT_ONE(representation, SetShadows, bool, Shadows, mapper)                                                               \
-  STRATUS_PANEL_LIGHT_ONE(representation, SetScattering, double, Scattering, mapper)                                                       \
-  STRATUS_PANEL_LIGHT_ONE(representation, SetScatteringAnisotropy, double, Anisotropy, mapper)                                             \
-  STRATUS_PANEL_LIGHT_ONE(representation, SetMultipleScattering, bool, Multiple, mapper)                                                   \
-  STRATUS_PANEL_LIGHT_THREE(representation, SetSkyZenith, Zenith, mapper)                                                                  \
-  STRATUS_PANEL_LIGHT_THREE(representation, SetSkyHorizon, Horizon, mapper)                                                                \
-  STRATUS_PANEL_LIGHT_THREE(representation, SetSkyUp, Up, mapper)
-#define STRATUS_PANEL_LIGHT_ONE(representation, setter, type, member, mapper)                                                              \
-  void representation::setter(type value)                                                                                                  \
-  {                                                                                                                                        \
-    this->Light->member = value;                                                                                                           \
-    this->Light->Apply(mapper);                                                                                                            \
-  }
-#define STRATUS_PANEL_LIGHT_THREE(representation, setter, member, mapper)                                                                  \
-  void representation::setter(double x, double y, double z)                                                                                \
-  {                                                                                                                                        \
-    const double values[3] = { x, y, z };                                                                                                  \
-    std::copy_n(values, 3, this->Light->member);                                                                                           \
-    this->Light->Apply(mapper);                                                                                                            \
-  }
 
 #endif

@@ -56,14 +56,17 @@ vtkSmartPointer<vtkDataObject> Copy(vtkDataObject* data)
 vtkStandardNewMacro(vtkStratusTetrahedraRepresentation);
 
 vtkStratusTetrahedraRepresentation::vtkStratusTetrahedraRepresentation()
-    : Solid(new stratus::SolidColor), Panel(new stratus::PanelUpdate), Light(new stratus::PanelLight)
+    : Solid(new stratus::SolidColor), Panel(new stratus::PanelUpdate), Light(vtkSmartPointer<vtkStratusPanelLight>::New())
 {
   this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
 }
 
-vtkStratusTetrahedraRepresentation::~vtkStratusTetrahedraRepresentation() = default;
+vtkStratusTetrahedraRepresentation::~vtkStratusTetrahedraRepresentation()
+{
+  this->Light->SetUser(nullptr);
+}
 
 int vtkStratusTetrahedraRepresentation::FillInputPortInformation(int, vtkInformation* info)
 {
@@ -89,6 +92,7 @@ int vtkStratusTetrahedraRepresentation::RequestData(vtkInformation* request, vtk
     if (!words.empty()) {
       vtkErrorMacro(<< words);
     }
+    this->Light->TakeWater(this->Cache, this->GetInputArrayInformation(0));
     if (this->UseSeparateOpacityArray) {
       this->AppendOpacityComponent(vtkDataSet::SafeDownCast(this->Cache));
     }
@@ -154,6 +158,10 @@ void vtkStratusTetrahedraRepresentation::UpdateMapper(vtkDataObject* data)
   } else {
     this->Show(this->Dealt, this->DealtArray, this->DealtCells);
   }
+  const std::string words = this->Light->TakeProblem();
+  if (!words.empty()) {
+    vtkErrorMacro(<< words);
+  }
 }
 
 void vtkStratusTetrahedraRepresentation::Show(vtkDataObject* data, const std::string& name, bool on_cells)
@@ -167,8 +175,11 @@ void vtkStratusTetrahedraRepresentation::Show(vtkDataObject* data, const std::st
     return;
   }
   this->Property->SetIndependentComponents(this->MapScalars && !this->MultiComponentsMapping && !this->UseSeparateOpacityArray);
-  const std::string shown =
-    this->UseSeparateOpacityArray ? name + "_and_opacity" : stratus::choose_scalars(data, name.c_str(), on_cells, this->Property);
+  vtkVolumeProperty* drawn = this->Light->Apply(this->Mapper, this->Mapper->GetBlendMode(), this->Property);
+  this->Actor->SetProperty(drawn);
+  const std::string shown = drawn != this->Property ? this->Light->GetWater()
+    : this->UseSeparateOpacityArray                 ? name + "_and_opacity"
+                                                    : stratus::choose_scalars(data, name.c_str(), on_cells, this->Property);
   this->Mapper->SetScalarMode(on_cells ? VTK_SCALAR_MODE_USE_CELL_FIELD_DATA : VTK_SCALAR_MODE_USE_POINT_FIELD_DATA);
   this->Mapper->SelectScalarArray(shown.c_str());
   this->Mapper->SetInputDataObject(data);
@@ -241,8 +252,8 @@ void vtkStratusTetrahedraRepresentation::SetInputArrayToProcess(int index, int p
 {
   if (index == 0) {
     this->Solid->Choose(association, name);
-    if (this->Lost) {
-      this->MarkModified(); // the data may have this one
+    if (this->Lost || this->Light->GetCloud()) {
+      this->MarkModified(); // the data may have this one, or it must be converted
     }
   }
   this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
@@ -329,7 +340,14 @@ void vtkStratusTetrahedraRepresentation::SetTermination(double opacity)
   this->Mapper->SetTermination(opacity);
 }
 
-STRATUS_PANEL_LIGHT(vtkStratusTetrahedraRepresentation, this->Mapper.Get())
+void vtkStratusTetrahedraRepresentation::SetLight(vtkStratusPanelLight* light)
+{
+  if (light && light != this->Light) {
+    this->Light->SetUser(nullptr);
+    this->Light = light;
+    this->Light->SetUser(this);
+  }
+}
 
 void vtkStratusTetrahedraRepresentation::SetDevice(const char* device)
 {

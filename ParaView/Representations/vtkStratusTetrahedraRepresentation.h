@@ -27,9 +27,9 @@ class vtkColorTransferFunction;
 class vtkMultiProcessController;
 class vtkPiecewiseFunction;
 class vtkPolyDataMapper;
+class vtkStratusPanelLight;
 class vtkStratusTetrahedraMapper;
 namespace stratus {
-struct PanelLight;
 class PanelUpdate;
 class SolidColor;
 } // namespace stratus
@@ -67,18 +67,10 @@ public:
   void SetDevice(const char* device);
   //@}
 
-  //@{
   /**
-   * Forwarded to the mapper: light that passes through matter. Several ranks draw without, and rank 0 says so.
+   * Set what the panel chooses of light that passes through matter, and of clouds. ParaView sets it once.
    */
-  void SetShadows(bool on);
-  void SetScattering(double blending);
-  void SetScatteringAnisotropy(double anisotropy);
-  void SetMultipleScattering(bool on);
-  void SetSkyZenith(double red, double green, double blue);
-  void SetSkyHorizon(double red, double green, double blue);
-  void SetSkyUp(double x, double y, double z);
-  //@}
+  void SetLight(vtkStratusPanelLight* light);
 
   //@{
   /**
@@ -137,7 +129,7 @@ private:
 
   std::unique_ptr<stratus::SolidColor> Solid;
   std::unique_ptr<stratus::PanelUpdate> Panel;
-  std::unique_ptr<stratus::PanelLight> Light;
+  vtkSmartPointer<vtkStratusPanelLight> Light;
   vtkNew<vtkStratusTetrahedraMapper> Mapper;
   vtkNew<vtkPolyDataMapper> OutlineMapper;
   vtkSmartPointer<vtkDataObject> Cache; // what of the input this rank has

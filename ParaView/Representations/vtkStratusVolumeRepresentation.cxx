@@ -55,7 +55,7 @@ double mean_spacing(const double bounds[6], const double extent[6])
 vtkStandardNewMacro(vtkStratusVolumeRepresentation);
 
 vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation()
-    : Solid(new stratus::SolidColor), Panel(new stratus::PanelUpdate), Light(new stratus::PanelLight)
+    : Solid(new stratus::SolidColor), Panel(new stratus::PanelUpdate), Light(vtkSmartPointer<vtkStratusPanelLight>::New())
 {
   this->VolumeMapper = vtkSmartPointer<vtkStratusMultiBlockVolumeMapper>::New();
   this->Actor = vtkSmartPointer<vtkStratusLODVolume>::New();
@@ -64,7 +64,10 @@ vtkStratusVolumeRepresentation::vtkStratusVolumeRepresentation()
   vtkMath::UninitializeBounds(this->WholeBounds);
 }
 
-vtkStratusVolumeRepresentation::~vtkStratusVolumeRepresentation() = default;
+vtkStratusVolumeRepresentation::~vtkStratusVolumeRepresentation()
+{
+  this->Light->SetUser(nullptr);
+}
 
 vtkStratusMultiBlockVolumeMapper* vtkStratusVolumeRepresentation::GetMapper()
 {
@@ -106,6 +109,7 @@ int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInfo
   if (!words.empty()) {
     vtkErrorMacro(<< words);
   }
+  this->Light->TakeWater(this->Cache, this->GetInputArrayInformation(0));
   if (this->UseSeparateOpacityArray) {
     if (auto* grid = vtkDataSet::SafeDownCast(this->Cache)) {
       this->AppendOpacityComponent(grid);
@@ -221,8 +225,8 @@ void vtkStratusVolumeRepresentation::EndAtBorders(bool end)
 // Returns the time of the last change of the data and settings that the sampling follows from, except those that ranks agree on.
 vtkMTimeType vtkStratusVolumeRepresentation::GetSamplingTime()
 {
-  return std::max(
-    { this->Cache ? this->Cache->GetMTime() : 0, this->Property->GetMTime(), this->Actor->GetMTime(), this->VolumeMapper->GetMTime() });
+  return std::max({ this->Cache ? this->Cache->GetMTime() : 0, this->Actor->GetProperty()->GetMTime(), this->Actor->GetMTime(),
+    this->VolumeMapper->GetMTime() });
 }
 
 // Puts the pieces of all ranks together on rank 0, if they are a grid of at most WHOLE_BYTES and any has changed. Every rank must call it.
@@ -357,8 +361,8 @@ void vtkStratusVolumeRepresentation::SetInputArrayToProcess(int index, int port,
 {
   if (index == 0) {
     this->Solid->Choose(association, name);
-    if (this->Lost) {
-      this->MarkModified(); // the data may have this one
+    if (this->Lost || this->Light->GetCloud()) {
+      this->MarkModified(); // the data may have this one, or it must be converted
     }
   }
   this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
@@ -435,6 +439,16 @@ void vtkStratusVolumeRepresentation::UpdateMapperParameters()
   mapper->SetTransfer2DYAxisArray(
     this->UseTransfer2D && !this->UseGradientForTransfer2D && !this->ColorArray2Name.empty() ? this->ColorArray2Name.c_str() : nullptr);
   mapper->SetVectorComponent(std::max(colors->GetVectorComponent(), 0));
+  const bool hits = mapper->GetRenderMode() == vtkStratusVolumeMapper::FIRST_HIT_MODE;
+  vtkVolumeProperty* drawn = this->Light->Apply(mapper, hits ? -1 : this->VolumeMapper->GetBlendMode(), this->Property);
+  this->Actor->SetProperty(drawn);
+  if (drawn != this->Property) {
+    this->VolumeMapper->SelectScalarArray(this->Light->GetWater().c_str());
+  }
+  const std::string words = this->Light->TakeProblem();
+  if (!words.empty()) {
+    vtkErrorMacro(<< words);
+  }
 }
 
 void vtkStratusVolumeRepresentation::ApplyBlendMode()
@@ -505,7 +519,14 @@ void vtkStratusVolumeRepresentation::SetTermination(double opacity)
   this->GetSettings()->SetTermination(opacity);
 }
 
-STRATUS_PANEL_LIGHT(vtkStratusVolumeRepresentation, this->GetSettings())
+void vtkStratusVolumeRepresentation::SetLight(vtkStratusPanelLight* light)
+{
+  if (light && light != this->Light) {
+    this->Light->SetUser(nullptr);
+    this->Light = light;
+    this->Light->SetUser(this);
+  }
+}
 
 void vtkStratusVolumeRepresentation::SetDevice(const char* device)
 {

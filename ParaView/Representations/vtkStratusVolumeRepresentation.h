@@ -30,9 +30,9 @@ class vtkMultiProcessController;
 class vtkPiecewiseFunction;
 class vtkRenderer;
 class vtkStratusMultiBlockVolumeMapper;
+class vtkStratusPanelLight;
 class vtkStratusVolumeMapper;
 namespace stratus {
-struct PanelLight;
 class PanelUpdate;
 class SolidColor;
 } // namespace stratus
@@ -83,18 +83,10 @@ public:
   void SetDevice(const char* device);
   //@}
 
-  //@{
   /**
-   * Forwarded to the mapper: light that passes through matter. Several ranks draw without, and rank 0 says so.
+   * Set what the panel chooses of light that passes through matter, and of clouds. ParaView sets it once.
    */
-  void SetShadows(bool on);
-  void SetScattering(double blending);
-  void SetScatteringAnisotropy(double anisotropy);
-  void SetMultipleScattering(bool on);
-  void SetSkyZenith(double red, double green, double blue);
-  void SetSkyHorizon(double red, double green, double blue);
-  void SetSkyUp(double x, double y, double z);
-  //@}
+  void SetLight(vtkStratusPanelLight* light);
 
   //@{
   /**
@@ -143,7 +135,7 @@ private:
 
   std::unique_ptr<stratus::SolidColor> Solid;
   std::unique_ptr<stratus::PanelUpdate> Panel;
-  std::unique_ptr<stratus::PanelLight> Light;
+  vtkSmartPointer<vtkStratusPanelLight> Light;
   int BlendMode = 0;
   int Projection = 0;
   int Sampling = 0; // of the user, as are the next two

@@ -116,9 +116,9 @@ def picks(path, representation):
 
 
 IMAGE = {"StratusRenderMode": "First Hit", "StratusNormals": "Gradient", "StratusTermination": 0.9, "StratusImageErrorTolerance": 0.002,
-         "StratusUnitDistance": 2.0, "StratusDevice": "host"}
+         "StratusUnitDistance": 2.0, "StratusDevice": "host", "StratusCloud": 1, "StratusWaterUnits": "g/m3", "StratusSunPosition": [150.0, 35.0]}
 MESH = {"StratusCellsBlendMode": "Isosurface", "StratusCellsIsosurfaces": [0.5, 0.9], "StratusCellsShade": 1, "StratusCellsMethod": "March",
-        "StratusUnitDistance": 3.0}
+        "StratusUnitDistance": 3.0, "StratusCellsShadows": 1, "StratusCellsSkyUp": [0.0, 1.0, 0.0], "StratusSunTime": "2024-06-01"}
 
 
 def record():
@@ -167,7 +167,7 @@ def recorded():
     pictures, trace = record()
     for key in (*IMAGE, *MESH):
         check(f".{key} = " in trace, f"the trace has {key}")
-    for key in "StratusReason", "StratusSamplesTaken", "StratusCastTime", "StratusCellsReason", "StratusCellsSegments":
+    for key in "StratusReason", "StratusSamplesTaken", "StratusCastTime", "StratusCellsReason", "StratusCellsSegments", "StratusCloudUsed":
         check(f".{key} = " not in trace, f"the trace sets {key}, which only reports on pictures")
     script = smstate.get_state()
     state = os.path.join(folder, "session.pvsm")
