@@ -227,7 +227,7 @@ stratus_status stratus_look_histogram_make(stratus_context* context, const strat
     count_volume(context, volumes + n, h, scale, total);
   }
   for (size_t i = 0; i < shared_count; ++i) {
-    double value;
+    double value = 0.0;
     stratus_look_values_get(volumes + shared[i].volume, shared[i].index, 1, &value);
     --total[bin_of(h, scale, value)];
   }
