@@ -130,6 +130,11 @@ def after_another(view, shown):
             raise SystemExit(f"both steps in time are drawn at a distance of {used[0]}")
 
 
+def cloud(view, shown):
+    """Several ranks draw no cloud but the volume without it. One rank is not asked for a cloud."""
+    shown.StratusCloud, shown.StratusWaterUnits = int(ranks > 1), "g/kg"
+
+
 SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POINTS", [shade]), ("image-shade-strict", "even.vti", "POINTS", [shade, strict]), ("image-crop", "even.vti", "POINTS", [crop]),
           ("image-opaque", "even.vti", "POINTS", [opaque]), ("image-background", "even.vti", "POINTS", [opaque, background]),
           ("image-translucent", "even.vti", "POINTS", [translucent]), ("image-cells", "boxes.vti", "CELLS", []),
@@ -143,7 +148,8 @@ SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POIN
           ("image-two-variables", "even.vti", "POINTS", [two_variables]),
           ("rectilinear-two-variables", "levels.vtr", "POINTS", [two_variables]),
           ("rectilinear-second-array", "levels.vtr", "POINTS", [second_array]),
-          ("image-series", "even.vti", "POINTS", [after_another]),
+          ("image-series", "even.vti", "POINTS", [after_another]), ("image-cloud", "even.vti", "POINTS", [cloud]),
+          ("unstructured-cloud", "cells.vtu", "POINTS", [cloud]),
           ("unstructured-shade", "cells.vtu", "POINTS", [shade, strict]), ("unstructured-isosurface", "cells.vtu", "POINTS", [isosurface]),
           ("unstructured", "cells.vtu", "POINTS", []), ("unstructured-opaque", "cells.vtu", "POINTS", [opaque])]
 # Scenes whose lit samples are up to two voxels long where the field is smooth. A rank's border cuts them and moves those behind it, so that
