@@ -135,11 +135,11 @@ made raw_reader(const std::string& path, const std::string& raw)
     throw cli::usage("--raw: '" + raw + "' is not NXxNYxNZ:TYPE with a type int8, uint8, int16, uint16, int32, uint32, float32 or float64");
   }
   three(words[0], 'x', 1.0, size);
-  auto reader = vtkSmartPointer<vtkImageReader2>::New();
-  reader->SetDataByteOrderToLittleEndian();
+  auto reader = vtkSmartPointer<vtkStratusImageReader>::New();
+  bool big = false;
   for (size_t i = 2; i < words.size(); ++i) {
     if (words[i] == "big") {
-      reader->SetDataByteOrderToBigEndian();
+      big = true;
     } else if (words[i].compare(0, 1, "+") == 0) {
       skip = cli::whole_number(words[i].substr(1), "--raw", 0, 2147483647);
     } else if (words[i] != "little") {
@@ -154,13 +154,8 @@ made raw_reader(const std::string& path, const std::string& raw)
       (error ? std::string("no length") : std::to_string(there)));
   }
   reader->SetFileName(path.c_str());
-  reader->SetFileDimensionality(3);
-  reader->SetDataExtent(0, static_cast<int>(size[0]) - 1, 0, static_cast<int>(size[1]) - 1, 0, static_cast<int>(size[2]) - 1);
-  reader->SetDataSpacing(spacing);
-  reader->SetDataScalarType(type->vtk);
-  reader->SetNumberOfScalarComponents(1);
-  reader->SetHeaderSize(static_cast<unsigned long>(skip));
-  reader->FileLowerLeftOn(); // the first row has the smallest y
+  const int sizes[3] = { static_cast<int>(size[0]), static_cast<int>(size[1]), static_cast<int>(size[2]) };
+  reader->SetRawLayout(sizes, type->vtk, big, spacing, static_cast<vtkTypeInt64>(skip));
   return reader;
 }
 

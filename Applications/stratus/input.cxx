@@ -4,6 +4,7 @@
 #include "series.h"
 
 #include "vtkStratusArrays.h"
+#include "vtkStratusMapped.h"
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -60,6 +61,8 @@ void set_values(vtkDataSet* image, vtkDataArray* array, bool on_cells, stratus_v
   volume.cell_ghosts = ghosts(image->GetCellData(), image->GetNumberOfCells(), "cells of the image");
   volume.point_ghosts = on_cells ? nullptr : point_ghosts;
   volume.values = array->GetVoidPointer(0);
+  volume.identity = vtkStratusIdentityOf(array);
+  volume.missing = vtkStratusMissingOf(array);
 }
 } // namespace
 

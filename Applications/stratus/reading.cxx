@@ -214,8 +214,13 @@ reading::~reading()
     this->Followed->RemoveObserver(this->Observer);
   }
 #ifdef CATCH_CRASHES
+  reading_thread = 0; // what comes later is not the reader's
   for (size_t i = 0; i < crash_count; ++i) {
-    sigaction(crashes[i].number, &before[i], nullptr);
+    struct sigaction now = {};
+    sigaction(crashes[i].number, nullptr, &now);
+    if (now.sa_sigaction == &report_crash) { // else a reader has mapped its file, and catches what the file lacks, for longer
+      sigaction(crashes[i].number, &before[i], nullptr);
+    }
   }
   sigaltstack(&stack_before, nullptr);
 #endif

@@ -68,6 +68,7 @@ stratus_status stratus_ray_caster_render(stratus_ray_caster* caster, const strat
   const bool joins = options->mode == STRATUS_MODE_QUANTITIES ||
     (parts && (options->mode == STRATUS_MODE_FIRST_HIT || options->mode == STRATUS_MODE_ISOSURFACE));
   TRY((joins ? draw_joined : parts ? draw_parts : stratus_ray_render_one)(caster, volume, transfer, camera, options, image, &mine));
+  TRY(stratus_volume_check_missing(caster->context, volume));
   if (report) {
     *report = mine;
   }

@@ -70,6 +70,14 @@ typedef struct stratus_volume {
    * they directly follow the values in memory, of one component, FLOAT32 and value_stride 1; otherwise as copies, floats of at most 2 GB.
    */
   const float* gradients;
+  /* A number that these values have in every process, such as a hash of a file's size, time and a sample of its bytes; 0 (default): none.
+   * The value ranges of a volume with an identity and without ghosts are kept in the cache's folder (the environment's STRATUS_CACHE_DIR,
+   * else $XDG_CACHE_HOME/stratus, else $HOME/.cache/stratus; at most 1 GiB in all), so that later processes read them instead of all
+   * values. Other values, or the same in another order, need another identity. */
+  uint64_t identity;
+  /* NULL (default), or how many bytes of the values their source could not supply so far, as where a mapped file is cut short while it is
+   * read. Once this is not 0, calls fail with STRATUS_INVALID_ARGUMENT, and what they draw then is undefined. */
+  const uint64_t* missing;
 } stratus_volume;
 
 /* Return a view with the defaults. The caller sets at least values, type and dimensions. */

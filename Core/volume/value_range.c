@@ -3,6 +3,7 @@
  *
  * A row of blocks shares (B+1)^2 rows of values. They are reduced elementwise into one row of extremes, which vectorises for any type,
  * and that row is reduced along x by doubling windows. Rows that two rows of blocks share are read twice, the second time from cache. */
+#include "value_range_kept.h"
 #include "volume.h"
 #include "volume_device.h"
 
@@ -362,12 +363,16 @@ stratus_status stratus_value_range_create(stratus_context* context, const stratu
   const stratus_stage stage = stratus_stage_begin(context);
   TRY_CLEANUP(stratus_progress(context, "value ranges", 0.0));
   TRY_CLEANUP(allocate_blocks(context, volume, ranges));
-  TRY_CLEANUP(stratus_volume_hidden_cells(context, volume, &hidden));
-  TRY_CLEANUP(reduce(context, volume, ranges));
-  if (hidden) {
-    flag_hidden(volume, hidden, ranges);
+  if (!stratus_value_range_recall(volume, ranges)) {
+    TRY_CLEANUP(stratus_volume_hidden_cells(context, volume, &hidden));
+    TRY_CLEANUP(reduce(context, volume, ranges));
+    if (hidden) {
+      flag_hidden(volume, hidden, ranges);
+    }
+    reduce_whole(context, ranges);
+    TRY_CLEANUP(stratus_volume_check_missing(context, volume));
+    stratus_value_range_keep(volume, ranges);
   }
-  reduce_whole(context, ranges);
   stratus_stage_end(context, &stage, "value ranges",
     (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]) * (sizeof *ranges->lo + sizeof *ranges->hi + sizeof *ranges->gaps));
   TRY_CLEANUP(stratus_progress(context, "value ranges", 1.0));

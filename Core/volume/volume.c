@@ -247,6 +247,15 @@ static stratus_status check_geometry(stratus_context* context, const stratus_vol
   return check_finite(context, "bounds", bounds, 6);
 }
 
+stratus_status stratus_volume_check_missing(stratus_context* context, const stratus_volume* volume)
+{
+  const uint64_t missing = volume->missing ? *(const volatile uint64_t*)volume->missing : 0; /* a handler of signals counts them */
+  return missing
+    ? stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+        "%llu bytes of the volume's values are missing: their file was cut short, or could not be read", (unsigned long long)missing)
+    : STRATUS_OK;
+}
+
 stratus_status stratus_volume_check(stratus_context* context, const stratus_volume* volume)
 {
   if (!context) {
@@ -263,6 +272,7 @@ stratus_status stratus_volume_check(stratus_context* context, const stratus_volu
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume of %d components, must be 1..4 and at most the value stride %lld",
       volume->components, (long long)volume->value_stride);
   }
+  TRY(stratus_volume_check_missing(context, volume));
   return check_geometry(context, volume);
 }
 

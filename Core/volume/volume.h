@@ -17,6 +17,8 @@ double stratus_volume_bias(const stratus_volume* volume);
 /* Returns whether any two finite fetched values differ. It stops at the first two. */
 bool stratus_volume_floats_differ(const stratus_volume* volume, double bias);
 stratus_status stratus_volume_check_floats(stratus_context* context, const stratus_volume* volume, double bias);
+/* Fails where the values' source could not supply all of them. */
+stratus_status stratus_volume_check_missing(stratus_context* context, const stratus_volume* volume);
 float stratus_volume_fetch(const stratus_volume* volume, double bias, size_t index);
 /* Gives the number of cells between value positions along each axis: dimensions-1, at least 0. */
 void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3]);

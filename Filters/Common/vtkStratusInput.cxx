@@ -2,6 +2,7 @@
 #include "vtkStratusInput.h"
 
 #include "vtkStratusArrays.h"
+#include "vtkStratusMapped.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -244,6 +245,9 @@ bool vtkStratusImageView::SetValues(
   volume.values = plain->GetVoidPointer(std::max(component, 0)); // values, not tuples, are counted
   // The image's own time counts too: programs that write through a pointer often call Modified() on the image only.
   volume.revision = Mix(Mix(0, array->GetMTime()), image->GetMTime());
+  volume.missing = vtkStratusMissingOf(plain);
+  volume.identity = vtkStratusIdentityOf(plain);
+  volume.identity += volume.identity && component > 0 ? static_cast<uint64_t>(component) : 0;
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include "vtkStratusImageFile.h"
 #include "vtkStratusImageValues.h"
 #include "vtkStratusMakeArray.h"
+#include "vtkStratusMappedFile.h"
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
@@ -18,6 +19,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 vtkStandardNewMacro(vtkStratusImageReader);
 
@@ -123,7 +126,14 @@ std::string vtkStratusImageReader::Inspect()
 {
   std::string path = this->FileName;
   this->File.reset();
-  switch (vtkStratusFindImageFormat(path)) {
+  if (this->Raw) {
+    this->File = std::make_unique<vtkStratusImageFile>(*this->Raw);
+    this->File->Path = path;
+    this->File->Files = { path };
+  }
+  switch (this->Raw ? vtkStratusImageFormat::RAW : vtkStratusFindImageFormat(path)) {
+    case vtkStratusImageFormat::RAW:
+      break;
     case vtkStratusImageFormat::NRRD:
       this->File = std::make_unique<vtkStratusImageFile>(vtkStratusReadNrrdHeader(path));
       break;
@@ -214,6 +224,45 @@ void vtkStratusImageReader::FindFrame()
   this->Description += steepest > Sheared ? ", a sheared frame" : "";
 }
 
+void vtkStratusImageReader::SetRawLayout(const int size[3], int type, bool bigEndian, const double spacing[3], vtkTypeInt64 skip)
+{
+  this->Raw = std::make_unique<vtkStratusImageFile>();
+  this->Raw->Format = "raw values";
+  this->Raw->ArrayName = "ImageFile";
+  this->Raw->Type = type;
+  this->Raw->BigEndian = bigEndian;
+  this->Raw->HeaderBytes = skip;
+  for (size_t a = 0; a < 3; ++a) {
+    vtkStratusImageAxis axis;
+    axis.Size = size[a];
+    axis.Step[a] = spacing[a];
+    this->Raw->Axes.push_back(axis);
+  }
+  this->Modified();
+}
+
+// Returns the values from number `first` of the file on without reading them; null where they have to be read.
+vtkSmartPointer<vtkDataArray> vtkStratusImageReader::Map(int64_t first, int64_t points)
+{
+#ifdef VTK_WORDS_BIGENDIAN
+  constexpr bool big = true;
+#else
+  constexpr bool big = false;
+#endif
+  const vtkStratusImageFile& file = *this->File;
+  const int64_t size = vtkDataArray::GetDataTypeSize(file.Type), bytes = points * this->Components * size;
+  const bool same = (size == 1 || file.BigEndian == big) && file.Slope == 1.0 && file.Intercept == 0.0;
+  if (!this->MapFile || !same || file.Encoding != vtkStratusImageFile::RAW || file.Files.size() != 1 || file.LineSkip != 0 ||
+    bytes < this->MappedBytesLeast) {
+    return nullptr;
+  }
+  std::error_code error;
+  const int64_t length = static_cast<int64_t>(std::filesystem::file_size(file.Files[0], error));
+  const int64_t begin = file.ByteSkip < 0 ? length - file.CountValues() * size : file.HeaderBytes + file.ByteSkip;
+  return error ? nullptr
+               : vtkStratusMapFile(file.Files[0], begin + first * size, file.ArrayName.c_str(), file.Type, this->Components, points);
+}
+
 // Reads a step in time as it is stored, with components first.
 vtkSmartPointer<vtkDataArray> vtkStratusImageReader::ReadStored(size_t step)
 {
@@ -238,6 +287,16 @@ vtkSmartPointer<vtkDataArray> vtkStratusImageReader::ReadStored(size_t step)
     strides.push_back(next);
     next *= axis.Size;
   }
+  if (times == 1) { /* one run of all */
+    inner *= outer;
+    outer = 1;
+  }
+  const int64_t at = static_cast<int64_t>(step);
+  const vtkSmartPointer<vtkDataArray> mapped = outer == 1 && ordered ? this->Map(at * inner, points) : nullptr;
+  this->Mapped = mapped ? 1 : 0;
+  if (mapped) {
+    return mapped;
+  }
   vtkStratusImageValues values(file, [this](double done) {
     this->UpdateProgress(done);
     if (this->GetAbortExecute()) {
@@ -248,7 +307,6 @@ vtkSmartPointer<vtkDataArray> vtkStratusImageReader::ReadStored(size_t step)
   const vtkSmartPointer<vtkDataArray> read = ordered ? array : vtkStratusMakeArray(file.Type, 1, points * this->Components);
   const int64_t bytes = array->GetDataTypeSize();
   char* const to = static_cast<char*>(read->GetVoidPointer(0));
-  const int64_t at = static_cast<int64_t>(step);
   for (int64_t i = 0; i < outer; ++i) {
     values.Skip(at * inner);
     values.Next(to + i * inner * bytes, inner);
@@ -271,7 +329,9 @@ void vtkStratusImageReader::Build(size_t step, vtkDataObject* output)
   if (file.Slope != 1.0 || file.Intercept != 0.0) {
     array = Scaled(array, file.Slope, file.Intercept);
   }
-  array->SetName(file.ArrayName.c_str());
+  if (!array->GetName()) {
+    array->SetName(file.ArrayName.c_str());
+  }
   image->Initialize();
   image->SetExtent(this->WholeExtent);
   image->SetOrigin(this->Origin);
@@ -301,4 +361,7 @@ int vtkStratusImageReader::RequestInformation(vtkInformation* request, vtkInform
 void vtkStratusImageReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "MapFile: " << this->MapFile << "\n";
+  os << indent << "Mapped: " << this->Mapped << "\n";
+  os << indent << "MappedBytesLeast: " << this->MappedBytesLeast << "\n";
 }

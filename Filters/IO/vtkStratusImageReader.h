@@ -42,6 +42,27 @@ public:
   vtkTypeMacro(vtkStratusImageReader, vtkStratusVariableReader);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  ///@{
+  /**
+   * Values that are in the file as the program needs them stay there, and are read when something looks at them (default): uncompressed,
+   * in the machine's order of bytes, not scaled, in one piece, and at least MappedBytesLeast bytes (default 16 MiB; less is read as
+   * quickly). The array then has the file's values as long as the file is not written to; after that, its values are undefined. Where a
+   * file is cut short, the values that are missing become 0, and the mappers report an error. Off: all values are read into memory.
+   */
+  vtkSetMacro(MapFile, vtkTypeBool);
+  vtkGetMacro(MapFile, vtkTypeBool);
+  vtkBooleanMacro(MapFile, vtkTypeBool);
+  vtkSetMacro(MappedBytesLeast, vtkTypeInt64);
+  vtkGetMacro(MappedBytesLeast, vtkTypeInt64);
+  vtkGetMacro(Mapped, vtkTypeBool); // whether the last output's values are in the file
+  ///@}
+
+  /**
+   * Read a file without a header: size[0]*size[1]*size[2] values of a type of VTK's (VTK_FLOAT), x fastest, behind `skip` bytes. The first
+   * value is at 0,0,0.
+   */
+  void SetRawLayout(const int size[3], int type, bool bigEndian, const double spacing[3], vtkTypeInt64 skip);
+
   /**
    * Return 1 if the file begins as one of NRRD, MetaImage or NIfTI, else 0.
    */
@@ -60,11 +81,15 @@ private:
   void operator=(const vtkStratusImageReader&) = delete;
 
   void FindFrame();
+  vtkSmartPointer<vtkDataArray> Map(int64_t first, int64_t points);
   vtkSmartPointer<vtkDataArray> ReadStored(size_t step);
 
   std::unique_ptr<vtkStratusImageFile> File;
   double Origin[3], Spacing[3], Direction[9];
   int Components = 1;
+  vtkTypeBool MapFile = 1, Mapped = 0;
+  vtkTypeInt64 MappedBytesLeast = vtkTypeInt64(1) << 24;
+  std::unique_ptr<vtkStratusImageFile> Raw; // the layout of a file without a header
 };
 
 #endif

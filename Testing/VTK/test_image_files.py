@@ -27,6 +27,7 @@ os.makedirs(folder, exist_ok=True)
 os.chdir(folder)
 chance = numpy.random.default_rng(40)
 SIZE = (5, 4, 3)  # x, y, z
+mapped = []  # of each file, whether its values stayed there
 NAMES = {"i1": ("signed char", "MET_CHAR"), "u1": ("uint8", "MET_UCHAR"), "i2": ("short", "MET_SHORT"), "u2": ("unsigned short int", "MET_USHORT"),
          "i4": ("int32_t", "MET_INT"), "u4": ("uint", "MET_UINT"), "i8": ("long long", "MET_LONG_LONG"), "u8": ("uint64", "MET_ULONG_LONG"),
          "f4": ("float", "MET_FLOAT"), "f8": ("double", "MET_DOUBLE")}
@@ -45,9 +46,11 @@ def write(name, *parts):
     return name
 
 
-def read(name, time=None):
-    """Returns the image and the reader's errors."""
+def read(name, time=None, maps=True):
+    """Returns the image and the reader's errors. maps: values stay in the file, however few they are."""
     reader, errors = stratus.vtkStratusImageReader(), []
+    reader.SetMapFile(maps)
+    reader.SetMappedBytesLeast(1)
 
     def keep(caller, event, text):
         errors.append(text)
@@ -84,6 +87,9 @@ def expect(name, values, steps, origin, time=None, tolerance=0.0):
     if not tolerance:
         check(got.dtype == values.dtype.newbyteorder("="), f"{name} has {values.dtype}, not {got.dtype}")
         check(numpy.array_equal(got, values.reshape(got.shape)), f"{name}: the same bits")
+    mapped.append(reader.GetMapped())
+    in_memory = vtk_to_numpy(read(name, time, maps=False)[1].GetPointData().GetArray(0)).reshape(*values.shape[2::-1], components)
+    check(in_memory.tobytes() == got.transpose(2, 1, 0, 3).tobytes(), f"{name}: the same values where they are read into memory")
     lengths = numpy.linalg.norm(steps, axis=0)
     check(numpy.allclose(image.GetSpacing(), lengths, rtol=1e-6), f"{name} has the spacing {lengths}, not {image.GetSpacing()}")
     for index in itertools.product(*((0, n - 1) for n in values.shape[:3])):
@@ -521,6 +527,68 @@ def test_nifti_headers():
             ("magic", nifti()[:344] + b"n+7\0" + bytes(4), "'n+7?'"), ("pair", nifti()[:344] + b"ni1\0" + bytes(4), "must end in .hdr")):
         refuse(write(name + ".nii", head, data), name + ".nii", word)
     refuse(write("short.nii", nifti()[:200]), "short.nii")
+
+
+# ---- values that stay in their file
+
+def test_mapping():
+    """Values are mapped where they are in the file as they are needed."""
+    values = values_of("<f4", (64, 48, 8))
+    reader = expect(write("mapped.nrrd", nrrd("f4", values.shape, endian="little"), "\n", stored(values)), values, FRAMES["plain"], ORIGIN)
+    aligned = len(nrrd("f4", values.shape, endian="little")) % 4 == 3
+    check(reader.GetMapped() == aligned, f"values behind a header of {'whole' if aligned else 'no whole'} values: mapped {reader.GetMapped()}")
+    write("mapped.raw", stored(values))
+    header = nrrd("f4", values.shape, endian="little") + "data file: mapped.raw\n"
+    reader = expect(write("mapped.nhdr", header), values, FRAMES["plain"], ORIGIN)
+    check(reader.GetMapped() == 1, "values in a file of their own are mapped")
+    array = vtk_to_numpy(reader.GetOutput().GetPointData().GetArray(0))
+    array[0] = 12345.0
+    with open("mapped.raw", "rb") as file:
+        check(file.read() == stored(values), "what the program writes into the array does not reach the file")
+    write("big.raw", stored(values.astype(">f4")))
+    header = nrrd("f4", values.shape, endian="big") + "data file: big.raw\n"
+    check(expect(write("big.nhdr", header), values.astype(">f4"), FRAMES["plain"], ORIGIN).GetMapped() == 0, "values of the other order are read")
+    small = stratus.vtkStratusImageReader()
+    small.SetFileName("mapped.nhdr")
+    small.Update()
+    check(small.GetMapped() == 0, "by default a small file is read")
+    check(any(mapped) and not all(mapped), f"{sum(mapped)} of {len(mapped)} files are mapped")
+
+
+def ranges_of(image):
+    """The errors of a filter that reads all values."""
+    errors, values = [], stratus.vtkStratusDistanceMapFilter()
+
+    def keep(caller, event, text):
+        errors.append(text)
+    keep.CallDataType = "string0"
+    values.AddObserver("ErrorEvent", keep)
+    values.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
+    values.SetInputData(image)
+    values.Update()
+    return "".join(errors)
+
+
+def test_files_that_change():
+    """A file that is cut short while it is open is an error and no crash; one that is renamed or removed keeps its values."""
+    values = values_of("u1", (64, 64, 64))
+    header = nrrd("u1", values.shape) + "data file: changes.raw\n"
+    for change in "nothing", "removed", "replaced", "cut":
+        write("changes.raw", stored(values))
+        image = read(write("changes.nhdr", header))[1]
+        if change == "removed":
+            os.remove("changes.raw")
+        elif change == "replaced":
+            os.replace(write("other.raw", bytes(values.size)), "changes.raw")
+        elif change == "cut":
+            os.truncate("changes.raw", 5000)
+        errors = ranges_of(image)
+        if change == "cut":
+            check("missing" in errors and "cut short" in errors, f"a file that was cut short is an error: {errors}")
+            continue
+        check(not errors, f"a file with {change} changed: {errors}")
+        got = vtk_to_numpy(image.GetPointData().GetArray(0)).reshape(64, 64, 64).transpose(2, 1, 0)
+        check(numpy.array_equal(got, values), f"a file with {change} changed has its values")
 
 
 # ---- what comes of a place

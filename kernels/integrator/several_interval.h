@@ -258,7 +258,7 @@ OUTLINE void several_interval(
   } while (stretches && m_any(mask));
 }
 
-/* Does what several_interval() does where every path has one value, that of its middle. Then no path is cut, and no ray ends at a wall. */
+/* Composites the same interval where every path has one value, that of its middle. Then no path is cut, and no ray ends at a wall. */
 INLINE void several_interval_of_middles(
   const several_source* from, const several_volume* volumes, int count, vint since, int i, vmask mask, stratus_packet* k)
 {

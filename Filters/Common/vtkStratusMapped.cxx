@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusMapped.h"
+
+#include "vtkDataArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationKeyLookup.h"
+#include "vtkInformationUnsignedLongKey.h"
+
+#include <string>
+
+namespace {
+static_assert(sizeof(unsigned long) >= sizeof(uint64_t) || sizeof(void*) < sizeof(uint64_t), "numbers of a mapping fit the key");
+
+// The key of that name, which the first of the modules made that needed it.
+vtkInformationUnsignedLongKey* Key(const char* name)
+{
+  constexpr const char* place = "vtkStratusMapped";
+  vtkInformationKey* key = vtkInformationKeyLookup::Find(name, place);
+  if (!key) {
+    key = vtkInformationUnsignedLongKey::MakeKey(name, place);
+  }
+  return static_cast<vtkInformationUnsignedLongKey*>(key);
+}
+
+// The number that the key has in the array's information; 0 where there is none.
+unsigned long Find(vtkDataArray* array, const char* name)
+{
+  vtkInformationUnsignedLongKey* const key = Key(name);
+  return array->HasInformation() && array->GetInformation()->Has(key) ? array->GetInformation()->Get(key) : 0;
+}
+
+// Whether these are the values that were mapped: copies of the array have its information, too.
+bool HasItsValues(vtkDataArray* array)
+{
+  return array && Find(array, "VALUES") != 0 && Find(array, "VALUES") == reinterpret_cast<unsigned long>(array->GetVoidPointer(0));
+}
+} // namespace
+
+void vtkStratusSetMapped(vtkDataArray* array, uint64_t identity, const uint64_t* missing)
+{
+  vtkInformation* const information = array->GetInformation();
+  information->Set(Key("IDENTITY"), static_cast<unsigned long>(identity));
+  information->Set(Key("MISSING"), reinterpret_cast<unsigned long>(missing));
+  information->Set(Key("VALUES"), reinterpret_cast<unsigned long>(array->GetVoidPointer(0)));
+  information->Set(Key("TIME"), static_cast<unsigned long>(array->GetMTime()));
+}
+
+uint64_t vtkStratusIdentityOf(vtkDataArray* array)
+{
+  return HasItsValues(array) && Find(array, "TIME") == array->GetMTime() ? Find(array, "IDENTITY") : 0;
+}
+
+const uint64_t* vtkStratusMissingOf(vtkDataArray* array)
+{
+  return HasItsValues(array) ? reinterpret_cast<const uint64_t*>(Find(array, "MISSING")) : nullptr;
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an array over a file's bytes knows of its file. The array carries it in its information, since every module has a copy of these
+// functions. Private to the modules, never installed.
+#ifndef vtkStratusMapped_h
+#define vtkStratusMapped_h
+
+#include "vtkStratusPrivate.h"
+
+#include <cstdint>
+
+class vtkDataArray;
+
+// Marks an array that holds a file's values unchanged. identity: not 0, as stratus_volume has it. missing: counts
+// the bytes that could not be read; it lives as long as the array's values.
+VTK_STRATUS_PRIVATE void vtkStratusSetMapped(vtkDataArray* array, uint64_t identity, const uint64_t* missing);
+
+// Returns the identity of the array's values; 0 where they come from no mapped file, or where the array was modified since.
+VTK_STRATUS_PRIVATE uint64_t vtkStratusIdentityOf(vtkDataArray* array);
+
+// Returns where the bytes are counted that were missing when something looked at them; null for an array in memory. They count as 0.
+VTK_STRATUS_PRIVATE const uint64_t* vtkStratusMissingOf(vtkDataArray* array);
+
+#endif

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusMappedFile.h"
+
+#include "vtkStratusMapped.h"
+
+#include "vtkDataArray.h"
+
+#if defined(__unix__) || defined(__APPLE__)
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <fcntl.h>
+#include <mutex>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace {
+
+constexpr size_t MappingsMost = 1024; // at once
+constexpr int64_t Samples = 64;       // parts of a file that its identity reads
+constexpr int64_t SampleBytes = 4096;
+
+// A mapping that is in use. The handler reads it, so that it has no locks: `End` is written last, and 0 while the slot is free.
+struct Slot {
+  std::atomic<uintptr_t> Begin = { 0 }, End = { 0 };
+  std::atomic<uint64_t> Missing = { 0 }; // bytes that could not be read
+  const void* Values = nullptr;
+};
+
+static_assert(
+  sizeof(std::atomic<uint64_t>) == sizeof(uint64_t) && std::atomic<uint64_t>::is_always_lock_free, "the core reads it as a number");
+
+std::array<Slot, MappingsMost> Slots;
+std::mutex Lock; // of those that take and free slots
+struct sigaction Before;
+uintptr_t PageBytes;
+
+// A page of a mapping that the file doesn't have any more is replaced by zeros. Every other SIGBUS goes where it went before.
+void HandleBus(int number, siginfo_t* from, void* context)
+{
+  const uintptr_t at = reinterpret_cast<uintptr_t>(from->si_addr);
+  for (Slot& slot : Slots) {
+    const uintptr_t end = slot.End.load();
+    if (at < end && at >= slot.Begin.load()) {
+      void* const page = reinterpret_cast<void*>(at / PageBytes * PageBytes);
+      if (mmap(page, PageBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == page) {
+        slot.Missing += PageBytes;
+        return;
+      }
+    }
+  }
+  if (Before.sa_flags & SA_SIGINFO) {
+    Before.sa_sigaction(number, from, context);
+  } else if (Before.sa_handler != SIG_DFL && Before.sa_handler != SIG_IGN) {
+    Before.sa_handler(number);
+  } else {
+    sigaction(number, &Before, nullptr); // the instruction runs again, and the signal ends the program
+  }
+}
+
+void CatchBus()
+{
+  struct sigaction action = {}, now = {};
+  action.sa_sigaction = &HandleBus;
+  action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+  sigemptyset(&action.sa_mask);
+  if (sigaction(SIGBUS, nullptr, &now) == 0 && now.sa_sigaction != &HandleBus) {
+    Before = now;
+    sigaction(SIGBUS, &action, nullptr);
+  }
+}
+
+Slot* TakeSlot(void* mapped, size_t bytes, const void* values)
+{
+  const std::lock_guard<std::mutex> lock(Lock);
+  for (Slot& slot : Slots) {
+    if (slot.End == 0) {
+      slot.Missing = 0;
+      slot.Values = values;
+      slot.Begin = reinterpret_cast<uintptr_t>(mapped);
+      slot.End = slot.Begin + bytes;
+      CatchBus();
+      return &slot;
+    }
+  }
+  return nullptr;
+}
+
+// Frees the mapping of an array that is deleted.
+void Unmap(void* values)
+{
+  const std::lock_guard<std::mutex> lock(Lock);
+  for (Slot& slot : Slots) {
+    if (slot.End != 0 && slot.Values == values) {
+      const uintptr_t begin = slot.Begin, end = slot.End;
+      slot.End = 0;
+      munmap(reinterpret_cast<void*>(begin), end - begin);
+      return;
+    }
+  }
+}
+
+// FNV-1a of 64 bits.
+uint64_t Hash(const void* bytes, size_t count, uint64_t hash)
+{
+  for (size_t i = 0; i < count; ++i) {
+    hash = (hash ^ static_cast<const unsigned char*>(bytes)[i]) * UINT64_C(0x100000001b3);
+  }
+  return hash;
+}
+
+// Of files of the same length and time it differs with the bytes in some places, which catches a file that is written in place with its
+// old time. Never 0.
+uint64_t IdentityOf(int file, const struct stat& status, int64_t begin, int64_t bytes)
+{
+#ifdef __APPLE__
+  const timespec& time = status.st_mtimespec;
+#else
+  const timespec& time = status.st_mtim;
+#endif
+  const std::array<int64_t, 5> numbers = { static_cast<int64_t>(status.st_size), static_cast<int64_t>(time.tv_sec),
+    static_cast<int64_t>(time.tv_nsec), begin, bytes };
+  uint64_t hash = Hash(numbers.data(), sizeof numbers, UINT64_C(0xcbf29ce484222325));
+  std::array<char, SampleBytes> sample;
+  const int64_t last = std::max<int64_t>(bytes - SampleBytes, 0);
+  for (int64_t i = 0; i < Samples; ++i) {
+    const int64_t at = begin + last / (Samples - 1) * i;
+    const ssize_t got = pread(file, sample.data(), sample.size(), static_cast<off_t>(at));
+    hash = Hash(sample.data(), got > 0 ? static_cast<size_t>(got) : 0, hash);
+  }
+  return hash ? hash : 1;
+}
+
+vtkSmartPointer<vtkDataArray> MapOpen(int file, int64_t begin, const char* name, int type, int components, vtkIdType tuples)
+{
+  auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+  const int64_t size = array->GetDataTypeSize(), values = static_cast<int64_t>(tuples) * components, bytes = values * size;
+  struct stat status;
+  PageBytes = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));
+  const int64_t page = static_cast<int64_t>(PageBytes), first = begin / page * page;
+  if (bytes == 0 || begin % size != 0 || fstat(file, &status) != 0 || status.st_size < begin + bytes) {
+    return nullptr;
+  }
+  const size_t length = static_cast<size_t>(begin - first + bytes);
+  void* const mapped = mmap(nullptr, length, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_NORESERVE, file, static_cast<off_t>(first));
+  if (mapped == MAP_FAILED) {
+    return nullptr;
+  }
+  void* const at = static_cast<char*>(mapped) + (begin - first);
+  Slot* const slot = TakeSlot(mapped, length, at);
+  if (!slot) {
+    munmap(mapped, length);
+    return nullptr;
+  }
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetVoidArray(at, values, 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
+  array->SetArrayFreeFunction(&Unmap);
+  vtkStratusSetMapped(array, IdentityOf(file, status, begin, bytes), reinterpret_cast<const uint64_t*>(&slot->Missing));
+  return array;
+}
+} // namespace
+
+vtkSmartPointer<vtkDataArray> vtkStratusMapFile(
+  const std::string& path, int64_t begin, const char* name, int type, int components, vtkIdType tuples)
+{
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) {
+    return nullptr;
+  }
+  const vtkSmartPointer<vtkDataArray> array = MapOpen(file, begin, name, type, components, tuples);
+  close(file);
+  return array;
+}
+#else
+vtkSmartPointer<vtkDataArray> vtkStratusMapFile(const std::string&, int64_t, const char*, int, int, vtkIdType)
+{
+  return nullptr;
+}
+#endif
