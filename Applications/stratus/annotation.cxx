@@ -226,21 +226,26 @@ void annotation::draw_box(layer& under, layer& over, const scene_frame& frame) c
       }
     }
   }
-  // All axes of length have one unit, so that their numbers compare. Titles are last, because they go where there is room.
-  double longest = 0.0;
-  for (int side = 0; side < 6; ++side) {
-    if (frame.axes[static_cast<size_t>(side / 2)].units == "m") {
-      longest = std::max(longest, std::fabs(frame.bounds[side] / frame.scale[side / 2]));
+  // Axes of length that are stretched alike have one unit, so that their numbers compare. Titles are last, because they go where there is
+  // room.
+  bool kilo[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    double longest = 0.0;
+    for (int side = 0; side < 6; ++side) {
+      if (frame.axes[static_cast<size_t>(side / 2)].units == "m" && frame.scale[side / 2] == frame.scale[axis]) {
+        longest = std::max(longest, std::fabs(frame.bounds[side] / frame.scale[axis]));
+      }
     }
+    kilo[axis] = longest >= 10000.0;
   }
   std::array<edge, 3> edges;
   for (int axis = 0; axis < 3; ++axis) {
     edges[static_cast<size_t>(axis)] = this->find_edge(over, frame, axis, facing);
-    this->draw_numbers(over, frame, edges[static_cast<size_t>(axis)], longest >= 10000.0);
+    this->draw_numbers(over, frame, edges[static_cast<size_t>(axis)], kilo[axis]);
   }
   for (const edge& one : edges) {
     const axis_label& label = frame.axes[static_cast<size_t>(one.axis)];
-    const std::string units = label.units == "m" && longest >= 10000.0 ? "km" : label.units;
+    const std::string units = label.units == "m" && kilo[one.axis] ? "km" : label.units;
     const std::string name = label.name.empty() ? std::string(1, "xyz"[one.axis]) : label.name;
     if (one.seen) {
       this->draw_title(over, name + (units.empty() ? "" : " (" + units + ")"), one);

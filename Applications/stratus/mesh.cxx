@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace cli {
 
@@ -65,6 +67,55 @@ static double height_of(const stratus_mesh& m, size_t point, int up)
   return own * m.matrix[5 * up];
 }
 
+// Orders the points of a mesh in layers by the columns that they are in, if all columns have as many points, and sets their values and
+// lengths. Other meshes stay as they are.
+static void set_columns(const stratus_mesh& m, int up, look_input& result)
+{
+  if (m.cell_values || !m.points || m.block_count > 0 || m.point_count < 2) {
+    return;
+  }
+  const auto count = static_cast<size_t>(m.point_count);
+  const size_t east = static_cast<size_t>((up + 1) % 3), north = static_cast<size_t>((up + 2) % 3);
+  std::vector<size_t> order(count);
+  std::iota(order.begin(), order.end(), size_t(0));
+  const auto place = [&m](size_t point, size_t axis) { return m.points[3 * point + axis]; };
+  const auto is_same = [&](size_t a, size_t b) { return place(a, east) == place(b, east) && place(a, north) == place(b, north); };
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    const double one[3] = { place(a, east), place(a, north), height_of(m, a, up) };
+    const double other[3] = { place(b, east), place(b, north), height_of(m, b, up) };
+    return std::lexicographical_compare(one, one + 3, other, other + 3);
+  });
+  size_t layers = 1;
+  while (layers < count && is_same(order[0], order[layers])) {
+    ++layers;
+  }
+  bool regular = layers > 1 && count % layers == 0;
+  for (size_t i = 1; i < count && regular; ++i) {
+    regular = is_same(order[i - 1], order[i]) == (i % layers != 0);
+  }
+  if (!regular) {
+    return;
+  }
+  const size_t size = stratus_type_size(m.type);
+  result.ordered.resize(count * size);
+  result.thickness.resize(count);
+  for (size_t i = 0; i < count; ++i) { // column i / layers, point i % layers of it; columns run fastest
+    const size_t column = i / layers, layer = i % layers, at = column + layer * (count / layers);
+    const auto* const from = static_cast<const unsigned char*>(m.values) + order[i] * static_cast<size_t>(m.value_stride) * size;
+    std::copy_n(from, size, result.ordered.data() + at * size);
+    const size_t below = layer > 0 ? i - 1 : i, above = layer + 1 < layers ? i + 1 : i;
+    result.thickness[at] = 0.5 * std::fabs(height_of(m, order[above], up) - height_of(m, order[below], up));
+  }
+  result.unordered = false;
+  stratus_volume& box = result.volumes[0];
+  const int64_t dimensions[3] = { static_cast<int64_t>(count / layers), 1, static_cast<int64_t>(layers) };
+  for (int a = 0; a < 3; ++a) { // with voxels as large as before, whose edge is the unit of opacity
+    box.dimensions[a] = dimensions[a];
+  }
+  box.values = result.ordered.data();
+  box.value_stride = 1;
+}
+
 look_input mesh::values(int up) const
 {
   const stratus_mesh& m = this->view();
@@ -72,6 +123,7 @@ look_input mesh::values(int up) const
   result.volumes.push_back(this->box());
   result.unordered = m.lattice[0] == 0;
   if (result.unordered) {
+    set_columns(m, up, result);
     return result;
   }
   stratus_volume& box = result.volumes[0];

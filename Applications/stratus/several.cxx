@@ -31,7 +31,7 @@ struct member {
 
   cli::look_input values(int up) const
   {
-    return this->mesh ? this->mesh->values(up) : cli::look_input{ { this->input->volume }, {}, false };
+    return this->mesh ? this->mesh->values(up) : cli::look_input{ { this->input->volume }, {}, {}, false };
   }
   const stratus_volume& shape() const { return this->mesh ? this->outline : this->input->volume; }
   const std::string& array_name() const { return this->mesh ? this->mesh->array_name : this->input->array_name; }

@@ -80,7 +80,7 @@ static stratus_look guess(const context& core, const look_input& data, stratus_l
   stratus_look_options how = stratus_look_options_default();
   how.kind = kind;
   how.logarithmic = o.logarithmic ? 1 : 0;
-  how.column_axis = !o.about.earth ? -1 : data.thickness.empty() && !o.up.empty() ? o.up[0] - 'x' : 2;
+  how.column_axis = !o.about.earth && kind == STRATUS_LOOK_UNKNOWN ? -1 : data.thickness.empty() && !o.up.empty() ? o.up[0] - 'x' : 2;
   how.thickness = data.thickness.empty() ? nullptr : data.thickness.data();
   how.unordered = data.unordered ? 1 : 0;
   stratus_look look = {};

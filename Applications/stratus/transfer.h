@@ -13,7 +13,8 @@ namespace cli {
 // The values that a guess is made from: a volume, its blocks, or the values of a mesh as a volume.
 struct look_input {
   std::vector<stratus_volume> volumes;
-  std::vector<double> thickness; // see stratus_look_options
+  std::vector<double> thickness;      // see stratus_look_options
+  std::vector<unsigned char> ordered; // values of the volume, if they are a copy
   bool unordered = false;
 };
 

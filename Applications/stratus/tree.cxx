@@ -28,7 +28,7 @@ tree_pointer build(const cli::context& core, const cli::options& o, const cli::i
     criterion.upper = o.upper;
     what = cli::format("values in %g .. %g", o.lower, o.upper);
   } else {
-    transfer = cli::make_transfer(core, { { in.volume }, {}, false }, in.scene, o);
+    transfer = cli::make_transfer(core, { { in.volume }, {}, {}, false }, in.scene, o);
     view = transfer.view();
     core.check(stratus_transfer_check(core, &view), "transfer function");
     criterion.transfer = &view;

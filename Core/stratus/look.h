@@ -72,11 +72,11 @@ typedef struct stratus_look {
  * - SIGNED: opacity rises from 0 at the value 0 in both directions, up to the larger end of the range. Colours reach as far on both sides.
  *   Values of unknown kind are SIGNED if each side reaches at least a tenth as far as the other, and the most frequent value is within a
  *   tenth of the range's larger end around 0. Values on one side of 0 are never SIGNED.
- * - AMOUNT: transparent at the most frequent value, the background, and a ramp above it. If the least value is above half of the largest,
- *   the values are a STATE.
+ * - AMOUNT: transparent up to the most frequent value, the background, and in proportion to the amount above it. If the least value is
+ *   above half of the largest, the values are a STATE.
  * - STATE: values that are more frequent than they would be if all were equally frequent are more transparent in proportion, down to 1/10.
- * - UNKNOWN: as AMOUNT; if the most frequent value is in the upper half of the range, the ramp is below it.
- * A ramp rises slowly in its first 2/5, because values next to the background usually fill most of the volume.
+ * - UNKNOWN: a ramp above the most frequent value, or below it if it is in the upper half of the range.
+ * The ramps of UNKNOWN and SIGNED rise slowly in their first 2/5, because values next to the background usually fill most of the volume.
  * The optical depth of columns is their mean, each weighted by its own depth, so that empty columns do not count.
  * volumes and count: as of stratus_look_count(). options: NULL for the defaults. */
 STRATUS_API stratus_status stratus_look_guess(

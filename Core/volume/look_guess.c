@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Guesses a transfer function from the frequencies of values, and from what they are. */
-#include "look_histogram.h"
+#include "look_shapes.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -14,12 +14,6 @@
 #define TWO_SIDED 0.1
 /* Amounts that are nowhere below this share of the largest fill the grid. */
 #define FILLS_GRID 0.5
-/* The ramp has a knee, because values next to the background usually fill most of the volume and would hide the rest. */
-#define KNEE_AT 0.4
-#define KNEE_HEIGHT 0.15
-/* Parts of the range of a state in which values are counted, and the least height of the most frequent. */
-#define STATE_PARTS 12
-#define STATE_LEAST 0.1
 /* Optical depth of a ray through the shown values. */
 #define RAY_DEPTH 2.0
 #define MOST_OPACITY 0.98
@@ -27,34 +21,6 @@
 #define PIECES 6
 /* Shapes of more points need no pieces. */
 #define MOST_SIMPLE 5
-#define LOG_PIECES 32
-#define LOG_DECADES 1e-4
-
-/* Heights 0..1 of the extinction over the value, linear between points. */
-typedef struct look_shape {
-  double value[LOG_PIECES + 2], height[LOG_PIECES + 2];
-  int count;
-} look_shape;
-
-static void add_point(look_shape* shape, double value, double height)
-{
-  shape->value[shape->count] = value;
-  shape->height[shape->count] = height;
-  ++shape->count;
-}
-
-static double height_at(const look_shape* shape, double value)
-{
-  int at = 0;
-  while (at + 1 < shape->count && shape->value[at + 1] < value) {
-    ++at;
-  }
-  if (value <= shape->value[0] || at + 1 == shape->count) {
-    return value <= shape->value[0] ? shape->height[0] : shape->height[shape->count - 1];
-  }
-  const double width = shape->value[at + 1] - shape->value[at];
-  return shape->height[at] + (width > 0.0 ? (value - shape->value[at]) / width : 1.0) * (shape->height[at + 1] - shape->height[at]);
-}
 
 /* ---- the range and the background */
 
@@ -99,128 +65,6 @@ cleanup:
   return status;
 }
 
-static int largest_bin(const double* count, int bins)
-{
-  int largest = 0;
-  for (int i = 1; i < bins; ++i) {
-    largest = count[i] > count[largest] ? i : largest;
-  }
-  return largest;
-}
-
-static void smooth(const stratus_look_histogram* h, double* count)
-{
-  const int reach = h->bins / 256;
-  for (int i = 0; i < h->bins; ++i) {
-    const int from = i > reach ? i - reach : 0, to = i + reach + 1 < h->bins ? i + reach + 1 : h->bins;
-    count[i] = 0.0;
-    for (int j = from; j < to; ++j) {
-      count[i] += h->count[j] / (to - from);
-    }
-  }
-}
-
-/* Finds the end of the background: from its peak on, the first bin below 3/10 of the peak, or the floor of the valley before the next rise,
- * whichever comes first. */
-static int end_of_background(const double* count, int bins, int peak)
-{
-  int floor = peak;
-  for (int i = peak + 1; i < bins; ++i) {
-    floor = count[i] < count[floor] ? i : floor;
-    if (count[i] < 0.3 * count[peak]) {
-      return i;
-    }
-    if (count[i] > 1.5 * count[floor]) {
-      return floor;
-    }
-  }
-  return peak;
-}
-
-/* ---- shapes */
-
-/* A ramp away from the background. */
-static void shape_ramp(const stratus_look_histogram* h, bool only_up, look_shape* shape, stratus_look* look)
-{
-  double count[STRATUS_LOOK_BINS];
-  smooth(h, count);
-  const bool bright = !only_up && largest_bin(count, h->bins) > h->bins / 2;
-  for (int i = 0; i < h->bins / 2 && bright; ++i) {
-    const double kept = count[i];
-    count[i] = count[h->bins - 1 - i];
-    count[h->bins - 1 - i] = kept;
-  }
-  const int peak = largest_bin(count, h->bins);
-  /* If a single value is the background, the ramp starts right behind it. Integers are in the middle of their bins. */
-  const double lone = h->count[largest_bin(h->count, h->bins)], width = stratus_look_bin_width(h);
-  const double bins = fmin(lone > 0.5 * h->values.finite ? peak + 0.5 : end_of_background(count, h->bins, peak), h->bins - 1.0);
-  const double low = h->values.low, high = h->values.high;
-  const double from = fmin(fmax(bright ? h->last - bins * width : h->first + bins * width, low), high), to = bright ? low : high;
-  const double knee = from + KNEE_AT * (to - from), middle = (peak + 0.5) * width;
-  add_point(shape, low, bright ? 1.0 : 0.0);
-  add_point(shape, bright ? knee : from, bright ? KNEE_HEIGHT : 0.0);
-  add_point(shape, bright ? from : knee, bright ? 0.0 : KNEE_HEIGHT);
-  add_point(shape, high, bright ? 0.0 : 1.0);
-  look->low = bright ? low : from;
-  look->high = bright ? from : high;
-  snprintf(
-    look->reason, sizeof look->reason, "background around %g, opacity 0 at %.4g", bright ? h->last - middle : h->first + middle, from);
-}
-
-/* From 0 in both directions. */
-static void shape_signed(const stratus_look_histogram* h, look_shape* shape, stratus_look* look)
-{
-  const double most = fmax(-h->values.low, h->values.high);
-  add_point(shape, -most, 1.0);
-  add_point(shape, -KNEE_AT * most, KNEE_HEIGHT);
-  add_point(shape, 0.0, 0.0);
-  add_point(shape, KNEE_AT * most, KNEE_HEIGHT);
-  add_point(shape, most, 1.0);
-  look->low = -most;
-  look->high = most;
-  snprintf(look->reason, sizeof look->reason, "two-sided, opacity 0 at 0");
-}
-
-/* Values that are more frequent than they would be if all were equally frequent are more transparent in proportion, so that each part of
- * the range has about the same share of the optical depth. Otherwise one water mass would hide all others. */
-static void shape_state(const stratus_look_histogram* h, look_shape* shape, stratus_look* look)
-{
-  const double width = (h->values.high - h->values.low) / STATE_PARTS;
-  double share[STATE_PARTS] = { 0.0 };
-  for (int i = 0; i < h->bins; ++i) {
-    const double part = (h->first + (i + 0.5) * stratus_look_bin_width(h) - h->values.low) / width;
-    share[part < STATE_PARTS - 1 ? (int)part : STATE_PARTS - 1] += h->count[i] / h->values.finite;
-  }
-  add_point(shape, h->values.low, fmax(STATE_LEAST, fmin(1.0 / (STATE_PARTS * share[0]), 1.0)));
-  for (int p = 0; p < STATE_PARTS; ++p) {
-    add_point(shape, h->values.low + (p + 0.5) * width, fmax(STATE_LEAST, fmin(1.0 / (STATE_PARTS * share[p]), 1.0)));
-  }
-  add_point(shape, h->values.high, shape->height[STATE_PARTS]);
-  look->low = h->values.low;
-  look->high = h->values.high;
-  snprintf(look->reason, sizeof look->reason, "fills the grid, rare values show most");
-}
-
-/* A ramp over the logarithm of the value. */
-static stratus_status shape_log(stratus_context* context, const stratus_look_histogram* h, look_shape* shape, stratus_look* look)
-{
-  if (!(h->values.high > 0.0)) {
-    return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "logarithmic: the largest value is %g, there is no value above 0", h->values.high);
-  }
-  const double low = fmax(h->values.low, LOG_DECADES * h->values.high), decades = log(h->values.high / low);
-  add_point(shape, fmin(0.0, low), 0.0);
-  for (int i = 0; i <= LOG_PIECES; ++i) {
-    const double t = (double)i / LOG_PIECES;
-    add_point(shape, low * exp(t * decades),
-      t < KNEE_AT ? t / KNEE_AT * KNEE_HEIGHT : KNEE_HEIGHT + (t - KNEE_AT) / (1.0 - KNEE_AT) * (1.0 - KNEE_HEIGHT));
-  }
-  look->low = low;
-  look->high = h->values.high;
-  snprintf(look->reason, sizeof look->reason, "over the logarithm: opacity 0 at %.4g", low);
-  return STRATUS_OK;
-}
-
 /* Decides between the kind that is claimed and the kind that the values show. */
 static stratus_look_kind kind_by_values(const stratus_look_histogram* h, stratus_look_kind claimed)
 {
@@ -234,8 +78,8 @@ static stratus_look_kind kind_by_values(const stratus_look_histogram* h, stratus
   }
   if (claimed == STRATUS_LOOK_UNKNOWN && sided && fmin(-low, high) >= TWO_SIDED * most) {
     double count[STRATUS_LOOK_BINS];
-    smooth(h, count);
-    const double common = h->first + (largest_bin(count, h->bins) + 0.5) * stratus_look_bin_width(h);
+    stratus_look_smooth(h, count);
+    const double common = h->first + (stratus_look_largest_bin(count, h->bins) + 0.5) * stratus_look_bin_width(h);
     return fabs(common) <= TWO_SIDED * most ? STRATUS_LOOK_SIGNED : claimed;
   }
   return claimed;
@@ -243,67 +87,13 @@ static stratus_look_kind kind_by_values(const stratus_look_histogram* h, stratus
 
 /* ---- optical depth */
 
-/* World length of a step along a grid's axis, per unit of its coordinates. */
-static double world_step(const stratus_volume* v, int axis)
-{
-  double square = 0.0;
-  for (int r = 0; r < 3; ++r) {
-    double part = 0.0;
-    for (int c = 0; c < 3; ++c) {
-      part += v->matrix[4 * r + c] * v->direction[3 * c + axis];
-    }
-    square += part * part;
-  }
-  return sqrt(square);
-}
-
-/* World length along the axis that the value at an index stands for. */
-static double thickness_at(const stratus_volume* v, int axis, int64_t at)
-{
-  const double* const x = v->coordinates[axis];
-  const int64_t last = v->dimensions[axis] - 1;
-  if (!x) {
-    return v->spacing[axis] * (v->cell_centered || last == 0 || (at > 0 && at < last) ? 1.0 : 0.5);
-  }
-  if (v->cell_centered) {
-    return fabs(x[at + 1] - x[at]);
-  }
-  return 0.5 * fabs(x[at < last ? at + 1 : at] - x[at > 0 ? at - 1 : at]);
-}
-
-/* Adds up the columns' lengths, weighted by the heights of the shape, and their squares. Values out of the range are left out: some
- * outliers would outweigh all others. */
-static void add_columns(const stratus_context* context, const stratus_volume* v, const stratus_look_options* o,
-  const stratus_look_values* range, const look_shape* shape, double sums[2])
-{
-  const int axis = o->column_axis, a = (axis + 1) % 3, b = (axis + 2) % 3;
-  const int64_t step[3] = { 1, v->dimensions[0], v->dimensions[0] * v->dimensions[1] };
-  const double scale = o->thickness ? 1.0 : world_step(v, axis);
-  double all = 0.0, all_squares = 0.0;
-#pragma omp parallel for num_threads(context->threads) reduction(+ : all, all_squares)
-  for (int64_t column = 0; column < v->dimensions[a] * v->dimensions[b]; ++column) {
-    const int64_t base = column % v->dimensions[a] * step[a] + column / v->dimensions[a] * step[b];
-    double length = 0.0;
-    for (int64_t i = 0; i < v->dimensions[axis]; ++i) {
-      double value;
-      stratus_look_values_get(v, base + i * step[axis], 1, &value);
-      const double thickness = o->thickness ? o->thickness[base + i * step[axis]] : scale * thickness_at(v, axis, i);
-      length += value >= range->low && value <= range->high && isfinite(thickness) ? height_at(shape, value) * thickness : 0.0;
-    }
-    all += length;
-    all_squares += length * length;
-  }
-  sums[0] += all;
-  sums[1] += all_squares;
-}
-
 /* Returns the mean length of rays that meet something, weighted by the heights of the shape, if they are `length` long. Values are in no
  * order: what is shown is taken for one body. */
-static double expected_length(const stratus_look_histogram* h, const look_shape* shape, double length)
+static double expected_length(const stratus_look_histogram* h, const stratus_look_shape* shape, double length)
 {
   double weight = 0.0, shown = 0.0;
   for (int i = 0; i < h->bins; ++i) {
-    const double height = height_at(shape, h->first + (i + 0.5) * stratus_look_bin_width(h));
+    const double height = stratus_look_height_at(shape, h->first + (i + 0.5) * stratus_look_bin_width(h));
     weight += height * h->count[i];
     shown += height > 0.0 ? h->count[i] : 0.0;
   }
@@ -320,31 +110,30 @@ static double voxel_edge(const stratus_volume* v)
   return cbrt(v->spacing[0] * v->spacing[1] * v->spacing[2] * bigger);
 }
 
-/* Sets the opacity at height 1, and shortens the unit distance if it would be above MOST_OPACITY. Returns the optical depth of the unit
- * distance there, or -1 if opacity is linear between points. */
-static double find_depth(stratus_context* context, const stratus_volume* volumes, int count, const stratus_look_options* o,
-  const stratus_look_histogram* h, const look_shape* shape, double* unit, double* top)
+/* Sets the optical depth of the unit distance at height 1, or -1 if opacity is linear between points, and the opacity there. Shortens the
+ * unit distance if the opacity would be above MOST_OPACITY. */
+static stratus_status find_depth(stratus_context* context, const stratus_volume* volumes, int count, const stratus_look_options* o,
+  const stratus_look_histogram* h, const stratus_look_shape* shape, double* unit, double* depth, double* top)
 {
   if (o->column_axis < 0) {
     const double length = expected_length(h, shape, cbrt(h->values.finite + h->values.not_finite)); /* in voxels */
+    *depth = -1.0;
     *top = length > 0.0 ? fmin(fmax(-expm1(-RAY_DEPTH / fmax(length, 1e-6)), 0.004), 0.9) : 0.5;
-    return -1.0;
+    return STRATUS_OK;
   }
-  double sums[2] = { 0.0, 0.0 }, length = 0.0;
+  double sums[STRATUS_LOOK_PARTS] = { 0.0 }, length = 0.0;
   if (o->unordered) {
-    const double height =
-      world_step(volumes, o->column_axis) * volumes->spacing[o->column_axis] * (double)volumes->dimensions[o->column_axis];
-    length = expected_length(h, shape, height);
+    const double step = stratus_look_world_step(volumes, o->column_axis) * volumes->spacing[o->column_axis];
+    length = expected_length(h, shape, step * (double)volumes->dimensions[o->column_axis]);
   } else {
-    for (int n = 0; n < count; ++n) {
-      add_columns(context, volumes + n, o, &h->values, shape, sums);
-    }
+    TRY(stratus_look_measure_columns(context, volumes, count, o, &h->values, shape, sums));
     length = sums[0] > 0.0 ? sums[1] / sums[0] : 0.0;
   }
-  const double most = -log1p(-MOST_OPACITY), depth = length > 0.0 ? o->column_depth * *unit / length : most;
-  *unit *= depth > most ? most / depth : 1.0;
-  *top = -expm1(-fmin(depth, most));
-  return fmin(depth, most);
+  const double most = -log1p(-MOST_OPACITY), wanted = length > 0.0 ? o->column_depth * *unit / length : most;
+  *unit *= wanted > most ? most / wanted : 1.0;
+  *depth = fmin(wanted, most);
+  *top = -expm1(-*depth);
+  return STRATUS_OK;
 }
 
 static void add_opacity(stratus_look* look, double value, double opacity)
@@ -354,7 +143,7 @@ static void add_opacity(stratus_look* look, double value, double opacity)
   ++look->opacity_count;
 }
 
-static void set_opacity(const look_shape* shape, double depth, double top, stratus_look* look)
+static void set_opacity(const stratus_look_shape* shape, double depth, double top, stratus_look* look)
 {
   look->opacity_count = 0;
   const int pieces = shape->count > MOST_SIMPLE ? 1 : PIECES;
@@ -369,7 +158,7 @@ static void set_opacity(const look_shape* shape, double depth, double top, strat
 }
 
 /* Names the opacities where the ramps bend and end. */
-static void describe_opacity(const look_shape* shape, stratus_look* look)
+static void describe_opacity(const stratus_look_shape* shape, stratus_look* look)
 {
   const int last = shape->count - 1;
   const bool down = shape->height[0] > shape->height[last], bends = shape->count == 4;
@@ -464,28 +253,43 @@ stratus_status stratus_look_count(stratus_context* context, const stratus_volume
   return STRATUS_OK;
 }
 
+/* Counts the values in the parts of the range. Columns count lengths, because levels are often closer where more happens. */
+static stratus_status count_parts(stratus_context* context, const stratus_volume* volumes, int count, const stratus_look_options* o,
+  const stratus_look_histogram* h, double share[STRATUS_LOOK_PARTS])
+{
+  if (o->column_axis >= 0 && !o->unordered) {
+    return stratus_look_measure_columns(context, volumes, count, o, &h->values, NULL, share);
+  }
+  for (int i = 0; i < h->bins; ++i) {
+    share[stratus_look_part_of(&h->values, h->first + (i + 0.5) * stratus_look_bin_width(h))] += h->count[i];
+  }
+  return STRATUS_OK;
+}
+
 static stratus_status guess(stratus_context* context, const stratus_volume* volumes, int count, const stratus_look_options* o,
   const stratus_look_histogram* h, stratus_look* look)
 {
-  look_shape shape = { .count = 0 };
+  stratus_look_shape shape = { .count = 0 };
   look->unit_distance = voxel_edge(volumes);
   look->kind = kind_by_values(h, o->kind);
   if (o->logarithmic && !(h->values.high > 0.0 && h->values.low == h->values.high)) {
-    TRY(shape_log(context, h, &shape, look));
+    TRY(stratus_look_shape_log(context, h, &shape, look));
   } else if (h->bins < 2) { /* no or only one value */
     look->low = look->high = h->bins ? h->values.low : 0.0;
     add_opacity(look, look->low, 0.05);
     snprintf(look->reason, sizeof look->reason, "one value only: a haze");
     return STRATUS_OK;
   } else if (look->kind == STRATUS_LOOK_SIGNED) {
-    shape_signed(h, &shape, look);
+    stratus_look_shape_signed(h, &shape, look);
   } else if (look->kind == STRATUS_LOOK_STATE) {
-    shape_state(h, &shape, look);
+    double share[STRATUS_LOOK_PARTS] = { 0.0 };
+    TRY(count_parts(context, volumes, count, o, h, share));
+    stratus_look_shape_state(h, share, &shape, look);
   } else {
-    shape_ramp(h, look->kind == STRATUS_LOOK_AMOUNT, &shape, look);
+    stratus_look_shape_ramp(h, look->kind == STRATUS_LOOK_AMOUNT, &shape, look);
   }
-  double top = 0.0;
-  const double depth = find_depth(context, volumes, count, o, h, &shape, &look->unit_distance, &top);
+  double top = 0.0, depth = 0.0;
+  TRY(find_depth(context, volumes, count, o, h, &shape, &look->unit_distance, &depth, &top));
   set_opacity(&shape, depth, top, look);
   describe_opacity(&shape, look);
   return STRATUS_OK;

@@ -36,6 +36,7 @@ class Context:
     def device(self) -> str: ...
 
 class Picture(numpy.ndarray):
+    caption: str
     def save(self, path: str | PathLike[str]) -> None: ...
 
 class Film(list[Picture]):

@@ -95,10 +95,13 @@ def show(data, opacity=None, color=None, size=(640, 480), camera=None, backgroun
     """Draws a volume and returns a Picture, an array (height, width, 4) of bytes that notebooks show.
 
     background     (r, g, b) in 0..1, or None for transparent
-    Everything else is as in `render`.
+    Everything else is as in `render`. The picture's `caption` names the factor of heights that are exaggerated.
     """
     background = background_color(background)
-    return paint(render(data, opacity, color, size, camera, **options).rgba, background)
+    rendering = render(data, opacity, color, size, camera, **options)
+    picture, factor = paint(rendering.rgba, background), rendering.counters.get("exaggeration", 1.0)
+    picture.caption = "" if factor == 1 else f"heights x {factor:.15g}"
+    return picture
 
 
 def render_tetrahedra(points, tetrahedra, values, opacity=None, color=None, size=(640, 480), camera=None, device=None, threads=None, **options):

@@ -86,12 +86,11 @@ class About:
         return kind, ctypes.string_at(name.value).decode() if name.value else None
 
 
-def functions(context, about, volume, earth, column_axis):
+def functions(context, about, volume, column_axis):
     """Returns points of opacity, points of colour and the unit distance, guessed by the core. Call it with the context's lock held."""
     options, look = library.stratus_look_options_default(), c.stratus_look()
     options.kind, name = about.kind()
-    if earth:
-        options.column_axis = column_axis
+    options.column_axis = column_axis
     context.call(library.stratus_look_guess, context.pointer, ctypes.byref(volume), 1, ctypes.byref(options), ctypes.byref(look))
     if name is None:
         name = "cool-warm" if look.kind == c.ENUMS["stratus_look_kind"]["STRATUS_LOOK_SIGNED"] else "viridis"

@@ -25,7 +25,9 @@ def _header(picture):
 
 
 class Picture(numpy.ndarray):
-    """An array of shape (height, width, 4), RGBA of one byte each, the top row first, which notebooks show as a picture."""
+    """An array of shape (height, width, 4), RGBA of one byte each, the top row first, which notebooks show as a picture. `caption` is what a
+    text under it should say ("heights x 1400"), or ""."""
+    caption = ""
 
     def _repr_png_(self):
         if self.ndim != 3 or self.shape[2] not in (3, 4) or self.dtype != numpy.uint8 or self.size == 0:

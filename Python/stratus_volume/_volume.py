@@ -100,7 +100,8 @@ class Volume:
                                                options=ctypes.pointer(asked.options))
                 numbers.compute(self.context, ctypes.byref(own), 1, view, progress)
         asked.explain(image.rgba, report.rays)
-        return image.rendering(as_dict(report), numbers.result(0 if self.grid.nothing else asked.power, self._label))
+        counters = dict(as_dict(report), exaggeration=self.exaggeration)
+        return image.rendering(counters, numbers.result(0 if self.grid.nothing else asked.power, self._label))
 
     def _label(self, name, array, unit):
         """An array of a quantity as the data's own kind."""
@@ -151,7 +152,7 @@ class Asked:
             return
         self._automatic = opacity is None or is_number(opacity)
         if opacity is None and self._is_guessed(mode, looks, function_2d):
-            opacity, colors, own_unit = _earth.functions(drawn.context, grid.about, grid.view(0), grid.earth, grid.world.index(2))
+            opacity, colors, own_unit = _earth.functions(drawn.context, grid.about, grid.view(0), grid.world.index(2))
             color, unit_distance = colors if color is None else color, own_unit if unit_distance is None else unit_distance
         wanted = self._wanted = functions_of(grid, opacity, color, gradient_opacity, weights, dependent, looks)
         own = [point for each in wanted for point in own_points(each.opacity) or ()]

@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """First pictures of netCDF files without an option: heights, view, colours and opacity by what the file says about its variable.
 Usage: test_first_picture.py PATH-OF-STRATUS FOLDER"""
+import os
 import re
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, os.pardir, "Examples", "Python"))
 
 from checking import done, expect, fail
 
+import first_pictures
 import netCDF4
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -114,6 +119,50 @@ def test_opacity_by_depth():
             alpha = image[45, 60, 3] / 255
             if abs(alpha - (1 - numpy.exp(-1.5))) > 0.02:  # pieces of the function, and a byte
                 fail(f"{depth} m {words}: alpha {alpha:.3f}")
+    for name in curvilinear("curvilinear.nc", layer), layered_mesh("mesh.nc", layer[:, 0, 0]):
+        said, image = picture(name, "--variable", "temp", "--background", "transparent", "--elevation", "90", "--parallel")
+        alpha = image[45, 60, 3] / 255
+        if abs(alpha - (1 - numpy.exp(-1.5))) > 0.02:
+            fail(f"{name}: alpha {alpha:.3f}\n{said}")
+
+
+def curvilinear(name, values):
+    """A turned lattice, whose depth is the same everywhere."""
+    with netCDF4.Dataset(name, "w") as file:
+        for axis, n in zip(("depth", "j", "i"), values.shape):
+            file.createDimension(axis, n)
+        depth = file.createVariable("depth", "f8", ("depth",))
+        depth[:] = numpy.linspace(0, 3000, values.shape[0])
+        depth.setncatts(dict(units="m", positive="down", axis="Z", standard_name="depth"))
+        j, i = numpy.meshgrid(numpy.arange(values.shape[1]), numpy.arange(values.shape[2]), indexing="ij")
+        for coordinate, places, direction in ("lon", i - 0.3 * j, "east"), ("lat", j + 0.3 * i, "north"):
+            file.createVariable(coordinate, "f8", ("j", "i"))[:] = places
+            file[coordinate].units = f"degrees_{direction}"
+        file.createVariable("temp", "f4", ("depth", "j", "i"))[:] = values
+        file["temp"].setncatts(dict(units="degC", coordinates="lat lon"))
+    return name
+
+
+def layered_mesh(name, layers):
+    """Squares of a mesh (UGRID) in layers, with values at nodes that depend on the layer only."""
+    n = 9
+    x, y = (each.ravel() for each in numpy.meshgrid(numpy.linspace(0, 9000, n), numpy.linspace(0, 9000, n)))
+    corners = [[j * n + i, j * n + i + 1, (j + 1) * n + i + 1, (j + 1) * n + i] for j in range(n - 1) for i in range(n - 1)]
+    with netCDF4.Dataset(name, "w") as file:
+        for dimension, size in ("node", n * n), ("face", len(corners)), ("corner", 4), ("layer", len(layers)):
+            file.createDimension(dimension, size)
+        file.createVariable("mesh", "i4").setncatts(dict(cf_role="mesh_topology", topology_dimension=2, node_coordinates="nx ny",
+                                                         face_node_connectivity="corners"))
+        for axis, places in ("x", x), ("y", y):
+            file.createVariable("n" + axis, "f8", ("node",))[:] = places
+            file["n" + axis].setncatts(dict(units="m", standard_name=f"projection_{axis}_coordinate"))
+        file.createVariable("corners", "i4", ("face", "corner"))[:] = corners
+        file["corners"].setncatts(dict(start_index=0, cf_role="face_node_connectivity"))
+        file.createVariable("layer", "f8", ("layer",))[:] = numpy.linspace(0, 30, len(layers))
+        file["layer"].setncatts(dict(units="m", positive="down"))
+        file.createVariable("temp", "f4", ("layer", "node"))[:] = numpy.repeat(layers, n * n).reshape(len(layers), -1)
+        file["temp"].setncatts(dict(mesh="mesh", location="node", units="degC"))
+    return name
 
 
 def test_colors_by_meaning():
@@ -148,10 +197,23 @@ def test_plumes_and_outliers():
     if plume[0] < 100 or plume[1] > 8:
         fail(f"the plume is not seen: {plume[0]} where it is, {plume[1]} where it is not")
     some = numpy.random.default_rng(3).random(values.shape) < 0.8e-3
-    some[:, :, :24] = False  # so that they are beside it
+    some[:, :, :24] = False  # so that they are next to it
     spiked = levels(ocean("spikes.nc", numpy.where(some, 1e5, values), units="kg m-3"))
     if abs(spiked[0] - plume[0]) > 16:  # the range ends at another bin's edge, which changes colours by some steps
         fail(f"outliers change the plume: {spiked[0]}, not {plume[0]}")
+
+
+def test_sheet():
+    """Each file of the gallery's sheet shows its subject: neither next to nothing, nor a body of one colour."""
+    for path in first_pictures.write_all("."):
+        image = picture(path, "--background", "transparent")[1]
+        alpha = image[18:, :, 3]  # without the caption
+        seen = (alpha > 50).mean()
+        if not 0.01 < seen < 0.9 or alpha.max() < 120:
+            fail(f"{path}: alpha is above 50 of 255 in {seen:.3f} of the picture, {alpha.max()} at most")
+        colors = image[18:][alpha > 50][:, :3]
+        if numpy.ptp(colors, axis=0).max() < 30:
+            fail(f"{path} is of one colour, {colors.min(axis=0)} to {colors.max(axis=0)}")
 
 
 test_heights()
@@ -159,4 +221,5 @@ test_frame_is_filled()
 test_opacity_by_depth()
 test_colors_by_meaning()
 test_plumes_and_outliers()
+test_sheet()
 done()

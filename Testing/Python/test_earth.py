@@ -59,6 +59,7 @@ def heights():
     given = render(ocean(), exaggerate=flat.exaggeration, **host).rgba
     check(numpy.array_equal(render(ocean(), **host).rgba, given), "as the factor that is given")
     check(not numpy.array_equal(render(ocean(), exaggerate=1, **host).rgba, given), "true heights are another picture")
+    check(show(ocean(), **host).caption == f"heights x {flat.exaggeration:.15g}" and show(ocean(), exaggerate=1, **host).caption == "", "captions")
     check(Volume(ocean(), matrix=numpy.eye(4), device="host").exaggeration == 1, "a matrix is the caller's own")
     check(Volume(field, device="host").exaggeration == 1, "an array has no heights")
     check(Volume(field, exaggerate=3, device="host").bounds == (0, 23, 0, 19, 0, 33), "but they can be stretched")

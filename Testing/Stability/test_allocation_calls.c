@@ -56,6 +56,37 @@ static stratus_status find_bandwidth(stratus_context* context, int number, uint6
   return status;
 }
 
+/* Of two blocks that share points, with outliers left out, by columns. */
+static stratus_status guess_look(stratus_context* context, int kind, uint64_t* sum)
+{
+  static float values[2][3 * 4 * 200];
+  stratus_volume blocks[2] = { stratus_volume_default(), stratus_volume_default() };
+  for (int n = 0; n < 2; ++n) {
+    for (int i = 0; i < 3 * 4 * 200; ++i) {
+      values[n][i] = i == 1234 ? 1e6f : (float)(i % 101);
+    }
+    blocks[n].values = values[n];
+    blocks[n].type = STRATUS_FLOAT32;
+    blocks[n].dimensions[0] = 3;
+    blocks[n].dimensions[1] = 4;
+    blocks[n].dimensions[2] = 200;
+    blocks[n].origin[0] = 2.0 * n;
+  }
+  stratus_look_options options = stratus_look_options_default();
+  stratus_look look;
+  options.kind = (stratus_look_kind)kind;
+  options.column_axis = 2;
+  memset(&look, MARK, sizeof look);
+  const stratus_status status = stratus_look_guess(context, blocks, 2, &options, &look);
+  if (status == STRATUS_OK) {
+    *sum = job_sum(7, look.opacity, 2 * look.opacity_count * sizeof *look.opacity);
+    assert_true(look.high < 1e5);
+  } else {
+    assert_marked(&look, sizeof look);
+  }
+  return status;
+}
+
 static stratus_status mark_between(stratus_context* context, int number, uint64_t* sum)
 {
   stratus_occupancy* occupancy = NULL;
@@ -239,7 +270,8 @@ static void each_request_fails_once(void** state)
   static const call calls[] = { { "voxels", 0, make_any_voxels }, { "voxels of cells", 1, make_any_voxels },
     { "voxels of a list", 2, make_any_voxels }, { "bandwidth", 0, find_bandwidth }, { "occupancy between", 0, mark_between },
     { "saved tree", 0, load_tree }, { "tree that may serve", 0, compare_tree }, { "first hits", 0, trace_rays },
-    { "octree of turned boxes", 0, fill_octree }, { "path tracer", 0, trace_paths } };
+    { "octree of turned boxes", 0, fill_octree }, { "path tracer", 0, trace_paths }, { "look", STRATUS_LOOK_AMOUNT, guess_look },
+    { "look", STRATUS_LOOK_STATE, guess_look } };
   faulty_allocator allocator = { 0 };
   stratus_context* context = NULL;
   stratus_context_options options = faulty_options(&allocator, "host");
