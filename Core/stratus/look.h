@@ -78,6 +78,7 @@ typedef struct stratus_look {
  * - UNKNOWN: a ramp above the most frequent value, or below it if it is in the upper half of the range.
  * The ramps of UNKNOWN and SIGNED rise slowly in their first 2/5, because values next to the background usually fill most of the volume.
  * The optical depth of columns is their mean, each weighted by its own depth, so that empty columns do not count.
+ * Of a volume of more than 2^26 values, without `thickness`, every so manieth value along each axis is taken, about 2^24 in all.
  * volumes and count: as of stratus_look_count(). options: NULL for the defaults. */
 STRATUS_API stratus_status stratus_look_guess(
   stratus_context* context, const stratus_volume* volumes, int count, const stratus_look_options* options, stratus_look* look);

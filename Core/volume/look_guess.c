@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Guesses a transfer function from the frequencies of values, and from what they are. */
+#include "look_sample.h"
 #include "look_shapes.h"
 
 #include <stdio.h>
@@ -266,11 +267,12 @@ static stratus_status count_parts(stratus_context* context, const stratus_volume
   return STRATUS_OK;
 }
 
-static stratus_status guess(stratus_context* context, const stratus_volume* volumes, int count, const stratus_look_options* o,
+/* edge: of a cube of the world as large as a voxel. */
+static stratus_status guess(stratus_context* context, const stratus_volume* volumes, int count, double edge, const stratus_look_options* o,
   const stratus_look_histogram* h, stratus_look* look)
 {
   stratus_look_shape shape = { .count = 0 };
-  look->unit_distance = voxel_edge(volumes);
+  look->unit_distance = edge;
   look->kind = kind_by_values(h, o->kind);
   if (o->logarithmic && !(h->values.high > 0.0 && h->values.low == h->values.high)) {
     TRY(stratus_look_shape_log(context, h, &shape, look));
@@ -309,9 +311,23 @@ stratus_status stratus_look_guess(
   }
   TRY(check_volumes(context, volumes, count));
   TRY(check_options(context, &o, count));
-  TRY(make_histogram(context, volumes, count, true, &histogram));
-  const stratus_status status = guess(context, volumes, count, &o, histogram, &made);
+  const bool samples = count == 1 && !o.thickness && stratus_look_samples(volumes);
+  const double edge = voxel_edge(volumes), all = (double)stratus_volume_count(volumes);
+  stratus_volume sample;
+  void* memory = NULL;
+  stratus_status status = STRATUS_OK;
+  if (samples) {
+    TRY(stratus_look_sample_make(context, volumes, &sample, &memory));
+    volumes = &sample;
+  }
+  TRY_CLEANUP(make_histogram(context, volumes, count, true, &histogram));
+  if (samples) {
+    stratus_look_histogram_scale(histogram, all / (double)stratus_volume_count(&sample));
+  }
+  status = guess(context, volumes, count, edge, &o, histogram, &made);
+cleanup:
   stratus_release(context, histogram);
+  stratus_release(context, memory);
   if (status == STRATUS_OK) {
     *look = made;
   }

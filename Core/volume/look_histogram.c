@@ -238,3 +238,12 @@ stratus_status stratus_look_histogram_make(stratus_context* context, const strat
   h->values.finite = number - h->values.not_finite;
   return STRATUS_OK;
 }
+
+void stratus_look_histogram_scale(stratus_look_histogram* h, double factor)
+{
+  for (int i = 0; i < h->bins; ++i) {
+    h->count[i] *= factor;
+  }
+  h->values.finite *= factor;
+  h->values.not_finite *= factor;
+}

@@ -32,6 +32,8 @@ stratus_status stratus_look_find_shared(
 /* Count values. Those outside of `range` are in the first or last bin; range may be NULL, and is narrowed to the values' own range. */
 stratus_status stratus_look_histogram_make(stratus_context* context, const stratus_volume* volumes, int count,
   const stratus_look_shared* shared, size_t shared_count, const double range[2], stratus_look_histogram* histogram);
+/* Multiply the frequencies, as where each value stands for others. */
+void stratus_look_histogram_scale(stratus_look_histogram* histogram, double factor);
 /* Convert `count` values from number `first` on, at most STRATUS_LOOK_CHUNK. */
 void stratus_look_values_get(const stratus_volume* volume, int64_t first, int64_t count, double* values);
 

@@ -334,6 +334,70 @@ static void refused(const stratus_volume* v, int count, const stratus_look_optio
   }
 }
 
+/* A cloud on a grid of n values a side that is `n` long along x. */
+static void fill_cloud(uint8_t* cloud, int n)
+{
+  float* along = malloc((size_t)n * sizeof *along);
+  assert_non_null(along);
+  for (int i = 0; i < n; ++i) {
+    const float place = 6.0f * ((float)i / (float)(n - 1) - 0.45f);
+    along[i] = expf(-place * place);
+  }
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) {
+      uint8_t* row = cloud + ((size_t)k * (size_t)n + (size_t)j) * (size_t)n;
+      const float plane = 255.0f * along[j] * along[k];
+      for (int i = 0; i < n; ++i) {
+        row[i] = (uint8_t)(plane * along[i]);
+      }
+    }
+  }
+  free(along);
+}
+
+/* The same field on a grid of which all values are taken, and on a finer one of which a sample is. */
+static void a_sample_gives_the_functions_of_all_values(void** state)
+{
+  static const int sides[] = { 400, 424 };
+  stratus_look looks[2][3];
+  uint8_t* cloud = malloc((size_t)sides[1] * (size_t)sides[1] * (size_t)sides[1]);
+  double places[425];
+  (void)state;
+  assert_non_null(cloud);
+  for (int s = 0; s < 2; ++s) {
+    stratus_volume v = stratus_volume_default();
+    fill_cloud(cloud, sides[s]);
+    v.values = cloud;
+    v.type = STRATUS_UINT8;
+    for (int a = 0; a < 3; ++a) {
+      v.dimensions[a] = sides[s];
+      v.spacing[a] = 400.0 / (sides[s] - 1);
+    }
+    stratus_look_options options = stratus_look_options_default();
+    looks[s][0] = guess(&v, NULL);
+    options.column_axis = 2;
+    looks[s][1] = guess(&v, &options);
+    for (int i = 0; i < sides[s]; ++i) {
+      places[i] = v.spacing[2] * i;
+    }
+    v.coordinates[2] = places;
+    looks[s][2] = guess(&v, &options);
+  }
+  free(cloud);
+  for (int i = 0; i < 3; ++i) {
+    const stratus_look *all = &looks[0][i], *sample = &looks[1][i];
+    assert_int_equal(all->kind, sample->kind);
+    assert_true(fabs(all->low - sample->low) <= 2.0 && fabs(all->high - sample->high) <= 2.0);
+    for (double value = 20.0; value < 250.0; value += 40.0) {
+      const double right = -log1p(-opacity_at(all, value)) / all->unit_distance,
+                   got = -log1p(-opacity_at(sample, value)) / sample->unit_distance;
+      if (!(fabs(got - right) <= 0.05 * right + 1e-6)) {
+        fail_msg("look %d: extinction %g at %g, not %g", i, got, value, right);
+      }
+    }
+  }
+}
+
 static void wrong_options_are_refused(void** state)
 {
   (void)state;
@@ -388,6 +452,7 @@ int test_look(void)
     cmocka_unit_test(frequent_states_are_more_transparent),
     cmocka_unit_test(columns_have_their_optical_depth),
     cmocka_unit_test(blocks_give_the_functions_of_the_whole),
+    cmocka_unit_test(a_sample_gives_the_functions_of_all_values),
     cmocka_unit_test(wrong_options_are_refused),
   };
   return cmocka_run_group_tests(tests, make, destroy);
