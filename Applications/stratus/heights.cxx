@@ -19,7 +19,8 @@ void set_heights(options& o, const series* in, vtkDataSet* grid)
   double bounds[6];
   grid->GetBounds(bounds);
   const double factor = stratus_look_height_factor(bounds, o.up.empty() ? 2 : o.up[0] - 'x');
-  if (!o.has_exaggeration && factor > 1.0 && !o.cloud) { // a photograph has true heights
+  // A photograph has true heights, and numbers of rays are of true directions.
+  if (!o.has_exaggeration && factor > 1.0 && !o.cloud && o.quantities.empty()) {
     o.exaggeration = factor;
     o.heights = format("heights x %.15g", factor);
   }

@@ -70,6 +70,8 @@ static const look_rule names[] = {
   { "chlorophyll", AMOUNT, "algae_r", "algae" },
   { "dye", AMOUNT, "viridis", "viridis_r" },
   { "tracer", AMOUNT, "viridis", "viridis_r" },
+  { "cl", AMOUNT, "cloud", "ice_r" },
+  { "cc", AMOUNT, "cloud", "ice_r" },
   { "qr", AMOUNT, "rain_r", "rain" },
   { "qrain", AMOUNT, "rain_r", "rain" },
   { "qs", AMOUNT, "ice", "ice_r" },

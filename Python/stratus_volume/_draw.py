@@ -79,7 +79,8 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
                    integral of the values over the ray's length, length on which it meets values, mean, maximum, maximum_depth, cells that it
                    passes, transmittance, transmittance_depth, where that falls to threshold. Lengths and depths before matrix, in metres if units of
                    all three coordinates of an xarray.DataArray are lengths, or VTK's field data have MetresPerUnit, otherwise in world units;
-                   NaN where a ray has no such number. Of the values of the first component, whatever the mode and the functions
+                   NaN where a ray has no such number. Of the values of the first component, whatever the mode and the functions. Rays are
+                   those of the picture: of heights that are exaggerated, exaggerate=1 has true directions
     threshold      of the transmittance, above 0 and below 1; default 0.5
     progress       function of a stage's name and a fraction in 0..1; a true result, an exception, or Ctrl+C ends the call.
                    Or a bar of tqdm's protocol

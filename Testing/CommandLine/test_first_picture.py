@@ -83,6 +83,8 @@ def test_heights():
         fail("a caption does not say the factor")
     if "heights" in picture(flat, "--exaggerate", "1")[0]:
         fail("heights that were given are told as ours")
+    if "heights" in picture(flat, "--quantity", "integral")[0] or "heights" in picture(flat, "--cloud", "--variable", "tracer")[0]:
+        fail("numbers of rays, and photographs, are of true heights")
     for name in box("cube.nc", blob(12, 12, 12), (10, 10, 10)), box("low.nc", blob(12, 12, 12), (1.01, 10, 10)):
         if "heights" in picture(name)[0] or (picture(name)[1] != picture(name, "--exaggerate", "1")[1]).any():
             fail(f"{name} is not flat, and its heights are exaggerated")

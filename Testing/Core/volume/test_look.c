@@ -97,6 +97,7 @@ static void variables_are_known_by_standard_name_unit_and_name(void** state)
     { "a", "", "K", STRATUS_LOOK_STATE, "thermal", "thermal" },
     { "group/temp", "", "", STRATUS_LOOK_STATE, "thermal", "thermal" },
     { "Temp", "", "", STRATUS_LOOK_STATE, "thermal", "thermal" },
+    { "cl", "", "%", STRATUS_LOOK_AMOUNT, "cloud", "ice_r" },
     { "template", "", "", STRATUS_LOOK_UNKNOWN, NULL, NULL },
     { "rho", "", "", STRATUS_LOOK_UNKNOWN, NULL, NULL },
     { "x", "", "km", STRATUS_LOOK_UNKNOWN, NULL, NULL },
