@@ -3,6 +3,7 @@
 #include "colors.h"
 #include "compare.h"
 #include "grid.h"
+#include "habits.h"
 #include "heights.h"
 #include "input.h"
 #include "options.h"
@@ -211,6 +212,9 @@ bool run(const cli::options& o)
 {
   bool alike = true;
   check_stack();
+  if (o.quiet) {
+    cli::silence();
+  }
   cli::set_read_timeout(o.read_timeout);
   if (o.command == "render") {
     cli::render(o);
@@ -228,8 +232,10 @@ bool run(const cli::options& o)
     std::printf("%s\n", cli::color_names("\n").c_str());
   } else if (o.command == "version") {
     version();
+  } else if (o.command == "completion") {
+    std::fputs(cli::completion(o.source).c_str(), stdout);
   } else {
-    std::fputs(cli::help().c_str(), stdout);
+    std::fputs((o.topical ? cli::help_about(o.source) : cli::help()).c_str(), stdout);
   }
   if (std::fflush(stdout) != 0) {
     throw cli::failure("cannot write to the standard output");

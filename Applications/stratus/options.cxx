@@ -2,6 +2,7 @@
 #include "options.h"
 #include "cloud.h"
 #include "colors.h"
+#include "habits.h"
 #include "support.h"
 
 #include <algorithm>
@@ -48,6 +49,8 @@ std::string help()
   stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells for 16 views, and count cells in wrong order
   stratus compare A B [options]               compare two images (.exr, .png ...) and exit 1 if they differ by more than a limit
   stratus devices                             list the OpenCL devices
+  stratus help [TOPIC]                        explain a command (render), a topic (camera) or an option (--opacity)
+  stratus completion bash|zsh|fish            print completions for a shell; "man" prints a manual page
   stratus --version                           print the versions of Stratus and its libraries, and the OpenCL devices
   stratus --help
 
@@ -61,6 +64,7 @@ INPUT is a volume file or a scene's name.
   - AMR (.vthb .vth): the finest cell at each place is drawn.
 
 Data and appearance
+  -o OUT                  the file to write; --output OUT and --output=OUT do the same, as for every option
   --array NAME            point or cell array (default: the active scalars, otherwise the first of one component). A vector array is drawn
                           by its magnitude, or by one component if .x, .y or .z follows the name. --variable is a synonym
   --raw NXxNYxNZ:TYPE     layout of a headerless file (.raw), x fastest. TYPE: int8, uint8, int16, uint16, int32, uint32, float32 or
@@ -99,7 +103,7 @@ Data and appearance
   --background B          dark, light, black, white, transparent, r:g:b, or r:g:b,r:g:b from bottom to top (default dark)
 
 Camera
-  --size WxH              pixels (default 512x512)
+  --size WxH              pixels; W alone: a square (default 512x512)
   --azimuth DEG           about the upward axis, 0 from +x, 90 from +y (default 30; of a netCDF file on the Earth -70, from the south)
   --elevation DEG         above the ground, -90..90 (default 30; of a netCDF file on the Earth 35)
   --zoom F                2 shows everything twice as large (default 1: everything fits)
@@ -128,7 +132,8 @@ Rendering
   --normals N             for first-hit: faces, gradient (default faces)
   --device D              auto, host, an OpenCL device's index, or a part of its name (default auto). The device draws, and builds
                           structures that it has kernels for; the image is the same
-  --report                print each build stage: its device, kernels that the device ran, milliseconds, bytes
+  --quiet                 print nothing but errors
+  --report, -v            print each build stage: its device, kernels that the device ran, milliseconds, bytes
   --threads N             threads of the host (default: all)
   --read-timeout S        stop reading INPUT, or a mask, after S seconds without a byte read or progress reported; 0: never (default 60)
   --show samples          show a heat map of the samples that each pixel used, with a scale, instead of the image; --color sets its colours
@@ -196,7 +201,10 @@ namespace {
 
 void set_size(options& o, const std::string& text)
 {
-  const std::vector<std::string> sides = split(text, 'x');
+  std::vector<std::string> sides = split(text, 'x');
+  if (sides.size() == 1) { // of a square
+    sides.push_back(sides[0]);
+  }
   if (sides.size() != 2) {
     throw usage("--size: '" + text + "' is not WIDTHxHEIGHT");
   }
@@ -592,6 +600,8 @@ constexpr struct {
   { "--parallel", &options::parallel },
   { "--audit", &options::audit },
   { "--report", &options::report },
+  { "-v", &options::report },
+  { "--quiet", &options::quiet },
   { "--exact", &options::exact },
 };
 
@@ -619,6 +629,29 @@ template <class Entry> bool set_companion(companion& last, const Entry* entry, c
   last.color = own.color.empty() ? last.color : own.color;
   last.unit_distance = own.unit_distance > 0.0 ? own.unit_distance : last.unit_distance;
   return true;
+}
+
+// The words of the command line, where "--option=value" is two.
+std::vector<std::string> words_of(int argc, char* argv[])
+{
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const size_t equals = word.compare(0, 2, "--") == 0 ? word.find('=') : std::string::npos;
+    const std::string option = word.substr(0, equals);
+    const bool splits = equals != std::string::npos && (find_word(with_value, option) || option == "--cloud");
+    words.push_back(splits ? option : word);
+    if (splits) {
+      words.push_back(word.substr(equals + 1));
+    }
+  }
+  return words;
+}
+
+std::string meant(const std::string& word, const std::vector<std::string>& known)
+{
+  const std::string near = nearest(word.substr(0, word.find('=')), known);
+  return near.empty() ? "" : ": did you mean " + near + "?";
 }
 
 void check_output(const options& o)
@@ -791,11 +824,28 @@ void check_complete(const options& o)
     if (o.source.empty() || o.baseline.empty()) {
       throw usage("compare: which pictures? Give compare A B");
     }
+  } else if (o.command == "completion") {
+    if (o.source.empty()) {
+      throw usage("completion: of which shell? Give bash, zsh, fish or man");
+    }
   } else if (o.command != "devices" && o.command != "version" && o.command != "help") {
-    throw usage(o.command.empty() ? "no command" : "unknown command '" + o.command + "'");
+    throw usage(o.command.empty() ? "no command" : "unknown command '" + o.command + "'" + meant(o.command, commands()));
   }
 }
 } // namespace
+
+std::vector<std::string> option_words()
+{
+  std::vector<std::string> words = { "--cloud", "--help", "--version" };
+  for (const auto& entry : with_value) {
+    words.emplace_back(entry.word);
+  }
+  for (const auto& entry : flags) {
+    words.emplace_back(entry.word);
+  }
+  std::sort(words.begin(), words.end());
+  return words;
+}
 
 options parse(int argc, char* argv[])
 {
@@ -803,38 +853,47 @@ options parse(int argc, char* argv[])
   if (std::any_of(argv + 1, argv + std::max(argc, 1), [](const char* word) { return std::string(word) == "--cloud"; })) {
     set_cloud_look(o); // before the options that replace parts of it
   }
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
+  if (argc > 1 && std::string(argv[1]) == "help") {
+    o.command = "help";
+    o.source = argc > 2 ? argv[2] : "";
+    o.topical = true;
+    return o;
+  }
+  std::vector<std::string> words = words_of(argc, argv);
+  for (size_t i = 0; i < words.size(); ++i) {
+    const std::string word = words[i];
     if (word == "--cloud") {
-      if (i + 1 < argc && is_number(argv[i + 1])) {
-        set_radius(o, argv[++i]);
+      if (i + 1 < words.size() && is_number(words[i + 1])) {
+        set_radius(o, words[++i]);
       }
       continue;
     }
     if (word == "--help" || word == "-h") {
+      o.topical = !o.command.empty();
+      o.source = o.command;
       o.command = "help";
       return o;
     }
-    if (word == "--version") {
+    if (word == "--version" || word == "-V" || (word == "-v" && words.size() == 1)) {
       o.command = "version";
       return o;
     }
     if (const auto* entry = find_word(with_value, word)) {
-      if (i + 1 == argc) {
+      if (i + 1 == words.size()) {
         throw usage(word + " needs a value");
       }
-      if (word == "--color" && std::string(argv[i + 1]) == "list") {
+      if (word == "--color" && words[i + 1] == "list") {
         o.command = "colors";
         return o;
       }
-      if (o.companions.empty() || !set_companion(o.companions.back(), entry, argv[i + 1])) {
-        entry->set(o, word, argv[i + 1]);
+      if (o.companions.empty() || !set_companion(o.companions.back(), entry, words[i + 1])) {
+        entry->set(o, word, words[i + 1]);
       }
       ++i;
     } else if (const auto* flag = find_word(flags, word)) {
       o.*flag->flag = true;
     } else if (word.size() > 1 && word[0] == '-') {
-      throw usage("unknown option '" + word + "'");
+      throw usage("unknown option '" + word + "'" + meant(word, option_words()));
     } else if (o.command.empty()) {
       o.command = word;
     } else if (o.source.empty()) {

@@ -24,7 +24,9 @@ struct data_about {
 };
 
 struct options {
-  std::string command; // render, info, tree, sort, compare, devices, colors, version, help
+  std::string command;  // render, info, tree, sort, compare, devices, colors, version, help, completion
+  bool topical = false; // help: about `source`, or an overview where that is empty; otherwise all of it
+  bool quiet = false;
   std::string source;
   std::vector<companion> companions; // render: the INPUTs behind the first
   std::string output;
@@ -115,4 +117,6 @@ struct options {
 // Throws usage for an invalid command line.
 options parse(int argc, char* argv[]);
 std::string help();
+// All options that parse() knows.
+std::vector<std::string> option_words();
 } // namespace cli

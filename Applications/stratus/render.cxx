@@ -175,7 +175,7 @@ void look_at_widest(cli::drawing& drawing, cli::series& in, const cli::options& 
 class film_progress
 {
 public:
-  explicit film_progress(size_t all) : All(all), Terminal(isatty(STDERR_FILENO) != 0) {}
+  explicit film_progress(size_t all) : All(all), Terminal(cli::shows_progress()) {}
   ~film_progress()
   {
     if (this->Terminal) {

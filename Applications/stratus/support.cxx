@@ -10,7 +10,19 @@
 
 namespace cli {
 
-context::context(const std::string& device, int threads) : Terminal(isatty(STDERR_FILENO) != 0)
+static bool silent = false;
+
+void silence()
+{
+  silent = std::freopen("/dev/null", "w", stdout) != nullptr;
+}
+
+bool shows_progress()
+{
+  return !silent && isatty(STDERR_FILENO) != 0;
+}
+
+context::context(const std::string& device, int threads) : Terminal(shows_progress())
 {
   stratus_context_options options = stratus_context_options_default();
   options.device = device.c_str();

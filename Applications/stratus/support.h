@@ -54,5 +54,9 @@ int whole_number(const std::string& text, const std::string& what, int low, int 
 std::string grouped(unsigned long long value);
 // Prints a line of a command's output: a name and its value.
 void row(const char* name, const std::string& value);
+// Prints neither rows nor progress from now on.
+void silence();
+// Whether bars of progress are drawn: the standard error is a terminal.
+bool shows_progress();
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 } // namespace cli

@@ -14,18 +14,18 @@ import sys
 PAGE = "docs/refused.md"
 HEAD = """# What is refused
 
-Valid requests that the core does not draw, by the messages of their errors (`STRATUS_UNSUPPORTED`). An error names the value, and where
-there is another way, the way. Values out of their range are not here (`STRATUS_INVALID_ARGUMENT`): they are refused everywhere. What has no
+Valid requests that the core does not draw, by the messages of their errors (`STRATUS_UNSUPPORTED`). An error names the value, and
+what to do instead if there is another way. Values out of their range are not here (`STRATUS_INVALID_ARGUMENT`): they are refused everywhere. What has no
 meaning in a mode is left out with one warning: [What is drawn](matrix.md). `Testing/Documentation/refusals.py --write` writes this page.
 """
 # The first pattern that fits decides; the last one takes the rest.
 KINDS = [
     ("Too large", "Numbers that rays and arrays cannot hold.",
      r"too large|need more than|table entries|at most %(d|zu) numbers|longer than|along an axis: at most|at most %d$|coordinates along"),
-    ("Several volumes in one march", "Each of these draws alone, or in the other way that the message names.", r"of several|among several|mesh %d|volume %d"),
+    ("Several volumes in one march", "Each of these is drawn if it is the only volume, or as the message says.", r"of several|among several|mesh %d|volume %d"),
     ("Projected tetrahedra", "Marched, the same is drawn; `auto` marches it.", r"cannot be projected"),
     ("Paths of scattered light", "The reference of scattered light is of one medium on one grid.", r"^paths "),
-    ("Other requests", "Combinations without a meaning, and some that no one has asked for yet.", r""),
+    ("Other requests", "Combinations without a meaning, and some that nobody has needed yet.", r""),
 ]
 
 
