@@ -42,7 +42,7 @@ public:
   vtkTypeMacro(vtkStratusImageReader, vtkStratusVariableReader);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
+  //@{
   /**
    * Values that are in the file as the program needs them stay there, and are read when something looks at them (default): uncompressed,
    * in the machine's order of bytes, not scaled, in one piece, and at least MappedBytesLeast bytes (default 16 MiB; less is read as
@@ -55,7 +55,7 @@ public:
   vtkSetMacro(MappedBytesLeast, vtkTypeInt64);
   vtkGetMacro(MappedBytesLeast, vtkTypeInt64);
   vtkGetMacro(Mapped, vtkTypeBool); // whether the last output's values are in the file
-  ///@}
+  //@}
 
   /**
    * Read a file without a header: size[0]*size[1]*size[2] values of a type of VTK's (VTK_FLOAT), x fastest, behind `skip` bytes. The first
