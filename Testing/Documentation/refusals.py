@@ -15,7 +15,7 @@ PAGE = "docs/refused.md"
 HEAD = """# What is refused
 
 Valid requests that the core does not draw, by the messages of their errors (`STRATUS_UNSUPPORTED`). An error names the value, and
-what to do instead if there is another way. Values out of their range are not here (`STRATUS_INVALID_ARGUMENT`): they are refused everywhere. What has no
+another way if there is one. Values out of their range are not here (`STRATUS_INVALID_ARGUMENT`): they are refused everywhere. What has no
 meaning in a mode is left out with one warning: [What is drawn](matrix.md). `Testing/Documentation/refusals.py --write` writes this page.
 """
 # The first pattern that fits decides; the last one takes the rest.
