@@ -13,6 +13,8 @@ INLINE void several_look(const several_source* from, several_volume* v, vint i, 
   stratus_packet* k = &v->k;
   const vint at = vi_max(v->shown_until, i), last = k->last + v->offset;
   const vfloat length = v_set((float)from->stride), s0 = v_from_int(at - v->offset), lo = v_max(s0, k->begin);
+  const vmask gone = mask & (vi_ge(at, last) | v_le(k->end, s0)); /* at their ends, where there are no blocks any more */
+  mask = m_andnot(mask, gone);
   vfloat s = lo;
   if (!from->preintegrated) {
     s = v_set(0.5f) * (lo + v_min(s0 + length, k->end));
@@ -35,8 +37,9 @@ INLINE void several_look(const several_source* from, several_volume* v, vint i, 
   const vfloat passed = v_from_int(vi_min(next, last) - at) * v_set(1.0f / (float)from->stride);
   k->skipped = k->skipped + vi_select(leaps, v_to_int(passed + v_set(0.999f)), vi_set(0));
   next = vi_select(leaps & (vi_ge(next, last) | v_le(k->end, leave)), vi_set(SEVERAL_NEVER), next);
-  v->shown_from = vi_select(mask, vi_select(stays, at, next), v->shown_from);
-  v->shown_until = vi_select(mask, next, v->shown_until);
+  next = vi_select(gone, vi_set(SEVERAL_NEVER), next);
+  v->shown_from = vi_select(mask | gone, vi_select(stays, at, next), v->shown_from);
+  v->shown_until = vi_select(mask | gone, next, v->shown_until);
 }
 
 /* Returns the segment, of those from i on, at which the volume is to be sampled or looked at again; i if it is to be sampled. */
