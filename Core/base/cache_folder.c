@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Finds the cache's folder, and writes files in it. */
+ * Finds the cache's folder, and reads and writes files in it. */
 #define _POSIX_C_SOURCE 200809L
 #include "cache_folder.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +26,33 @@ bool stratus_cache_find(char path[STRATUS_CACHE_PATH])
     }
   }
   return false;
+}
+
+int stratus_cache_open(const char* path, uint64_t* size)
+{
+  struct stat status;
+  const int handle = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK); /* a pipe must not be waited for */
+  if (handle >= 0 &&
+    (fstat(handle, &status) != 0 || !S_ISREG(status.st_mode) || status.st_uid != geteuid() ||
+      (status.st_mode & (S_IWGRP | S_IWOTH)) != 0)) {
+    close(handle);
+    return -1;
+  }
+  *size = handle < 0 ? 0 : (uint64_t)status.st_size;
+  return handle;
+}
+
+bool stratus_cache_read(int handle, void* to, size_t size)
+{
+  char* bytes = to;
+  for (size_t done = 0; done < size;) {
+    const ssize_t got = read(handle, bytes + done, size - done);
+    if (got <= 0) {
+      return false;
+    }
+    done += (size_t)got;
+  }
+  return true;
 }
 
 static void make_folder(const char* path, int above)

@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /* Characters of a path with its final zero. */
 #define STRATUS_CACHE_PATH 1024
@@ -13,6 +14,12 @@
 /* Writes the folder's path: the environment's STRATUS_CACHE_DIR, else $XDG_CACHE_HOME/stratus, else $HOME/.cache/stratus. Returns false
  * if there is no place for it, as where STRATUS_CACHE_DIR is empty. */
 bool stratus_cache_find(char path[STRATUS_CACHE_PATH]);
+
+/* Opens a file for reading if it is a regular one of this user's that nobody else can write. Returns its handle and sets *size to its
+ * bytes, or returns -1. */
+int stratus_cache_open(const char* path, uint64_t* size);
+/* Reads the next `size` bytes. Returns false if there are fewer. */
+bool stratus_cache_read(int handle, void* to, size_t size);
 
 /* A part of a file's bytes. */
 typedef struct stratus_cache_part {

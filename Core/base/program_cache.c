@@ -146,29 +146,14 @@ static uint64_t checksum(const header* h, const char* key, const void* binary)
 
 /* ---------------------------------------------------------------- files */
 
-static bool read_whole(int handle, void* to, size_t size)
-{
-  char* bytes = to;
-  for (size_t done = 0; done < size;) {
-    const ssize_t got = read(handle, bytes + done, size - done);
-    if (got <= 0) {
-      return false;
-    }
-    done += (size_t)got;
-  }
-  return true;
-}
-
 /* Whether the file is one of ours for this key, by its header and its size. */
-static bool begins_well(int handle, const char* key, header* h)
+static bool begins_well(int handle, uint64_t size, const char* key, header* h)
 {
-  struct stat status;
   char stored[STRATUS_PROGRAM_KEY];
   const size_t length = strlen(key);
-  return fstat(handle, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() &&
-    (status.st_mode & (S_IWGRP | S_IWOTH)) == 0 && read_whole(handle, h, sizeof *h) && h->magic == MAGIC && h->key_bytes == length &&
-    h->binary_bytes > 0 && h->binary_bytes <= BINARY_MOST && (uint64_t)status.st_size == sizeof *h + length + h->binary_bytes &&
-    read_whole(handle, stored, length) && memcmp(stored, key, length) == 0;
+  return stratus_cache_read(handle, h, sizeof *h) && h->magic == MAGIC && h->key_bytes == length && h->binary_bytes > 0 &&
+    h->binary_bytes <= BINARY_MOST && size == sizeof *h + length + h->binary_bytes && stratus_cache_read(handle, stored, length) &&
+    memcmp(stored, key, length) == 0;
 }
 
 stratus_status stratus_program_read(stratus_context* context, const char* key, void** binary, size_t* size)
@@ -182,14 +167,15 @@ stratus_status stratus_program_read(stratus_context* context, const char* key, v
   }
   name_of(key, name);
   snprintf(path, sizeof path, "%s/%s", context->program_folder, name);
-  const int handle = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK); /* a pipe must not be waited for */
+  uint64_t whole = 0;
+  const int handle = stratus_cache_open(path, &whole);
   if (handle < 0) {
     return STRATUS_OK;
   }
-  if (begins_well(handle, key, &h)) {
+  if (begins_well(handle, whole, key, &h)) {
     status = stratus_allocate(context, (size_t)h.binary_bytes, 1, binary);
     if (status == STRATUS_OK) {
-      if (read_whole(handle, *binary, (size_t)h.binary_bytes) && checksum(&h, key, *binary) == h.checksum) {
+      if (stratus_cache_read(handle, *binary, (size_t)h.binary_bytes) && checksum(&h, key, *binary) == h.checksum) {
         *size = (size_t)h.binary_bytes;
         (void)futimens(handle, NULL); /* it was used now */
       } else {

@@ -10,7 +10,6 @@
 #include "hash.h"
 
 #include <dirent.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +24,7 @@
 
 typedef struct header {
   char magic[16];
-  uint64_t key, hash; /* of what follows the header */
+  uint64_t key, hash; /* of the bytes behind the header */
   int64_t blocks[3];
   double bias;
   float whole_lo, whole_hi;
@@ -108,23 +107,6 @@ static void unpack(stratus_type type, const void* from, float* to, size_t count)
   }
 }
 
-/* Reads a whole file of `size` bytes behind its header. Returns false, and the file is not to be used, unless it has just these. */
-static bool read_file(int handle, header* h, uint8_t* bytes, size_t size)
-{
-  struct stat status;
-  if (fstat(handle, &status) != 0 || (uint64_t)status.st_size != sizeof *h + size || read(handle, h, sizeof *h) != (ssize_t)sizeof *h) {
-    return false;
-  }
-  for (size_t done = 0; done < size;) {
-    const ssize_t got = read(handle, bytes + done, size - done);
-    if (got <= 0) {
-      return false;
-    }
-    done += (size_t)got;
-  }
-  return true;
-}
-
 bool stratus_value_range_recall(const stratus_volume* volume, stratus_value_range* ranges)
 {
   char folder[STRATUS_CACHE_PATH], name[64], path[STRATUS_CACHE_PATH + 64];
@@ -139,12 +121,13 @@ bool stratus_value_range_recall(const stratus_volume* volume, stratus_value_rang
     return false;
   }
   snprintf(path, sizeof path, "%s/%s", folder, name);
-  const int handle = open(path, O_RDONLY | O_CLOEXEC);
+  uint64_t whole = 0;
+  const int handle = stratus_cache_open(path, &whole);
   if (handle < 0) {
     return false;
   }
   uint8_t* bytes = malloc(size);
-  if (bytes && read_file(handle, &h, bytes, size)) {
+  if (bytes && whole == sizeof h + size && stratus_cache_read(handle, &h, sizeof h) && stratus_cache_read(handle, bytes, size)) {
     serves = memcmp(h.magic, MAGIC, sizeof h.magic) == 0 && h.key == key && memcmp(h.blocks, ranges->blocks, sizeof h.blocks) == 0 &&
       h.bias == ranges->bias && h.hash == stratus_hash(bytes, size, key);
   }
