@@ -266,9 +266,7 @@ stratus_status stratus_ray_caster_render_several(const stratus_ray_cast_input* i
   const stratus_status status = render(&s, arguments, plain);
   stratus_ray_light_return(inputs, count); /* the maps are the first input's, which may go before the others */
   TRY(status);
-  for (int n = 0; n < count; ++n) {
-    TRY(inputs[n].volume ? stratus_volume_check_missing(s.context, inputs[n].volume) : STRATUS_OK);
-  }
+  TRY(stratus_several_check_missing(inputs, count));
   for (int n = 0; reports && n < count; ++n) {
     reports[n] = s.inputs[n].report;
   }

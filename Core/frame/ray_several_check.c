@@ -35,6 +35,14 @@ stratus_status stratus_several_check_inputs(const stratus_ray_cast_input* inputs
   return STRATUS_OK;
 }
 
+stratus_status stratus_several_check_missing(const stratus_ray_cast_input* inputs, int count)
+{
+  for (int n = 0; n < count; ++n) {
+    TRY(inputs[n].volume ? stratus_volume_check_missing(stratus_several_context(&inputs[n]), inputs[n].volume) : STRATUS_OK);
+  }
+  return STRATUS_OK;
+}
+
 stratus_status stratus_several_check_volume(stratus_context* context, int n, const stratus_several_input* in)
 {
   const stratus_ray_cast_options* options = &in->options;

@@ -276,5 +276,6 @@ stratus_status stratus_several_kept(const stratus_ray_cast_input* inputs, int co
     stratus_ray_light_return(inputs, count);
     stratus_ray_light_report(&light, reports, count);
   }
-  return status;
+  TRY(status);
+  return stratus_several_check_missing(inputs, count);
 }

@@ -45,6 +45,8 @@ stratus_context* stratus_several_context(const stratus_ray_cast_input* input);
 stratus_status stratus_several_check_inputs(const stratus_ray_cast_input* inputs, int count);
 /* Refuses what one march through several volumes does not draw; n: the input's number. */
 stratus_status stratus_several_check_volume(stratus_context* context, int n, const stratus_several_input* in);
+/* Fails where values of a volume were missing when rays looked at them. */
+stratus_status stratus_several_check_missing(const stratus_ray_cast_input* inputs, int count);
 stratus_status stratus_several_check_mesh(stratus_context* context, int n, const stratus_several_input* in);
 
 /* ray_several_kept.c. Draws inputs, which were checked for casters, in a mode other than composite. */
