@@ -13,7 +13,7 @@ INLINE void several_look(const several_source* from, several_volume* v, vint i, 
   stratus_packet* k = &v->k;
   const vint at = vi_max(v->shown_until, i), last = k->last + v->offset;
   const vfloat length = v_set((float)from->stride), s0 = v_from_int(at - v->offset), lo = v_max(s0, k->begin);
-  const vmask gone = mask & (vi_ge(at, last) | v_le(k->end, s0)); /* at their ends, where there are no blocks any more */
+  const vmask asked = mask, gone = mask & (vi_ge(at, last) | v_le(k->end, s0)); /* at their ends, where there are no blocks any more */
   mask = m_andnot(mask, gone);
   vfloat s = lo;
   if (!from->preintegrated) {
@@ -36,10 +36,9 @@ INLINE void several_look(const several_source* from, several_volume* v, vint i, 
   next = vi_max(next, at + vi_set(from->stride));
   const vfloat passed = v_from_int(vi_min(next, last) - at) * v_set(1.0f / (float)from->stride);
   k->skipped = k->skipped + vi_select(leaps, v_to_int(passed + v_set(0.999f)), vi_set(0));
-  next = vi_select(leaps & (vi_ge(next, last) | v_le(k->end, leave)), vi_set(SEVERAL_NEVER), next);
-  next = vi_select(gone, vi_set(SEVERAL_NEVER), next);
-  v->shown_from = vi_select(mask | gone, vi_select(stays, at, next), v->shown_from);
-  v->shown_until = vi_select(mask | gone, next, v->shown_until);
+  next = vi_select(gone | (leaps & (vi_ge(next, last) | v_le(k->end, leave))), vi_set(SEVERAL_NEVER), next);
+  v->shown_from = vi_select(asked, vi_select(stays, at, next), v->shown_from);
+  v->shown_until = vi_select(asked, next, v->shown_until);
 }
 
 /* Returns the segment, of those from i on, at which the volume is to be sampled or looked at again; i if it is to be sampled. */
@@ -50,14 +49,12 @@ INLINE int several_leap(const several_source* from, several_volume* v, int i, vm
   for (;;) {
     const vmask behind = live & vi_lt(now, v->shown_until), shown = behind & vi_ge(now, v->shown_from);
     if (m_any(shown)) { /* all are sampled as long as one of them is in a block that is not transparent */
-      const int until = several_most(vi_min(v->shown_until, v->k.last + v->offset), shown), more = (i - v->began) / SEVERAL_LOOKS;
-      v->run = until + (from->stride == 1 ? more : more - more % from->stride);
+      v->run = several_most(vi_min(v->shown_until, v->k.last + v->offset), shown) + (i - v->began) / SEVERAL_LOOKS;
       return i;
     }
     if (!m_any(m_andnot(live, behind))) {
-      const int next = several_least(v->shown_from, live);
-      v->began = next;
-      return next < v->last ? next : SEVERAL_NEVER;
+      v->began = several_least(v->shown_from, live);
+      return v->began < v->last ? v->began : SEVERAL_NEVER;
     }
     /* all rays on whose way nothing is known to show, since a look takes the same time for one of them */
     several_look(from, v, now, live & vi_ge(vi_max(v->shown_from, now), v->shown_until) & vi_lt(v->shown_until, vi_set(SEVERAL_NEVER)));
