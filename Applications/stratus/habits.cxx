@@ -88,7 +88,7 @@ std::vector<described> options_of(const part& lines)
   return found;
 }
 
-// The first word of an option's words: "--lower" of "--lower V, --upper V".
+// Whether an option's words name it: "--lower" and "--upper" of "--lower V, --upper V".
 bool names(const described& one, const std::string& option)
 {
   for (const std::string& word : split(one.words, ' ')) {
@@ -143,11 +143,12 @@ size_t edits(const std::string& a, const std::string& b)
   return d[a.size()][b.size()];
 }
 
-std::string quoted(const std::string& text, char quote)
+// The text within single quotes of a shell.
+std::string quoted(const std::string& text)
 {
   std::string result;
   for (const char c : text) {
-    result += c == quote ? (quote == '\'' ? "'\\''" : std::string("\\") + c) : std::string(1, c);
+    result += c == '\'' ? "'\\''" : std::string(1, c);
   }
   return result;
 }
@@ -220,7 +221,7 @@ std::string zsh()
   const std::vector<described> all = all_options();
   std::string text = "#compdef stratus\nlocal -a commands options\ncommands=(" + joined_words(cli::commands()) + ")\noptions=(\n";
   for (const std::string& option : cli::option_words()) {
-    text += "  '" + quoted(option, '\'') + ":" + quoted(short_about(option, all), '\'') + "'\n";
+    text += "  '" + quoted(option) + ":" + quoted(short_about(option, all)) + "'\n";
   }
   text += ")\ncase $words[CURRENT-1] in\n";
   for (const auto& [option, values] : choices()) {
@@ -243,7 +244,7 @@ std::string fish()
     const auto found = values.find(option);
     const bool is_long = begins(option, "--");
     text += std::string("complete -c stratus ") + (is_long ? "-l " : "-s ") + option.substr(is_long ? 2 : 1) +
-      (found == values.end() ? "" : " -x -a '" + found->second + "'") + " -d '" + quoted(short_about(option, all), '\'') + "'\n";
+      (found == values.end() ? "" : " -x -a '" + found->second + "'") + " -d '" + quoted(short_about(option, all)) + "'\n";
   }
   return text;
 }
@@ -258,15 +259,44 @@ std::string manual_line(const std::string& text)
   return (!line.empty() && (line[0] == '.' || line[0] == '\'') ? "\\&" : "") + line + "\n";
 }
 
+// A part of help() that describes options, as a section.
+std::string manual_section(const part& lines, const std::vector<described>& options)
+{
+  std::string text = ".SH ";
+  for (const char c : lines[0].substr(0, lines[0].find(':'))) {
+    text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  text += "\n";
+  for (size_t line = 1; line < lines.size() && !begins(lines[line], "  -"); ++line) {
+    text += manual_line(lines[line].substr(indent_of(lines[line])));
+  }
+  for (const described& option : options) {
+    text += ".TP\n" + manual_line(option.words) + manual_line(option.about);
+  }
+  return text;
+}
+
+// Lines that keep their ends. before: a request before each.
+std::string manual_lines(const part& lines, const std::string& before, bool indented)
+{
+  std::string text;
+  for (const std::string& line : lines) {
+    text += before + manual_line(indented ? line : line.substr(indent_of(line)));
+  }
+  return text;
+}
+
 std::string manual()
 {
   const std::vector<part> parts = parts_of_help();
-  std::string text =
-    std::string(".TH STRATUS 1 \"\" \"Stratus ") + stratus_version() + "\"\n.SH NAME\nstratus \\- draws volumes\n.SH SYNOPSIS\n.nf\n";
-  for (size_t i = 0; i < parts[1].size(); ++i) {
-    text += manual_line(parts[1][i]);
+  std::string text = std::string(".TH STRATUS 1 \"\" \"Stratus ") + stratus_version() +
+    "\"\n.SH NAME\nstratus \\- draws volumes\n.SH SYNOPSIS\n.nf\n" + manual_lines(parts[1], "", true) + ".fi\n";
+  for (size_t i = 2; i + 1 < parts.size(); ++i) {
+    const std::vector<described> options = options_of(parts[i]);
+    text += options.empty() ? (i == 2 ? ".SH INPUT\n" : ".SH NOTES\n") + manual_lines(parts[i], ".br\n", false)
+                            : manual_section(parts[i], options);
   }
-  return text;
+  return text + ".SH EXAMPLES\n.nf\n" + manual_lines(parts.back(), "", true) + ".fi\n";
 }
 } // namespace
 
@@ -303,10 +333,8 @@ std::string cli::help_about(const std::string& topic)
     return joined(*found);
   }
   std::string options;
-  for (const part& one : parts) {
-    for (const described& option : options_of(one)) {
-      options += names(option, topic) || names(option, "--" + topic) ? option.words + "\n    " + option.about + "\n" : "";
-    }
+  for (const described& option : all_options()) {
+    options += names(option, topic) || names(option, "--" + topic) ? option.words + "\n    " + option.about + "\n" : "";
   }
   if (!options.empty()) {
     return options;
@@ -338,35 +366,7 @@ std::string cli::completion(const std::string& shell)
     return fish();
   }
   if (shell == "man") {
-    std::string text = manual() + ".fi\n";
-    const std::vector<part> parts = parts_of_help();
-    for (size_t i = 2; i + 1 < parts.size(); ++i) {
-      const std::vector<described> options = options_of(parts[i]);
-      const std::string title = parts[i][0].substr(0, parts[i][0].find(':'));
-      std::string upper;
-      for (const char c : title) {
-        upper += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-      }
-      if (options.empty()) {
-        text += i == 2 ? ".SH INPUT\n" : ".SH NOTES\n";
-        for (const std::string& line : parts[i]) {
-          text += ".br\n" + manual_line(line.substr(indent_of(line)));
-        }
-        continue;
-      }
-      text += ".SH " + upper + "\n";
-      for (size_t line = 1; line < parts[i].size() && !begins(parts[i][line], "  -"); ++line) {
-        text += manual_line(parts[i][line].substr(indent_of(parts[i][line])));
-      }
-      for (const described& option : options) {
-        text += ".TP\n" + manual_line(option.words) + manual_line(option.about);
-      }
-    }
-    text += ".SH EXAMPLES\n.nf\n";
-    for (const std::string& line : parts.back()) {
-      text += manual_line(line);
-    }
-    return text + ".fi\n";
+    return manual();
   }
   throw usage("completion: '" + shell + "' is none of bash, zsh, fish, man");
 }

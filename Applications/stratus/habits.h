@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What users expect of any command line: help by topic, the nearest word to one that is not known, completions, a manual page. All of it
-// is made from help() and the tables of options.
+// Habits that users bring from other programs: help by topic, the nearest word to one that is not known, completions, a manual page. All
+// of it is made from help() and the tables of options.
 #pragma once
 
 #include <string>

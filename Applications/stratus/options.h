@@ -17,7 +17,7 @@ struct companion {
   double unit_distance = 0.0;
 };
 
-// What a file says about the drawn variable and its grid, for defaults.
+// Names and units of the drawn variable and its grid in the file, for defaults.
 struct data_about {
   bool earth = false; // a netCDF file whose coordinates are lengths or degrees
   std::string name, standard_name, units;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What a variable is, by its standard name, unit and name, and the colour map for it. */
+ * Finds the kind of a variable by its standard name, unit and name, and the colour map for it. */
 #include "stratus/cloud.h"
 #include "stratus/look.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Defaults for a first picture: transfer functions by what a variable is and by its values, and how much heights are exaggerated. */
+ * Defaults for a first picture: transfer functions by a variable's kind and values, and how much heights are exaggerated. */
 #ifndef STRATUS_PUBLIC_LOOK_H
 #define STRATUS_PUBLIC_LOOK_H
 
@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* What a variable is. */
+/* Kinds of variables. */
 typedef enum stratus_look_kind {
   STRATUS_LOOK_UNKNOWN, /* the values decide */
   STRATUS_LOOK_AMOUNT,  /* of a matter that is here and not there: cloud water, concentrations, speed */

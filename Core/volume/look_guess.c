@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Guesses a transfer function from the frequencies of values, and from what they are. */
+ * Guesses a transfer function from the frequencies of values and the kind of the variable. */
 #include "look_sample.h"
 #include "look_shapes.h"
 

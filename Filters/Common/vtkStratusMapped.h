@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an array over a file's bytes knows of its file. The array carries it in its information, since every module has a copy of these
-// functions. Private to the modules, never installed.
+// The identity of an array over a file's bytes, and the bytes that the file lacks. The array carries them in its information, since every
+// module has a copy of these functions. Private to the modules, never installed.
 #ifndef vtkStratusMapped_h
 #define vtkStratusMapped_h
 

@@ -58,7 +58,7 @@ struct VTK_STRATUS_PRIVATE vtkStratusImageFile {
   void AddTime(int64_t size, double first, double step);
 };
 
-enum class vtkStratusImageFormat { NONE, NRRD, META, NIFTI, RAW }; // RAW: no header, which is never found
+enum class vtkStratusImageFormat { NONE, NRRD, META, NIFTI };
 // Finds the format by the file's first bytes. If `path` names the file of the values (.img), it becomes the header's.
 VTK_STRATUS_PRIVATE vtkStratusImageFormat vtkStratusFindImageFormat(std::string& path);
 

@@ -107,6 +107,22 @@ vtkSmartPointer<vtkDataArray> Scaled(vtkDataArray* stored, double slope, double 
   }
   return array;
 }
+
+vtkStratusImageFile ReadHeader(std::string path)
+{
+  switch (vtkStratusFindImageFormat(path)) {
+    case vtkStratusImageFormat::NRRD:
+      return vtkStratusReadNrrdHeader(path);
+    case vtkStratusImageFormat::META:
+      return vtkStratusReadMetaHeader(path);
+    case vtkStratusImageFormat::NIFTI:
+      return vtkStratusReadNiftiHeader(path);
+    case vtkStratusImageFormat::NONE:
+      break;
+  }
+  throw vtkStratusReadError{ path + ": is no file of NRRD, MetaImage or NIfTI: it begins with " +
+    vtkStratusShown(vtkStratusReadStart(path, 40)) };
+}
 } // namespace
 
 vtkStratusImageReader::vtkStratusImageReader() = default;
@@ -124,28 +140,13 @@ int vtkStratusImageReader::CanReadFile(const char* path)
 
 std::string vtkStratusImageReader::Inspect()
 {
-  std::string path = this->FileName;
   this->File.reset();
   if (this->Raw) {
     this->File = std::make_unique<vtkStratusImageFile>(*this->Raw);
-    this->File->Path = path;
-    this->File->Files = { path };
-  }
-  switch (this->Raw ? vtkStratusImageFormat::RAW : vtkStratusFindImageFormat(path)) {
-    case vtkStratusImageFormat::RAW:
-      break;
-    case vtkStratusImageFormat::NRRD:
-      this->File = std::make_unique<vtkStratusImageFile>(vtkStratusReadNrrdHeader(path));
-      break;
-    case vtkStratusImageFormat::META:
-      this->File = std::make_unique<vtkStratusImageFile>(vtkStratusReadMetaHeader(path));
-      break;
-    case vtkStratusImageFormat::NIFTI:
-      this->File = std::make_unique<vtkStratusImageFile>(vtkStratusReadNiftiHeader(path));
-      break;
-    case vtkStratusImageFormat::NONE:
-      throw vtkStratusReadError{ path + ": is no file of NRRD, MetaImage or NIfTI: it begins with " +
-        vtkStratusShown(vtkStratusReadStart(path, 40)) };
+    this->File->Path = this->FileName;
+    this->File->Files = { this->FileName };
+  } else {
+    this->File = std::make_unique<vtkStratusImageFile>(ReadHeader(this->FileName));
   }
   const vtkStratusImageFile& file = *this->File;
   file.CountValues();

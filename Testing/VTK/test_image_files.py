@@ -46,17 +46,24 @@ def write(name, *parts):
     return name
 
 
-def read(name, time=None, maps=True):
-    """Returns the image and the reader's errors. maps: values stay in the file, however few they are."""
-    reader, errors = stratus.vtkStratusImageReader(), []
-    reader.SetMapFile(maps)
-    reader.SetMappedBytesLeast(1)
+def errors_of(algorithm):
+    """The list to which the algorithm's errors are added from now on."""
+    errors = []
 
     def keep(caller, event, text):
         errors.append(text)
     keep.CallDataType = "string0"
-    reader.AddObserver("ErrorEvent", keep)
-    reader.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
+    algorithm.AddObserver("ErrorEvent", keep)
+    algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
+    return errors
+
+
+def read(name, time=None, maps=True):
+    """Returns the image and the reader's errors. maps: values stay in the file, however few they are."""
+    reader = stratus.vtkStratusImageReader()
+    errors = errors_of(reader)
+    reader.SetMapFile(maps)
+    reader.SetMappedBytesLeast(1)
     reader.SetFileName(name)
     reader.UpdateInformation()
     if not errors:
@@ -557,13 +564,8 @@ def test_mapping():
 
 def ranges_of(image):
     """The errors of a filter that reads all values."""
-    errors, values = [], stratus.vtkStratusDistanceMapFilter()
-
-    def keep(caller, event, text):
-        errors.append(text)
-    keep.CallDataType = "string0"
-    values.AddObserver("ErrorEvent", keep)
-    values.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
+    values = stratus.vtkStratusDistanceMapFilter()
+    errors = errors_of(values)
     values.SetInputData(image)
     values.Update()
     return "".join(errors)

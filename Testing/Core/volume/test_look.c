@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Guesses of transfer functions: what a variable is, outliers, two-sided values, the optical depth of columns against brute force, blocks,
+ * Guesses of transfer functions: kinds of variables, outliers, two-sided values, the optical depth of columns against brute force, blocks,
  * refusals. */
 #include "structures.h"
 

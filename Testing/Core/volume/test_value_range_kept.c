@@ -89,7 +89,7 @@ static int same(const stratus_value_range* a, const stratus_value_range* b)
     a->whole_hi == b->whole_hi;
 }
 
-/* Whether ranges of `later`, which has other values than the ranges `kept`, come from what was kept. */
+/* Whether ranges of `later`, which has other values than the ranges `kept`, come from the kept file. */
 static int recalls(const stratus_value_range* kept, const stratus_volume* later, int size)
 {
   stratus_value_range* ranges = ranges_of(later, size);
