@@ -5,6 +5,8 @@
 #include "light_maps.h"
 
 #include "device_frame.h"
+#include "light_frame.h"
+#include "light_surfaces.h"
 #include "matrix.h"
 #include "tiles.h"
 #include "vector.h"
@@ -28,41 +30,42 @@ static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
 #define NODES_A_BLOCK 512                /* of nodes that a thread sums at a time */
 /* A map has at most so many words, 64 MiB. NODES_LAST nodes along each side are within it, but not in six faces of a cube. */
 #define WORDS_MOST ((size_t)NODES_LAST * NODES_LAST * NODES_LAST)
-/* A position whose light meets the matter at a greater slope than this, or is in it, has a cube of maps. */
-#define SLOPE_MOST 2.0
 /* The share of the tolerance that maps may use up. Errors of the picture's sampling add to it by their squares, and have .65. */
 #define SHARE 0.7
+/* The share that surfaces' edges may use up. The squares of the three add up to 1. */
+#define SURFACE_SHARE 0.29
+/* Surfaces are known at nodes that are up to so many times closer than a map's, and have at most so many words, 16 MiB. */
+#define SURFACE_STEPS 64
+#define SURFACE_WORDS ((size_t)1 << 22)
 /* The part to which an error falls if the spacing is halved: of the second order where the light that passes is smooth, of the first where
  * it jumps, since as much smaller a part of the picture errs. A picture has both, so that not less than FALL_LEAST = 2^-1.5 is counted on,
  * and a map is not kept before a fall was measured. */
 #define FALL_LEAST 0.354
-#define FAR 1e4   /* so many extents of the matter away, a position is a direction */
-#define FLAT 1e-6 /* a side of the map is at least this part of the longest */
-
-/* Where a map's nodes are. Coordinates are those of the light: across, up, and along its way. Of a position the first two are slopes. */
-typedef struct frame {
-  double basis[3][3], origin[3];
-  double lo[3], hi[3];
-  bool perspective;
-} frame;
 
 typedef struct map {
   stratus_light light;
-  frame frame;
-  int faces, size[3]; /* faces: 0 of a direction */
-  size_t at;          /* in words */
-  double near;        /* the length on which rays pass near matter, in near_steps */
+  stratus_light_frame frame;
+  int size[3];
+  size_t at;   /* in words */
+  double near; /* the length on which rays pass near matter, in near_steps */
   int near_steps;
   double error; /* that is expected of a picture, if the light is white */
   bool finest;  /* even the finest map errs by more than was wanted, so that none built anew would err less */
+  /* Of surfaces that hide the light: nodes of a face, where their words begin, and the error that is expected of them. */
+  int surface_size[2]; /* 0: there are none */
+  size_t surface_at;
+  double surface_error;
 } map;
 
 struct stratus_light_maps {
   stratus_context* context;
   map of[STRATUS_LIGHTS_MAX];
   int count;
-  int32_t* words;
+  int32_t* words; /* of the maps, of scattered light, and of surfaces */
   size_t words_count;
+  size_t own_count;                 /* of them, those before the surfaces' */
+  uint64_t surfaces_key;            /* of the surfaces that are in the words; 0: none */
+  double reflectance;               /* of the matter */
   stratus_device_slot* slot;        /* the words on the context's device, once they were sent */
   stratus_light_scatter scatter;    /* its arrays are released: the words are among all words */
   size_t scatter_at, scatter_words; /* of light that is scattered more than once; scatter_words: 0: there is none */
@@ -73,82 +76,10 @@ struct stratus_light_maps {
 
 static size_t map_words(const map* m)
 {
-  return (size_t)(m->faces > 0 ? m->faces : 1) * (size_t)m->size[0] * (size_t)m->size[1] * (size_t)m->size[2];
+  return stratus_light_faces(&m->frame) * (size_t)m->size[0] * (size_t)m->size[1] * (size_t)m->size[2];
 }
 
 /* ---- where a map is */
-
-/* Sets the map's frame, and its sides' lengths in the world. */
-static void place_map(const stratus_light* light, const double bounds[6], map* m, double sides[3])
-{
-  frame* f = &m->frame;
-  double way[3], middle[3];
-  double distance = 0.0, extent = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    middle[axis] = 0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]);
-    way[axis] = light->positional ? middle[axis] - light->vector[axis] : -light->vector[axis];
-    distance = fmax(distance, fabs(way[axis]));
-    extent = fmax(extent, bounds[2 * axis + 1] - bounds[2 * axis]);
-  }
-  m->light = *light;
-  f->perspective = light->positional && distance < FAR * extent;
-  m->faces = f->perspective;
-  memcpy(f->origin, f->perspective ? light->vector : middle, sizeof f->origin);
-  if (stratus_vector_normalize(way) == 0.0) {
-    way[2] = 1.0;
-  }
-  const int least = fabs(way[0]) <= fabs(way[1]) && fabs(way[0]) <= fabs(way[2]) ? 0 : fabs(way[1]) <= fabs(way[2]) ? 1 : 2;
-  double other[3] = { 0.0, 0.0, 0.0 };
-  other[least] = 1.0;
-  memcpy(f->basis[2], way, sizeof way);
-  stratus_vector_cross(way, other, f->basis[0]);
-  (void)stratus_vector_normalize(f->basis[0]);
-  stratus_vector_cross(way, f->basis[0], f->basis[1]);
-  double depth_lo = INFINITY, depth_hi = -INFINITY, largest = 0.0;
-  bool wide = false;
-  for (int corner = 0; corner < 8; ++corner) {
-    double point[3], q[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      point[axis] = bounds[2 * axis + (corner >> axis & 1)] - f->origin[axis];
-      largest = fmax(largest, fabs(point[axis]));
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      q[axis] = stratus_vector_dot(f->basis[axis], point);
-    }
-    wide = wide || !(fmax(fabs(q[0]), fabs(q[1])) < SLOPE_MOST * q[2]);
-    for (int axis = 0; axis < 3; ++axis) {
-      const double x = f->perspective && axis < 2 ? q[axis] / fmax(q[2], 1e-300) : q[axis];
-      f->lo[axis] = corner ? fmin(f->lo[axis], x) : x;
-      f->hi[axis] = corner ? fmax(f->hi[axis], x) : x;
-    }
-    depth_lo = fmin(depth_lo, q[2]);
-    depth_hi = fmax(depth_hi, q[2]);
-  }
-  if (f->perspective && wide) {
-    m->faces = 6;
-    memset(f->basis, 0, sizeof f->basis);
-    for (int axis = 0; axis < 3; ++axis) {
-      f->basis[axis][axis] = 1.0;
-      f->lo[axis] = axis < 2 ? -1.0 : 0.0;
-      f->hi[axis] = axis < 2 ? 1.0 : largest;
-      sides[axis] = axis < 2 ? 2.0 * largest : largest;
-    }
-    return;
-  }
-  const double scale = f->perspective ? 0.5 * (depth_lo + depth_hi) : 1.0;
-  double longest = 1e-300;
-  for (int axis = 0; axis < 3; ++axis) {
-    sides[axis] = (f->hi[axis] - f->lo[axis]) * (axis < 2 ? scale : 1.0);
-    longest = fmax(longest, sides[axis]);
-  }
-  for (int axis = 0; axis < 3; ++axis) { /* of flat matter, too, nodes are apart */
-    const double more = 0.5 * fmax(FLAT * longest - sides[axis], 0.0) / (axis < 2 ? scale : 1.0);
-    const bool distance = f->perspective && axis == 2;
-    f->lo[axis] -= distance ? 0.0 : more;
-    f->hi[axis] += distance ? 2.0 * more : more;
-    sides[axis] = fmax(sides[axis], FLAT * longest);
-  }
-}
 
 /* Sets the numbers of nodes of a map whose longest side has `nodes`. Returns whether its words are few enough. */
 static bool size_map(map* m, const double sides[3], int nodes)
@@ -177,14 +108,11 @@ static lattice all_nodes(const map* m)
  * matter. */
 static bool face_camera(const map* m, int face, const double bounds[6], const lattice* l, stratus_camera* camera)
 {
-  const frame* f = &m->frame;
+  const stratus_light_frame* f = &m->frame;
   double basis[3][3], middle[2], half[2];
-  memcpy(basis, f->basis, sizeof basis);
-  if (m->faces == 6) { /* across and up are the two axes that follow the one that is looked along */
+  stratus_light_face_basis(f, face, basis);
+  if (f->faces == 6) {
     const int along = face / 2;
-    memset(basis, 0, sizeof basis);
-    basis[0][(along + 1) % 3] = basis[1][(along + 2) % 3] = 1.0;
-    basis[2][along] = face & 1 ? -1.0 : 1.0;
     const double end = bounds[2 * along + (face & 1 ? 0 : 1)] - f->origin[along];
     if (!(basis[2][along] * end > 0.0)) {
       return false;
@@ -204,29 +132,6 @@ static bool face_camera(const map* m, int face, const double bounds[6], const la
     camera->up[axis] = half[1] * basis[1][axis];
   }
   return true;
-}
-
-/* The part that passes to a place of a face, in steps of its nodes and layers. */
-static float passing(const map* m, const int32_t* words, int face, const double place[3])
-{
-  int cell[3];
-  float part[3], up[2];
-  for (int axis = 0; axis < 3; ++axis) {
-    const int last = axis < 2 ? m->size[axis] - 2 : m->size[2] - 1;
-    cell[axis] = (int)fmax(fmin(place[axis], last), 0.0);
-    part[axis] = (float)fmax(fmin(place[axis] - cell[axis], 1.0), 0.0);
-  }
-  const size_t layers = (size_t)m->size[2], across = layers * (size_t)m->size[0];
-  const int32_t* at = words + (size_t)face * across * (size_t)m->size[1] + (size_t)cell[1] * across + (size_t)cell[0] * layers + cell[2];
-  for (int row = 0; row < 2; ++row) {
-    float column[2];
-    for (int i = 0; i < 2; ++i) {
-      const uint32_t word = (uint32_t)at[(size_t)row * across + (size_t)i * layers];
-      column[i] = (float)(word & 0xffff) * (1.0f - part[2]) + (float)(word >> 16) * part[2];
-    }
-    up[row] = column[0] * (1.0f - part[0]) + column[1] * part[0];
-  }
-  return (up[0] * (1.0f - part[1]) + up[1] * part[1]) / 65535.0f;
 }
 
 /* Nodes of a map that are being drawn. To compare a coarser map with it, the differences between pictures by both, if rays pass near matter
@@ -298,7 +203,7 @@ static void add_difference(const drawing* d, int face, int x, int y, int layer, 
     const float there = m == 0 || depth >= layer ? here : depth > 0.0 ? passed_to(d, node, depth) : 0.0f;
     place[2] = depth / n[2] * c[2];
     if (there > 0.0f) { /* else there is no matter between, and all of it is passed */
-      sum[m] += part * here / there * (there - passing(d->coarse, d->coarse_words, face, place));
+      sum[m] += part * here / there * (there - stratus_light_passing(d->coarse->size, d->coarse_words, face, place));
     }
   }
 }
@@ -461,7 +366,7 @@ static stratus_status draw_faces(drawing* d)
   d->passed = sums;
   d->along = d->passed + nodes;
   d->planes = planes;
-  for (int face = 0; face < (d->map->faces > 0 ? d->map->faces : 1); ++face) {
+  for (int face = 0; face < (int)stratus_light_faces(&d->map->frame); ++face) {
     if (!d->words) {
       memset(d->along, 0, NEARS * nodes * sizeof(float));
     }
@@ -496,7 +401,7 @@ static stratus_status draw_map(stratus_context* context, const stratus_light_mat
 static lattice some_lines(const map* m, const map* coarse, const int32_t* coarse_words, bool column)
 {
   const int across = 1 - column, *c = coarse->size;
-  const size_t layers = (size_t)c[2], face_nodes = (size_t)c[0] * (size_t)c[1], faces = coarse->faces > 0 ? (size_t)coarse->faces : 1;
+  const size_t layers = (size_t)c[2], face_nodes = (size_t)c[0] * (size_t)c[1], faces = stratus_light_faces(&coarse->frame);
   lattice l = all_nodes(m);
   double most = -1.0;
   l.step[across] = m->size[across] / LINES + 1;
@@ -563,7 +468,8 @@ static stratus_status build_map(stratus_context* context, const stratus_light_ma
   double sides[3], last[NEARS] = { 0.0 }, near = 0.0, error = 0.0;
   const int nears = matter->step > 0.0 ? NEARS : 1;
   bool kept = false;
-  place_map(light, matter->bounds, m, sides);
+  m->light = *light;
+  stratus_light_frame_place(light, matter->bounds, &m->frame, sides);
   (void)size_map(m, sides, NODES_FIRST);
   TRY(draw_map(context, matter, goes_on, m, words));
   for (int nodes = 2 * NODES_FIRST; nodes <= NODES_LAST && !kept; nodes *= 2) {
@@ -634,6 +540,7 @@ stratus_status stratus_light_maps_build(stratus_context* context, const stratus_
   made->count = count;
   made->most = SHARE * matter->tolerance;
   made->brightness = brightness_of(lights, count);
+  made->reflectance = matter->reflectance;
   if (shading->multiple) {
     TRY_CLEANUP(stratus_light_scatter_build(
       context, matter->draw, matter->of, matter->bounds, matter->detail, shading, lights, count, matter->tolerance, &made->scatter));
@@ -654,6 +561,7 @@ stratus_status stratus_light_maps_build(stratus_context* context, const stratus_
   TRY_CLEANUP(stratus_allocate(context, made->words_count, sizeof(int32_t), &all));
   made->slot = slot;
   made->words = all;
+  made->own_count = made->words_count;
   if (made->scatter.words) {
     memcpy(made->words + made->scatter_at, made->scatter.words, made->scatter_words * sizeof(int32_t));
     stratus_light_scatter_release(context, &made->scatter);
@@ -673,6 +581,105 @@ cleanup:
   }
   stratus_release(context, slot);
   stratus_release(context, memory);
+  return status;
+}
+
+/* ---- surfaces */
+
+static size_t surface_words(const map* m)
+{
+  return stratus_light_faces(&m->frame) * (size_t)m->surface_size[0] * (size_t)m->surface_size[1];
+}
+
+static void finer_nodes(const map* m, int step, int size[2])
+{
+  for (int axis = 0; axis < 2; ++axis) {
+    size[axis] = (m->size[axis] - 1) * step + 1;
+  }
+}
+
+/* Finds the surfaces that hide a map's light, at the least of nodes whose expected error is at most `most`. An edge between two nodes errs
+ * on a part of the picture that is proportional to their distance, so that the error falls by its root. depths: receives them in layers.
+ */
+static stratus_status find_surfaces(
+  const stratus_light_maps* maps, const stratus_surfaces* surfaces, double most, map* m, stratus_light_depths* depths)
+{
+  stratus_light_depths fine;
+  int step = SURFACE_STEPS, size[2];
+  stratus_status status = STRATUS_OK;
+  finer_nodes(m, step, size);
+  while (step > 1 && stratus_light_faces(&m->frame) * (size_t)size[0] * (size_t)size[1] > SURFACE_WORDS) {
+    step /= 2;
+    finer_nodes(m, step, size);
+  }
+  TRY(stratus_light_surfaces_draw(maps->context, &m->frame, surfaces, size, &fine));
+  double error = 0.0;
+  for (bool kept = false; !kept; step /= kept ? 1 : 2) {
+    error =
+      step > 1 ? maps->reflectance * stratus_light_surfaces_error(&m->frame, &fine, step, m->size, maps->words + m->at) : error * sqrt(0.5);
+    kept = step == 1 || error <= most;
+    if (kept) {
+      TRY_CLEANUP(stratus_light_surfaces_coarsen(maps->context, &m->frame, &fine, step, depths));
+    }
+  }
+  m->surface_error = error;
+  memcpy(m->surface_size, depths->size, sizeof m->surface_size);
+  const float layers = (float)(m->size[2] / (m->frame.hi[2] - m->frame.lo[2])), near = (float)m->frame.lo[2];
+  for (size_t i = 0; i < surface_words(m); ++i) {
+    depths->depth[i] = depths->depth[i] < STRATUS_LIGHT_FREE ? (depths->depth[i] - near) * layers : STRATUS_LIGHT_FREE;
+  }
+cleanup:
+  stratus_release(maps->context, fine.depth);
+  return status;
+}
+
+static uint64_t surfaces_key(const stratus_surfaces* surfaces)
+{
+  if (!surfaces || surfaces->triangle_count == 0) {
+    return 0;
+  }
+  const uint64_t numbers[3] = { (uint64_t)(uintptr_t)surfaces->points, surfaces->triangle_count, surfaces->revision };
+  return stratus_light_key(0, numbers, sizeof numbers);
+}
+
+stratus_status stratus_light_maps_hide(stratus_light_maps* maps, const stratus_surfaces* surfaces)
+{
+  const uint64_t key = surfaces_key(surfaces);
+  map of[STRATUS_LIGHTS_MAX];
+  stratus_light_depths depths[STRATUS_LIGHTS_MAX] = { { .depth = NULL } };
+  size_t count = maps->own_count;
+  void* all = NULL;
+  stratus_status status = STRATUS_OK;
+  if (key == maps->surfaces_key) {
+    return STRATUS_OK;
+  }
+  TRY(stratus_surfaces_check(maps->context, surfaces));
+  memcpy(of, maps->of, sizeof of);
+  for (int i = 0; i < maps->count; ++i) {
+    memset(of[i].surface_size, 0, sizeof of[i].surface_size);
+    of[i].surface_error = 0.0;
+    if (key) {
+      const double most = SURFACE_SHARE / SHARE * maps->most / fmax(maps->brightness, 1e-30);
+      TRY_CLEANUP(find_surfaces(maps, surfaces, most, &of[i], &depths[i]));
+      of[i].surface_at = count;
+      count += surface_words(&of[i]);
+    }
+  }
+  TRY_CLEANUP(stratus_allocate(maps->context, count, sizeof(int32_t), &all));
+  memcpy(all, maps->words, maps->own_count * sizeof(int32_t));
+  for (int i = 0; key && i < maps->count; ++i) {
+    memcpy((int32_t*)all + of[i].surface_at, depths[i].depth, surface_words(&of[i]) * sizeof(int32_t));
+  }
+  stratus_slot_drop(maps->slot); /* the device may read the words in place */
+  stratus_release(maps->context, maps->words);
+  maps->words = all;
+  maps->words_count = count;
+  maps->surfaces_key = key;
+  memcpy(maps->of, of, sizeof of);
+cleanup:
+  for (int i = 0; i < maps->count; ++i) {
+    stratus_release(maps->context, depths[i].depth);
+  }
   return status;
 }
 
@@ -712,6 +719,8 @@ uint64_t stratus_light_key_of_scattering(uint64_t key, const stratus_shading* sh
   if (!shading->multiple) {
     return key;
   }
+  const uint64_t surfaces = surfaces_key(shading->surfaces);
+  key = surfaces ? stratus_light_key(key, &surfaces, sizeof surfaces) : key;
   key = stratus_light_key(key, &shading->diffuse, sizeof shading->diffuse);
   key = stratus_light_key(key, &shading->anisotropy, sizeof shading->anisotropy);
   key = stratus_light_key(key, shading->sky_zenith, sizeof shading->sky_zenith);
@@ -806,7 +815,7 @@ void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_
   stratus_light_scatter_arguments(maps && maps->scatter_words > 0 ? &maps->scatter : NULL, maps ? maps->scatter_at : 0, to_world, a);
   for (int i = 0; i < a->count; ++i) {
     const map* m = maps && i < maps->count ? &maps->of[i] : NULL;
-    a->map_at[i] = -1;
+    a->map_at[i] = a->surface_at[i] = -1;
     a->near_steps[i] = 0;
     if (!m || !same_way(&m->light, &lights[i])) { /* a light that moves with a probe's rays has no map there */
       continue;
@@ -814,14 +823,19 @@ void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_
     if (near && m->near_steps > 0) {
       near_arguments(m, i, to_places, unit, sample_distance, maps->goes_on, a);
     }
-    const frame* f = &m->frame;
+    const stratus_light_frame* f = &m->frame;
     double scale[3], shift[3];
     for (int axis = 0; axis < 3; ++axis) {
       scale[axis] = (axis < 2 ? m->size[axis] - 1 : m->size[2]) / (f->hi[axis] - f->lo[axis]);
       shift[axis] = -f->lo[axis] * scale[axis];
     }
     a->map_at[i] = (int)m->at;
-    a->map_faces[i] = m->faces;
+    a->map_faces[i] = m->frame.faces;
+    for (int axis = 0; m->surface_size[0] > 0 && axis < 2; ++axis) {
+      a->surface_at[i] = (int)m->surface_at;
+      a->surface_size[i][axis] = m->surface_size[axis];
+      a->surface_scale[i][axis] = (float)((m->surface_size[axis] - 1.0) / (m->size[axis] - 1.0));
+    }
     for (int row = 0; row < 3; ++row) {
       double from[4] = { 0.0, 0.0, 0.0, 0.0 };
       for (int axis = 0; axis < 3; ++axis) {
@@ -831,7 +845,7 @@ void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_
         from[3] -= f->basis[row][axis] * f->origin[axis];
       }
       for (int column = 0; column < 4; ++column) {
-        const double whole = m->faces > 0 ? from[column] : from[column] * scale[row] + (column == 3 ? shift[row] : 0.0);
+        const double whole = m->frame.faces > 0 ? from[column] : from[column] * scale[row] + (column == 3 ? shift[row] : 0.0);
         a->map_from[i][4 * row + column] = (float)whole;
       }
       a->map_size[i][row] = m->size[row];
@@ -839,6 +853,23 @@ void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_
       a->map_scale[i][2 * row + 1] = (float)shift[row];
     }
   }
+}
+
+double stratus_light_maps_passing(const stratus_light_maps* maps, const stratus_light* light, int i, const double world[3])
+{
+  const map* m = maps && i < maps->count ? &maps->of[i] : NULL;
+  double q[3];
+  if (!m || !same_way(&m->light, light)) {
+    return 1.0;
+  }
+  const stratus_light_frame* f = &m->frame;
+  const int face = stratus_light_frame_coordinates(f, world, q);
+  bool beside = f->perspective && q[2] <= 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    beside = beside || (axis < 2 && (q[axis] < f->lo[axis] || q[axis] > f->hi[axis]));
+    q[axis] = (q[axis] - f->lo[axis]) / (f->hi[axis] - f->lo[axis]) * (axis < 2 ? m->size[axis] - 1 : m->size[2]);
+  }
+  return beside ? 1.0 : (double)stratus_light_passing(m->size, maps->words + m->at, face, q);
 }
 
 const int32_t* stratus_light_maps_words(const stratus_light_maps* maps)
@@ -855,7 +886,8 @@ double stratus_light_maps_error(const stratus_light_maps* maps)
 {
   double squares = maps ? maps->scatter_error * maps->scatter_error : 0.0;
   for (int i = 0; maps && i < maps->count; ++i) {
-    const double error = maps->of[i].error * brightness_of(&maps->of[i].light, 1);
+    const map* m = &maps->of[i];
+    const double error = hypot(m->error, m->surface_error) * brightness_of(&m->light, 1);
     squares += error * error;
   }
   return sqrt(squares);

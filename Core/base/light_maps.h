@@ -31,6 +31,8 @@ typedef struct stratus_light_matter {
  */
 stratus_status stratus_light_maps_build(stratus_context* context, const stratus_light_matter* matter, const stratus_shading* shading,
   const stratus_light* lights, int count, stratus_light_maps** maps);
+/* Sets the surfaces that hide the lights, in place of those before. NULL: there are none. If it fails, those before are kept. */
+stratus_status stratus_light_maps_hide(stratus_light_maps* maps, const stratus_surfaces* surfaces);
 void stratus_light_maps_destroy(stratus_light_maps* maps);
 
 /* The maps of a scene that is drawn again and again. */
@@ -62,6 +64,9 @@ uint64_t stratus_light_key_of_albedo(
  * sample_distance: by which near_length is counted; 0: the rays do not pass near matter by themselves. */
 void stratus_light_maps_arguments(const stratus_light_maps* maps, const stratus_light* lights, const double to_world[16], double unit,
   double sample_distance, stratus_light_arguments* a);
+
+/* The part of light i, given in the world, that the matter lets pass to a place in the world, which may be outside of it. */
+double stratus_light_maps_passing(const stratus_light_maps* maps, const stratus_light* light, int i, const double world[3]);
 
 /* The words of all maps, NULL without maps; their bytes; the error that is expected of a picture by them; and the longest way, in the
  * world, on which near matter is passed. */

@@ -5,6 +5,7 @@
  * phase function, of light that is dimmed by the scaled extinction (Nakajima & Tanaka 1988). */
 #include "light_scatter.h"
 
+#include "light_surfaces.h"
 #include "light_transport.h"
 #include "lights.h"
 #include "tiles.h"
@@ -121,14 +122,56 @@ double stratus_light_forward(const stratus_light_scatter* scatter, const stratus
 
 /* ---- light that has not been scattered */
 
+/* Lights, and the surfaces that hide each. */
+typedef struct sources {
+  const stratus_shading* shading;
+  const stratus_light* lights;
+  int count;
+  stratus_light_frame frame[STRATUS_LIGHTS_MAX];
+  stratus_light_depths depths[STRATUS_LIGHTS_MAX];
+} sources;
+
+static void release_surfaces(stratus_context* context, const sources* s)
+{
+  for (int i = 0; i < s->count; ++i) {
+    stratus_release(context, s->depths[i].depth);
+  }
+}
+
+static stratus_status find_surfaces(stratus_context* context, const double bounds[6], sources* s)
+{
+  static const int size[2] = { NODES_MOST, NODES_MOST };
+  for (int i = 0; i < s->count; ++i) {
+    double sides[3];
+    stratus_light_frame_place(&s->lights[i], bounds, &s->frame[i], sides);
+    TRY(stratus_light_surfaces_draw(context, &s->frame[i], s->shading->surfaces, size, &s->depths[i]));
+  }
+  return STRATUS_OK;
+}
+
 /* Lights, and one channel's scaled extinction. */
 typedef struct direct {
   const stratus_light_cells* cells;
-  const stratus_light* lights;
-  int count, channel;
+  const sources* from;
+  int channel;
   const float* extinction;
   float* to;
 } direct;
+
+/* The part of a cell that surfaces leave in a light, by the middles of its octants. */
+static double seen_part(const direct* d, int light, const int cell[3])
+{
+  const stratus_light_cells* c = d->cells;
+  double sum = 0.0;
+  for (int octant = 0; d->from->depths[light].depth && octant < 8; ++octant) {
+    double place[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis] = c->lo[axis] + (cell[axis] + (octant >> axis & 1 ? 0.75 : 0.25)) * c->spacing[axis];
+    }
+    sum += 0.125 * stratus_light_surfaces_passing(&d->from->frame[light], &d->from->depths[light], place);
+  }
+  return d->from->depths[light].depth ? sum : 1.0;
+}
 
 /* The optical depth along a direction from a cell's centre to where it leaves the cell, and from there to the end of the cells or to a
  * distance. */
@@ -178,8 +221,8 @@ static void shine_on_row(const void* data, int row, uint64_t counts[STRATUS_TILE
   for (; cell[0] < c->size[0]; ++cell[0]) {
     const size_t at = (size_t)row * (size_t)c->size[0] + (size_t)cell[0];
     double sum = 0.0;
-    for (int i = 0; i < d->count && d->extinction[at] > 0.0f; ++i) {
-      const stratus_light* light = &d->lights[i];
+    for (int i = 0; i < d->from->count && d->extinction[at] > 0.0f; ++i) {
+      const stratus_light* light = &d->from->lights[i];
       double way[3], own, distance = (double)INFINITY;
       for (int axis = 0; axis < 3; ++axis) {
         const double center = c->lo[axis] + (cell[axis] + 0.5) * c->spacing[axis];
@@ -193,7 +236,7 @@ static void shine_on_row(const void* data, int row, uint64_t counts[STRATUS_TILE
       }
       if (part > 0.0 && length > 0.0) {
         const double depth = depth_from(d, cell, way, distance, &own);
-        sum += part * exp(-depth) * mean_passing(2.0 * own);
+        sum += part * exp(-depth) * mean_passing(2.0 * own) * seen_part(d, i, cell);
       }
     }
     d->to[at] = (float)sum;
@@ -216,13 +259,13 @@ static void set_sky(const stratus_shading* shading, int channel, stratus_transpo
 }
 
 /* Whether two channels have the same light and the same matter. */
-static bool same_channel(
-  const stratus_light_cells* cells, const stratus_shading* shading, const stratus_light* lights, int count, int a, int b)
+static bool same_channel(const stratus_light_cells* cells, const sources* from, int a, int b)
 {
+  const stratus_shading* shading = from->shading;
   const size_t n = count_of(cells);
   bool same = shading->sky_zenith[a] == shading->sky_zenith[b] && shading->sky_horizon[a] == shading->sky_horizon[b];
-  for (int i = 0; same && i < count; ++i) {
-    same = lights[i].color[a] == lights[i].color[b];
+  for (int i = 0; same && i < from->count; ++i) {
+    same = from->lights[i].color[a] == from->lights[i].color[b];
   }
   return same && memcmp(cells->albedo + (size_t)a * n, cells->albedo + (size_t)b * n, n * sizeof(float)) == 0;
 }
@@ -230,11 +273,11 @@ static bool same_channel(
 #define ARRAYS (2 + STRATUS_TRANSPORT_MOMENTS) /* of a channel's solution: the mean, the part of first scattering, and the moments */
 
 /* Solves one channel. work: three arrays. */
-static stratus_status solve_channel(stratus_context* context, const stratus_light_cells* cells, const stratus_shading* shading,
-  const stratus_light* lights, int count, int channel, float* work, float* result)
+static stratus_status solve_channel(
+  stratus_context* context, const stratus_light_cells* cells, const sources* from, int channel, float* work, float* result)
 {
   const size_t n = count_of(cells);
-  const double forward = forward_share(shading);
+  const double forward = forward_share(from->shading);
   float *extinction = work, *albedo = work + n, *shone = work + 2 * n;
   int sweeps;
   for (size_t i = 0; i < n; ++i) {
@@ -243,12 +286,12 @@ static stratus_status solve_channel(stratus_context* context, const stratus_ligh
     albedo[i] = (float)(whole * (1.0 - forward) / (1.0 - goes_on));
   }
   uint64_t counts[STRATUS_TILE_COUNTS];
-  const direct d = { .cells = cells, .lights = lights, .count = count, .channel = channel, .extinction = extinction, .to = shone };
+  const direct d = { .cells = cells, .from = from, .channel = channel, .extinction = extinction, .to = shone };
   TRY(stratus_each_tile(context, "scattering", cells->size[1] * cells->size[2], shine_on_row, &d, counts));
   stratus_transport medium = { .extinction = extinction, .albedo = albedo, .direct = shone };
   memcpy(medium.size, cells->size, sizeof medium.size);
   memcpy(medium.spacing, cells->spacing, sizeof medium.spacing);
-  set_sky(shading, channel, &medium);
+  set_sky(from->shading, channel, &medium);
   return stratus_transport_solve(context, &medium, RESIDUAL, result, result + n, result + 2 * n, &sweeps);
 }
 
@@ -286,8 +329,7 @@ static void words_of_node(float* const of[3], const double largest[3], size_t n,
 }
 
 /* Solves for the light in the cells. */
-static stratus_status solve(
-  stratus_context* context, const stratus_shading* shading, const stratus_light* lights, int count, stratus_light_scatter* scatter)
+static stratus_status solve(stratus_context* context, const sources* from, stratus_light_scatter* scatter)
 {
   const stratus_light_cells* cells = &scatter->cells;
   const size_t n = count_of(cells);
@@ -299,10 +341,10 @@ static stratus_status solve(
   for (int c = 0; c < 3; ++c) {
     of[c] = work + (3 + ARRAYS * (size_t)c) * n;
     for (int same = 0; same < c; ++same) {
-      of[c] = same_channel(cells, shading, lights, count, same, c) ? of[same] : of[c];
+      of[c] = same_channel(cells, from, same, c) ? of[same] : of[c];
     }
     if (of[c] == work + (3 + ARRAYS * (size_t)c) * n) {
-      TRY_CLEANUP(solve_channel(context, cells, shading, lights, count, c, work, of[c]));
+      TRY_CLEANUP(solve_channel(context, cells, from, c, work, of[c]));
     }
     for (size_t i = 0; i < n; ++i) {
       largest[c] = fmax(largest[c], (double)of[c][i]);
@@ -430,17 +472,19 @@ stratus_status stratus_light_scatter_build(stratus_context* context, stratus_lig
   double detail, const stratus_shading* shading, const stratus_light* lights, int count, double tolerance, stratus_light_scatter* scatter)
 {
   stratus_light_scatter rungs[2] = { { .words = NULL }, { .words = NULL } };
+  sources from = { .shading = shading, .lights = lights, .count = count };
   double box[6];
   int now = 0;
   stratus_status status;
   TRY_CLEANUP(draw_cells(context, draw, of, bounds, SCOUT, &rungs[0].cells));
   box_of_matter(&rungs[0].cells, bounds, box);
   const int finest = finest_nodes(box, detail);
+  TRY_CLEANUP(find_surfaces(context, box, &from));
   for (int part = 4; part > 0; part /= 2) {
     stratus_light_scatter* next = &rungs[1 - now];
     stratus_light_scatter_release(context, next);
     TRY_CLEANUP(draw_cells(context, draw, of, box, finest / part, &next->cells));
-    TRY_CLEANUP(solve(context, shading, lights, count, next));
+    TRY_CLEANUP(solve(context, &from, next));
     /* errors are of the first order in the cells' size, as light is uneven within them: the finer of two errs by their difference */
     next->error = part < 4 ? difference(&rungs[now], next) : (double)INFINITY;
     now = 1 - now;
@@ -451,6 +495,7 @@ stratus_status stratus_light_scatter_build(stratus_context* context, stratus_lig
   *scatter = rungs[now];
   rungs[now] = (stratus_light_scatter){ .words = NULL };
 cleanup:
+  release_surfaces(context, &from);
   stratus_light_scatter_release(context, &rungs[0]);
   stratus_light_scatter_release(context, &rungs[1]);
   return status;

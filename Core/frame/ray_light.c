@@ -37,6 +37,16 @@ static bool input_has_shadows(const stratus_ray_cast_input* in)
                    : in->options && has_shadows(in->volume, in->options);
 }
 
+const stratus_ray_cast_input* stratus_ray_light_of(const stratus_ray_cast_input* inputs, int count)
+{
+  for (int n = 0; n < count; ++n) {
+    if (input_has_shadows(&inputs[n])) {
+      return &inputs[n];
+    }
+  }
+  return NULL;
+}
+
 /* Options of the same matter without light. */
 static stratus_ray_cast_options dark_options(const stratus_ray_cast_options* options)
 {
@@ -198,6 +208,7 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
     TRY(stratus_light_state_build(caster->context, &matter, &options->light.shading, lights, count, &caster->light));
     caster->light.key = key;
   }
+  TRY(stratus_light_maps_hide(caster->light.maps, options->light.shading.surfaces));
   caster->optics.lights = caster->light.maps;
   report->light_ms = stratus_now_ms() - start;
   return STRATUS_OK;
@@ -379,6 +390,7 @@ static stratus_status update_several(several* m, const stratus_ray_cast_input* i
     TRY(stratus_light_state_build(m->context, &matter, shading, lights, count, state));
     state->key = key;
   }
+  TRY(stratus_light_maps_hide(state->maps, shading->surfaces));
   return STRATUS_OK;
 }
 
@@ -386,15 +398,12 @@ stratus_status stratus_ray_light_update_several(const stratus_ray_cast_input* in
   stratus_ray_draw_several* draw, stratus_ray_cast_report* report)
 {
   const double start = stratus_now_ms();
-  const stratus_ray_cast_input* lit = NULL;
+  const stratus_ray_cast_input* lit = stratus_ray_light_of(inputs, count);
   several m = {
     .context = inputs->tetra ? inputs->tetra->context : inputs->caster->context, .given = inputs, .count = count, .draw = draw
   };
   void *memory = NULL, *options = NULL, *tetra_options = NULL, *materials = NULL;
   stratus_status status;
-  for (int n = 0; n < count && !lit; ++n) {
-    lit = input_has_shadows(&inputs[n]) ? &inputs[n] : NULL;
-  }
   give(inputs, count, given, NULL);
   drop_several(inputs, count, lit != NULL);
   if (!lit) {

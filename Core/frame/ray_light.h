@@ -20,6 +20,8 @@ stratus_status stratus_ray_light_update(stratus_ray_caster* caster, const stratu
  * report: receives its members of light. */
 stratus_status stratus_ray_light_update_several(const stratus_ray_cast_input* inputs, int count, bool given, const stratus_camera* camera,
   stratus_ray_draw_several* draw, stratus_ray_cast_report* report);
+/* The first input that has shadows; NULL: none has. */
+const stratus_ray_cast_input* stratus_ray_light_of(const stratus_ray_cast_input* inputs, int count);
 /* Writes that report to the reports of all inputs, which may be NULL: the maps and their error are of all, their making is the first's. */
 void stratus_ray_light_report(const stratus_ray_cast_report* light, stratus_ray_cast_report* reports, int count);
 /* Takes such maps from the inputs, which do not own them. */

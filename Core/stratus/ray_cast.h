@@ -98,6 +98,13 @@ typedef struct stratus_material {
   double ambient, diffuse, specular, specular_power; /* with the ranges of stratus_shading */
 } stratus_material;
 
+/* Opaque surfaces of a scene, as triangles. */
+typedef struct stratus_surfaces {
+  const double* points; /* world coordinates, 9 finite numbers a triangle: x, y, z of each corner */
+  size_t triangle_count;
+  uint64_t revision; /* the caller raises it when numbers change under the same pointer */
+} stratus_surfaces;
+
 /* Phong shading. C is the transfer function's colour. First hits are lit by this formula: the lit colour is c = ambient C + sum over lights
  * of diffuse max(0, N L) l C + specular max(0, R V)^power s, where l is a light's colour and s the colour of its highlights.
  *
@@ -136,6 +143,10 @@ typedef struct stratus_shading {
    * sky_horizon. The picture's background does not show it. Red, green and blue, each 0..STRATUS_LIGHT_MAX. Default 0: no sky. */
   double sky_zenith[3], sky_horizon[3];
   double up[3]; /* direction of the zenith in the world, of any length > 0. Default z. */
+  /* With `shadows`: opaque triangles that hide lights, too. Both sides count. Rays end at them only by
+   * stratus_image.opaque_depth. Of light that is scattered again, they hide what comes from lights, and nothing after that. Borrowed
+   * during the render. Default NULL: none. */
+  const stratus_surfaces* surfaces;
 } stratus_shading;
 
 /* Colour and opacity as a function of two variables. The first is the value. The second is the gradient's magnitude or, in volumes of 2
@@ -430,6 +441,14 @@ STRATUS_API stratus_status stratus_ray_caster_render_several(const stratus_ray_c
  * stratus_ray_caster_render() draws a volume. A failed call names the block, and leaves the image undefined. */
 STRATUS_API stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera,
   const stratus_image* image, stratus_ray_cast_report* reports);
+
+/* Add the shadows of volumes and meshes to the opaque surfaces behind their picture, which was drawn last, from the same inputs, camera and
+ * opaque_depth, and by which lit matter has shadows. The opacity A of each pixel with an opaque_depth below 1 becomes 1 - (1 - A) T: where
+ * the picture is blended over the surface, that shows T of its colour. T is the part of the light that passes through the matter: of
+ * several lights the mean by brightness, and by the cosine to the surface's normal, which follows from the depths about the pixel. The
+ * matter may be elsewhere in the picture. No other value of the image changes; without shadows or opaque_depth, none does. */
+STRATUS_API stratus_status stratus_ray_caster_shade_surfaces(
+  const stratus_ray_cast_input* inputs, int count, const stratus_camera* camera, const stratus_image* image);
 
 /* Offer a tree that comes with the data, as bytes from stratus_tree_save(). Structure hybrid, and auto in first hits, use it instead of
  * their own tree if stratus_tree_covers() allows it (first hits: if the voxels are exactly the same). The bytes are copied. NULL withdraws

@@ -137,6 +137,7 @@ stratus_status stratus_tetra_shadow_update(
     TRY(stratus_light_state_build(caster->context, &all, &of->options->shading, lights, count, &caster->light));
     caster->light.key = key;
   }
+  TRY(stratus_light_maps_hide(caster->light.maps, of->options->shading.surfaces));
   caster->lights = caster->light.maps;
   return STRATUS_OK;
 }

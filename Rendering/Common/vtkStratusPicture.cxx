@@ -186,6 +186,11 @@ void vtkStratusPicture::SetRectangle(const std::vector<Box>& boxes, bool solid)
       all[a + 1] = std::max(all[a + 1], part[a + 1]);
     }
   }
+  if (this->TakesShadows) {
+    all[0] = all[2] = 0;
+    all[1] = this->Viewport[2];
+    all[3] = this->Viewport[3];
+  }
   for (int a = 0; a < 2; ++a) {
     this->Rectangle[a] = all[2 * a];
     this->Rectangle[2 + a] = std::max(0, all[2 * a + 1] - all[2 * a]);

@@ -24,6 +24,7 @@ struct VTK_STRATUS_PRIVATE vtkStratusPicture {
   vtkStratusTarget Target;           // the frame buffer that the picture goes to
   int Viewport[4] = { 0, 0, 0, 0 };  // of the renderer: x, y in the frame buffer, width, height
   int Rectangle[4] = { 0, 0, 0, 0 }; // part that the volume may cover: x, y in the viewport, width, height
+  bool TakesShadows = false;         // of the volume by surfaces: the rectangle that Set() finds is the whole viewport
   int Size[2] = { 0, 0 };            // rays to cast; fewer than the rectangle's pixels in a coarse picture
   stratus_camera Camera;
 

@@ -96,7 +96,8 @@ public:
   //@{
   /**
    * Set/Get whether matter absorbs light on its way from each light, where shading is on, in composite and isosurface. Matter that clip
-   * planes, cropping and masks hide casts no shadow. Maps of light are built again if data, functions or lights change; for lights that
+   * planes, cropping and masks hide casts no shadow. Opaque surfaces of the renderer that are lit cast shadows on the matter, and take its
+   * shadows. Maps of light are built again if data, functions or lights change; for lights that
    * move with the camera, such as VTK's headlight, also with the camera. Default off; a VolumetricScatteringBlending above 0 counts as on.
    */
   vtkSetMacro(Shadows, vtkTypeBool);

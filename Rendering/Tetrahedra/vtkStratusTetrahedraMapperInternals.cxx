@@ -109,6 +109,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
   options.materials = alike ? nullptr : this->Materials.data();
   options.shade = property->GetShade();
   vtkStratusSetScattering(this->Mapper, property, options.shading);
+  options.shading.surfaces = lit && options.shading.shadows ? this->Surfaces.Find(renderer) : nullptr;
   return !lit || vtkStratusSetShading(renderer, this->Mapper->GetSun(), property, options.shading, error);
 }
 
@@ -330,15 +331,20 @@ bool vtkStratusTetrahedraMapper::Internals::Describe(vtkRenderer* renderer, vtkV
 
 // ---------------------------------------------------------------- a picture
 
+stratus_ray_cast_input vtkStratusTetrahedraMapper::Internals::InputOf(const stratus_tetra_options& options)
+{
+  stratus_ray_cast_input input = stratus_ray_cast_input();
+  input.tetra = this->Caster;
+  input.mesh = this->Shown;
+  input.transfer = this->Functions.data();
+  input.tetra_options = &options;
+  return input;
+}
+
 bool vtkStratusTetrahedraMapper::Internals::Cast(
-  vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error)
+  vtkRenderer* renderer, stratus_tetra_options& options, const float* opaqueDepth, std::string& error)
 {
   const stratus_image image = this->Picture.MakeRoom(this->Rgba, this->Depth, opaqueDepth);
-  stratus_tetra_options options;
-  if (!this->SetOptions(property, options, error) || !this->SetShading(renderer, property, options, error)) {
-    return false;
-  }
-  this->LeftOut.Warn(this->Mapper);
   this->Renderer = renderer;
   const auto draw = [&] {
     this->Options = options;
@@ -357,11 +363,10 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
   }
-  stratus_ray_cast_input input = stratus_ray_cast_input();
-  input.tetra = this->Caster;
-  input.mesh = this->Shown;
-  input.transfer = this->Functions.data();
-  input.tetra_options = &this->Options;
+  const stratus_ray_cast_input input = this->InputOf(this->Options);
+  if (status == STRATUS_OK && this->Picture.TakesShadows) {
+    stratus_ray_caster_shade_surfaces(&input, 1, &this->Picture.Camera, &image);
+  }
   const bool drawn =
     status == STRATUS_OK && this->Quantities.Compute(this->Context.Get(), &input, 1, false, this->Picture.Camera, image, error);
   this->Renderer = nullptr;
@@ -384,6 +389,13 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   if (empty) {
     return true;
   }
+  stratus_tetra_options options;
+  if (!this->SetOptions(prop->GetProperty(), options, error) || !this->SetShading(renderer, prop->GetProperty(), options, error)) {
+    return false;
+  }
+  this->LeftOut.Warn(this->Mapper);
+  const stratus_ray_cast_input input = this->InputOf(options);
+  this->Picture.TakesShadows = vtkStratusSurfaces::TakeShadows(renderer, &input, 1);
   if (!this->Picture.Set(renderer, this->Mesh.GetBox(), nullptr, 1.0)) {
     error = "the camera's projection has no inverse";
     return false;
@@ -394,7 +406,7 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
   }
   const vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, prop, [](vtkProp*) { return false; });
   const float* opaqueDepth = this->Picture.ReadOpaqueDepth(renderer, others);
-  if (!this->Cast(renderer, prop->GetProperty(), opaqueDepth, error)) {
+  if (!this->Cast(renderer, options, opaqueDepth, error)) {
     return false;
   }
   this->HasPicture = true;

@@ -8,6 +8,7 @@
 #include "vtkStratusContext.h"
 #include "vtkStratusDisplay.h"
 #include "vtkStratusLeftOut.h"
+#include "vtkStratusSurfaces.h"
 #include "vtkStratusMeshDescription.h"
 #include "vtkStratusMeshMask.h"
 #include "vtkStratusMeshView.h"
@@ -80,7 +81,8 @@ private:
   bool SetOptions(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
   bool SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
   bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error);
-  bool Cast(vtkRenderer* renderer, vtkVolumeProperty* property, const float* opaqueDepth, std::string& error);
+  stratus_ray_cast_input InputOf(const stratus_tetra_options& options);
+  bool Cast(vtkRenderer* renderer, stratus_tetra_options& options, const float* opaqueDepth, std::string& error);
 
   vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusMeshView Mesh;
@@ -95,8 +97,9 @@ private:
   vtkStratusVectors Vectors;
   vtkWeakPointer<vtkVolumeProperty> Property; // its colour function selects the component that is drawn
   vtkStratusBlocks Blocks;
-  std::string LastLeftOut;   // blocks that a warning has named
-  vtkStratusLeftOut LeftOut; // settings that the last picture did not use
+  std::string LastLeftOut;     // blocks that a warning has named
+  vtkStratusLeftOut LeftOut;   // settings that the last picture did not use
+  vtkStratusSurfaces Surfaces; // that hide the last picture's lights
   double Box[6] = { 0, 0, 0, 0, 0, 0 };
   std::vector<float> Rgba, Depth, PartDepth;
   stratus_tetra_options Options; // of the last picture

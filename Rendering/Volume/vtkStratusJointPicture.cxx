@@ -59,6 +59,16 @@ bool vtkStratusJointPicture::Begin(
   return true;
 }
 
+void vtkStratusJointPicture::Scene::Finish(
+  const stratus_ray_cast_input* inputs, int count, const stratus_camera& camera, const stratus_image& image, const int window[4])
+{
+  const int all[4] = { 0, image.width, 0, image.height };
+  if (this->TakesShadows) {
+    stratus_ray_caster_shade_surfaces(inputs, count, &camera, &image);
+  }
+  std::copy_n(this->TakesShadows ? all : window, 4, this->Window);
+}
+
 bool vtkStratusJointPicture::Render(Scene& scene, std::string& error)
 {
   vtkRenderer* renderer = scene.Renderer;
@@ -67,6 +77,7 @@ bool vtkStratusJointPicture::Render(Scene& scene, std::string& error)
   if (!this->Quantities.Set(scene.Settings->GetQuantities(), scene.Settings->GetTransmittanceThreshold(), error)) {
     return false;
   }
+  this->Picture.TakesShadows = scene.TakesShadows;
   if (!this->Picture.Set(renderer, scene.Boxes, this->ChooseCoarseness(scene), solid)) {
     error = "the camera's projection has no inverse";
     return false;

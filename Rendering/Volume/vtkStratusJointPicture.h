@@ -32,6 +32,7 @@ public:
     vtkProp3D* Prop = nullptr;
     vtkStratusVolumeMapper* Settings = nullptr;
     std::vector<vtkStratusPicture::Box> Boxes;
+    bool TakesShadows = false; // as in vtkStratusPicture; Cast() then adds them
     // Casts the rays. whole: it is the picture itself, not a part between peels. Returns false where it fails, with the reason in `error`,
     // or where an abort ends it. Valid in this frame, even when the scene is gone.
     CastRays Cast;
@@ -42,6 +43,10 @@ public:
     // Results of Cast() for the whole frame.
     double Milliseconds = 0.0;
     int Window[4] = { 0, 0, 0, 0 };
+
+    // Adds shadows to surfaces, and sets the window, after the whole picture was cast.
+    void Finish(
+      const stratus_ray_cast_input* inputs, int count, const stratus_camera& camera, const stratus_image& image, const int window[4]);
   };
 
   // As in vtkStratusDisplay.

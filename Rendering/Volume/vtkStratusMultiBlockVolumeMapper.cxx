@@ -6,6 +6,7 @@
 #include "vtkStratusDepthOrder.h"
 #include "vtkStratusJointPicture.h"
 #include "vtkStratusVolumeMapperInternals.h"
+#include "vtkStratusSurfaces.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkBoundingBox.h"
@@ -415,7 +416,7 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Cast(
     stratus_ray_cast_report_add(&all, &reports[i]);
   }
   this->Scene.Milliseconds = all.cast_ms;
-  std::copy_n(all.window, 4, this->Scene.Window);
+  this->Scene.Finish(this->Inputs.data(), static_cast<int>(this->Inputs.size()), camera, image, all.window);
   return true;
 }
 
@@ -454,6 +455,7 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Render(vtkRenderer* renderer, 
   this->Scene.Renderer = renderer;
   this->Scene.Prop = volume;
   this->Scene.Settings = this->Mappers[0];
+  this->Scene.TakesShadows = vtkStratusSurfaces::TakeShadows(renderer, this->Inputs.data(), static_cast<int>(this->Inputs.size()));
   this->Scene.Cast = [this](const stratus_camera& camera, const stratus_image& image, bool whole, std::string& why) {
     return this->Cast(camera, image, whole, why);
   };

@@ -6,6 +6,7 @@
 #include "vtkStratusMeshDescription.h"
 #include "vtkStratusTetrahedraMapper.h"
 #include "vtkStratusVolumeMapperInternals.h"
+#include "vtkStratusSurfaces.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCommand.h"
@@ -201,7 +202,9 @@ bool vtkStratusMultiVolume::Internals::Cast(const stratus_camera& camera, const 
     this->Reports[this->Ports[n]] = reports[n];
   }
   this->Scene.Milliseconds = this->Whole.cast_ms;
-  std::copy_n(this->Whole.window, 4, this->Scene.Window);
+  if (status == STRATUS_OK) {
+    this->Scene.Finish(this->Inputs, this->Count, camera, image, this->Whole.window);
+  }
   return status == STRATUS_OK;
 }
 
@@ -236,6 +239,7 @@ bool vtkStratusMultiVolume::Internals::Render(vtkRenderer* renderer, std::string
   this->Scene.Renderer = renderer;
   this->Scene.Prop = this->Prop;
   this->Scene.Settings = this->First;
+  this->Scene.TakesShadows = vtkStratusSurfaces::TakeShadows(renderer, this->Inputs, this->Count);
   this->Scene.Cast = [this](const stratus_camera& camera, const stratus_image& image, bool whole, std::string& why) {
     return this->Cast(camera, image, whole, why);
   };

@@ -37,6 +37,7 @@ bool vtkStratusVolumeMapper::Internals::SetShading(
   shading.on = shade || options.light.materials ? 1 : 0;
   options.light.shade = shade ? 1 : 0;
   vtkStratusSetScattering(this->Mapper, property, shading);
+  shading.surfaces = shading.shadows ? this->Surfaces.Find(renderer) : nullptr;
   return vtkStratusSetShading(renderer, this->Mapper->GetSun(), property, shading, error);
 }
 

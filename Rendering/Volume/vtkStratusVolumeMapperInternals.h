@@ -8,6 +8,7 @@
 #include "vtkStratusDisplay.h"
 #include "vtkStratusInput.h"
 #include "vtkStratusLeftOut.h"
+#include "vtkStratusSurfaces.h"
 #include "vtkStratusMultiVolume.h"
 #include "vtkStratusPicture.h"
 #include "vtkStratusQuantities.h"
@@ -72,6 +73,7 @@ public:
   vtkSmartPointer<vtkStratusMultiVolume> Joint; // mixes overlapping volumes of which this mapper's is the first; nullptr: there are none
   std::string LastError;                        // of the last picture, reported already; empty: none
   vtkStratusLeftOut LeftOut;                    // settings that the last picture did not use
+  vtkStratusSurfaces Surfaces;                  // that hide the last picture's lights
   double DrawMilliseconds = 0.0;
   double UsedCoarseness = 1.0;
   vtkSmartPointer<vtkDataObject> PickedOf;           // composite data whose block the input is; nullptr: the input is all
@@ -122,6 +124,7 @@ private:
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
   bool CastTo(const stratus_ray_cast_options& options, const float* depths, std::vector<float>& rgba);
+  stratus_ray_cast_input InputOf(const stratus_ray_cast_options& options);
   bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error);
 
   vtkRenderer* Renderer = nullptr; // set while rendering

@@ -84,6 +84,16 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
 
 // ---------------------------------------------------------------- a picture
 
+stratus_ray_cast_input vtkStratusVolumeMapper::Internals::InputOf(const stratus_ray_cast_options& options)
+{
+  stratus_ray_cast_input input = stratus_ray_cast_input();
+  input.caster = this->Caster;
+  input.volume = &this->Image.GetVolume();
+  input.transfer = this->Functions.data();
+  input.options = &options;
+  return input;
+}
+
 bool vtkStratusVolumeMapper::Internals::Cast(
   vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error)
 {
@@ -96,11 +106,12 @@ bool vtkStratusVolumeMapper::Internals::Cast(
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
   }
-  stratus_ray_cast_input input = stratus_ray_cast_input();
-  input.caster = this->Caster;
-  input.volume = &this->Image.GetVolume();
-  input.transfer = this->Functions.data();
-  input.options = &options;
+  const stratus_ray_cast_input input = this->InputOf(options);
+  if (status == STRATUS_OK && this->Picture.TakesShadows) {
+    stratus_ray_caster_shade_surfaces(&input, 1, &this->Picture.Camera, &image);
+    const int all[4] = { 0, image.width, 0, image.height };
+    std::copy_n(all, 4, this->Report.window);
+  }
   const bool drawn =
     status == STRATUS_OK && this->Quantities.Compute(this->Context.Get(), &input, 1, false, this->Picture.Camera, image, error);
   this->Renderer = nullptr;
@@ -193,6 +204,9 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     options.sampling.rule = this->FullSampling; // rule and step by hand: nothing is probed while a camera moves
   }
   const bool boxed = options.clipping.crop && options.clipping.crop_regions == STRATUS_CROP_INSIDE;
+  const bool toImage = this->Mapper->RenderToImage && !renderer->GetSelector();
+  const stratus_ray_cast_input input = this->InputOf(options);
+  this->Picture.TakesShadows = !toImage && vtkStratusSurfaces::TakeShadows(renderer, &input, 1);
   if (!this->Picture.Set(
         renderer, this->Image.GetVolume(), boxed ? options.clipping.crop_bounds : nullptr, coarseness.Pixels, this->IsFirstHit())) {
     error = "the camera's projection has no inverse";
@@ -204,7 +218,6 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     return true;
   }
   const double start = Now();
-  const bool toImage = this->Mapper->RenderToImage && !renderer->GetSelector();
   const vtkStratusPicture::Others others = this->Picture.FindOthers(renderer, prop, vtkStratusJointPicture::EndsNoRay);
   const float* opaqueDepth = toImage ? nullptr : this->Picture.ReadOpaqueDepth(renderer, others);
   const double read = Now();

@@ -72,6 +72,11 @@ static void device_and_host_show_the_same(void** state)
   compare(host, device, &c, &c.transfer, "shadows, an automatic rule");
   c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
   compare(host, device, &c, &c.transfer, "shadows, midpoint");
+  static const double plate[9] = { 0, 0, 40, 60, 0, 40, 0, 60, 40 };
+  const stratus_surfaces surfaces = { .points = plate, .triangle_count = 1 };
+  c.options.light.shading.surfaces = &surfaces;
+  compare(host, device, &c, &c.transfer, "shadows of a surface");
+  c.options.light.shading.surfaces = NULL;
   const double tolerance = c.options.sampling.tolerance;
   c.options.sampling.tolerance = 0.3; /* of which coarse cells are enough */
   c.options.light.shading.multiple = 1;

@@ -304,6 +304,11 @@ static void ray_casters(const small_scene* scene)
   REFUSES(stratus_ray_caster_render_several(several, 1, NULL, &image, NULL));
   REFUSES(stratus_ray_caster_render_several(several, 1, &scene->camera, NULL, NULL));
   ACCEPTS(stratus_ray_caster_render_several(several, 1, &scene->camera, &image, NULL));
+  IS_SILENT(stratus_ray_caster_shade_surfaces(NULL, 1, &scene->camera, &image));
+  IS_SILENT(stratus_ray_caster_shade_surfaces(several + 1, 1, &scene->camera, &image));
+  REFUSES(stratus_ray_caster_shade_surfaces(several, 1, NULL, &image));
+  REFUSES(stratus_ray_caster_shade_surfaces(several, 1, &scene->camera, NULL));
+  ACCEPTS(stratus_ray_caster_shade_surfaces(several, 1, &scene->camera, &image));
   IS_SILENT(stratus_ray_caster_render_blocks(NULL, 1, &scene->camera, &image, NULL));
   IS_SILENT(stratus_ray_caster_render_blocks(several + 1, 1, &scene->camera, &image, NULL));
   REFUSES(stratus_ray_caster_render_blocks(several, 2, &scene->camera, &image, NULL));

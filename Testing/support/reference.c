@@ -241,6 +241,37 @@ static double trace(const reference_scene* scene, const reference_matter* matter
   return first;
 }
 
+/* Whether a triangle is between a point and a light: where the plane of the triangle is met, and on which side of each edge. */
+static bool triangle_hides(const double* corner, const double from[3], const double way[3], double end)
+{
+  double a[3], b[3], to[3], normal[3];
+  for (int i = 0; i < 3; ++i) {
+    a[i] = corner[3 + i] - corner[i];
+    b[i] = corner[6 + i] - corner[i];
+    to[i] = corner[i] - from[i];
+  }
+  for (int i = 0; i < 3; ++i) {
+    normal[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  }
+  const double slope = normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2];
+  const double s = (normal[0] * to[0] + normal[1] * to[1] + normal[2] * to[2]) / slope;
+  if (!(s > 0.0 && s < end)) {
+    return false;
+  }
+  for (int edge = 0; edge < 3; ++edge) {
+    const double *p = corner + 3 * edge, *q = corner + 3 * ((edge + 1) % 3);
+    double side = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      side += normal[i] * ((q[j] - p[j]) * (from[k] + s * way[k] - p[k]) - (q[k] - p[k]) * (from[j] + s * way[j] - p[j]));
+    }
+    if (side < 0.0) {
+      return false;
+    }
+  }
+  return true;
+}
+
 double reference_passing(const reference_scene* scene, const reference_matter* matter, const stratus_light* light, const double world[3])
 {
   reference_scene dark = *scene;
@@ -251,6 +282,12 @@ double reference_passing(const reference_scene* scene, const reference_matter* m
     camera.forward[a] = light->vector[a] - (light->positional ? world[a] : 0.0);
   }
   camera.far_k = light->positional ? 1.0 : (double)INFINITY;
+  const stratus_surfaces* surfaces = scene->shading->surfaces;
+  for (size_t i = 0; surfaces && i < surfaces->triangle_count; ++i) {
+    if (triangle_hides(surfaces->points + 9 * i, camera.eye, camera.forward, camera.far_k)) {
+      return 0.0;
+    }
+  }
   dark.camera = &camera;
   dark.shading = NULL;
   dark.materials = NULL;

@@ -24,6 +24,10 @@ typedef struct stratus_light_arguments {
    * places to the map's. map_scale: of a map in perspective, the scale and middle of nodes across and up, and of layers. */
   int map_at[8], map_faces[8], map_size[8][3];
   float map_from[8][12], map_scale[8][6];
+  /* Depths of the surfaces that hide each light (light_map.h). surface_at: where they begin; -1: there are none. surface_size: nodes across
+   * and up, of a face. surface_scale: takes the map's nodes to these. */
+  int surface_at[8], surface_size[8][2];
+  float surface_scale[8][2];
   /* On the way to each light, matter next to a place is passed in near_steps steps (light_near.h), which may be 0, of near_length sample
    * distances each, and the map is read where they end. near: whether any light has such steps. The rest is read of lights that have:
    * near_way: the steps together, or a light's position; near_reach: their length in units of `place`. */

@@ -4,7 +4,10 @@
  * the part that passes to its far side. The words of a node's layers follow one another, then come the nodes across, then up.
  *
  * The map of a direction is parallel. That of a position is in perspective; if it may be in the volume, it has six faces, the sides of a
- * cube along the axes: +x -x +y -y +z -z. */
+ * cube along the axes: +x -x +y -y +z -z.
+ *
+ * Opaque surfaces hide lights, too. Their words are floats: the depth, in layers, at which light meets the first surface, at nodes across,
+ * then up. These nodes span the same part as the map's, and are closer to each other. */
 #ifndef STRATUS_LIGHT_MAP_H
 #define STRATUS_LIGHT_MAP_H
 
@@ -20,12 +23,10 @@ INLINE vfloat light_map_node(GLOBAL const int* map, vint at, vfloat depth)
   return v_lerp(near, far, depth);
 }
 
-/* The part of light i that passes to the places x. */
-INLINE vfloat light_map_passing(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps, int i, const vfloat x[3])
+/* Takes places x to nodes across and up and layers of light i, and returns the faces that they are in. */
+INLINE vint light_map_place(CONSTANT stratus_light_arguments* a, int i, const vfloat x[3], vfloat q[3])
 {
   CONSTANT float *from = a->map_from[i], *scale = a->map_scale[i];
-  CONSTANT int* size = a->map_size[i];
-  vfloat q[3];
   for (int row = 0; row < 3; ++row) {
     CONSTANT float* m = from + 4 * row;
     q[row] = v_fma(v_set(m[0]), x[0], v_fma(v_set(m[1]), x[1], v_fma(v_set(m[2]), x[2], v_set(m[3]))));
@@ -47,6 +48,33 @@ INLINE vfloat light_map_passing(CONSTANT stratus_light_arguments* a, GLOBAL cons
     q[1] = v_fma(q[1] * nearer, v_set(scale[2]), v_set(scale[3]));
     q[2] = v_fma(q[2], v_set(scale[4]), v_set(scale[5]));
   }
+  return face;
+}
+
+/* The part of light i that surfaces let pass to a place of its map. */
+INLINE vfloat light_map_surfaces(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps, int i, const vfloat q[3], vint face)
+{
+  CONSTANT int* size = a->surface_size[i];
+  vfloat part[2], lit[4];
+  vint cell[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    const vfloat at = v_clamp(q[axis] * v_set(a->surface_scale[i][axis]), 0.0f, (float)(size[axis] - 1));
+    cell[axis] = vi_min(v_to_int(at), vi_set(size[axis] - 2));
+    part[axis] = at - v_from_int(cell[axis]);
+  }
+  const vint first = vi_set(a->surface_at[i]) + (face * vi_set(size[1]) + cell[1]) * vi_set(size[0]) + cell[0];
+  for (int node = 0; node < 4; ++node) {
+    const vint at = first + vi_set(node & 1) + vi_set(node > 1 ? size[0] : 0);
+    const vfloat depth = v_from_bits(v_gather_ints(maps, at, vi_ge(at, vi_set(0))));
+    lit[node] = v_select(v_le(q[2], depth), v_set(1.0f), v_set(0.0f));
+  }
+  return v_lerp(v_lerp(lit[0], lit[1], part[0]), v_lerp(lit[2], lit[3], part[0]), part[1]);
+}
+
+/* The part of light i that passes the matter in front of a place of its map. */
+INLINE vfloat light_map_matter(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps, int i, vfloat q[3], vint face)
+{
+  CONSTANT int* size = a->map_size[i];
   vfloat part[3];
   vint cell[3];
   for (int axis = 0; axis < 3; ++axis) { /* layers have both their sides, nodes across and up are between two */
@@ -60,6 +88,15 @@ INLINE vfloat light_map_passing(CONSTANT stratus_light_arguments* a, GLOBAL cons
   const vfloat low = v_lerp(light_map_node(maps, at, part[2]), light_map_node(maps, at + right, part[2]), part[0]);
   const vfloat high = v_lerp(light_map_node(maps, at + above, part[2]), light_map_node(maps, at + above + right, part[2]), part[0]);
   return v_lerp(low, high, part[1]) * v_set(1.0f / 65535.0f);
+}
+
+/* The part of light i that passes to the places x. */
+INLINE vfloat light_map_passing(CONSTANT stratus_light_arguments* a, GLOBAL const int* maps, int i, const vfloat x[3])
+{
+  vfloat q[3];
+  const vint face = light_map_place(a, i, x, q);
+  const vfloat lit = a->surface_at[i] >= 0 ? light_map_surfaces(a, maps, i, q, face) : v_set(1.0f);
+  return lit * light_map_matter(a, maps, i, q, face);
 }
 
 #endif

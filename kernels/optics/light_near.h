@@ -126,6 +126,12 @@ OUTLINE void RAY_NAME(light_near)(CONSTANT stratus_ray_cast_arguments* a, value_
         end[axis] = x[axis] + way[axis];
       }
     }
-    passing[i] = near * light_map_passing(&a->light, k->lights, i, end);
+    vfloat q[3];
+    vint face = light_map_place(&a->light, i, end, q);
+    passing[i] = near * light_map_matter(&a->light, k->lights, i, q, face);
+    if (a->light.surface_at[i] >= 0) {
+      face = light_map_place(&a->light, i, x, q);
+      passing[i] = passing[i] * light_map_surfaces(&a->light, k->lights, i, q, face);
+    }
   }
 }
