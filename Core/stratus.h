@@ -37,6 +37,7 @@
 #include "stratus/cloud.h"
 #include "stratus/color_map.h"
 #include "stratus/look.h"
+#include "stratus/annotation.h"
 #include "stratus/scenes.h"
 
 #endif

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "camera.h"
 
-#include "annotation.h"
-
 #include <algorithm>
 #include <cmath>
 
 namespace {
+constexpr double margin = 1.02; // of the window around what it shows
 
 // Finds the world bounds of the blocks that show anything, or of the whole volume where none does.
 void shown_bounds(const cli::context& core, const stratus_volume& volume, const stratus_transfer& transfer, double bounds[6])
@@ -86,7 +85,7 @@ stratus_camera place_camera(const context& core, const options& o, const stratus
   return place_camera(core, o, { { &volume, transfer } }, up);
 }
 
-stratus_camera place_camera(const context& core, const options& o, const std::vector<shown_volume>& shown, int up)
+stratus_camera place_camera(const context& core, const options& o, const std::vector<shown_volume>& shown, int up, const double* room)
 {
   const double degree = std::acos(-1.0) / 180.0;
   double bounds[6];
@@ -95,7 +94,7 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
   double eye[3];
   for (size_t n = 0; n < shown.size(); ++n) {
     double own[6];
-    if (o.axes) { // the box is seen as a whole
+    if (o.axes || o.coast) { // the box is seen as a whole
       core.check(stratus_volume_bounds(core, shown[n].volume, own), "bounds");
     } else {
       shown_bounds(core, *shown[n].volume, shown[n].transfer, own);
@@ -120,7 +119,7 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
     eye[a] = focal[a] + away * direction[a];
   }
   const double view_up[3] = { up == 0 ? 1.0 : 0.0, up == 1 ? 1.0 : 0.0, up == 2 ? 1.0 : 0.0 };
-  const double aspect = static_cast<double>(o.width) / o.height;
+  const double aspect = room ? (room[1] - room[0]) / (room[3] - room[2]) : static_cast<double>(o.width) / o.height;
   double wide;
   double high;
   fit(around, half[up], elevation, away, o.parallel, wide, high);
@@ -148,22 +147,15 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
     wide = std::max(-sides[0], sides[1]);
     high = std::max(-sides[2], sides[3]);
   }
-  const double room = o.axes ? 1.3 : 1.02; // leaves space for the numbers next to the box
-  const double bar = share_of_bar(o);
-  const double scale = room * std::max(high, wide / (aspect * (1.0 - bar))) / o.zoom;
-  // The camera moves to the right, so that the box is in the middle of the picture without the colour bar.
-  const double moved = bar * scale * aspect * (o.parallel ? 1.0 : away),
-               level = std::hypot(direction[(up + 1) % 3], direction[(up + 2) % 3]);
-  const double right[2] = { -direction[(up + 2) % 3] / level, direction[(up + 1) % 3] / level };
-  for (int a = 0; a < 2; ++a) {
-    eye[(up + 1 + a) % 3] += moved * right[a];
-    focal[(up + 1 + a) % 3] += moved * right[a];
-  }
+  const double scale = margin * std::max(high, wide / aspect) / o.zoom;
   stratus_camera camera;
   if (o.parallel) {
     core.check(stratus_camera_parallel(core, eye, focal, view_up, scale, aspect, &camera), "camera");
   } else {
     core.check(stratus_camera_perspective(core, eye, focal, view_up, 2.0 * std::atan(scale) / degree, aspect, &camera), "camera");
+  }
+  if (room) {
+    core.check(stratus_camera_in_room(core, &camera, o.width, o.height, room, &camera), "camera");
   }
   return camera;
 }

@@ -15,8 +15,10 @@ struct shown_volume {
   const stratus_volume* volume;
   stratus_transfer transfer;
 };
-// The same for several volumes.
-stratus_camera place_camera(const context& core, const options& o, const std::vector<shown_volume>& shown, int up);
+
+// The same for several volumes. room: left, right, bottom and top of the picture's part that contains the view, in pixels; null: all of it.
+stratus_camera place_camera(
+  const context& core, const options& o, const std::vector<shown_volume>& shown, int up, const double* room = nullptr);
 // Describes eye, direction, up, and angle or parallel scale in one line, with enough digits for another program to reproduce the view.
 std::string describe(const stratus_camera& camera);
 } // namespace cli

@@ -321,6 +321,24 @@ std::string axis_name_of(vtkAlgorithm* reader, int axis)
   return by_name ? by_name->GetNameOfAxis(axis) : "";
 }
 
+axis_about axis_about_of(vtkAlgorithm* reader, int axis)
+{
+  static const stratus_axis_kind kinds[] = { STRATUS_AXIS_NUMBER, STRATUS_AXIS_LONGITUDE, STRATUS_AXIS_LATITUDE, STRATUS_AXIS_LEVELS };
+  vtkStratusVariableReader* const by_name = vtkStratusVariableReader::SafeDownCast(reader);
+  axis_about result;
+  if (by_name) {
+    result.kind = kinds[by_name->GetKindOfAxis(axis)];
+    result.title = by_name->GetTitleOfAxis(axis);
+    result.units = by_name->GetFileUnitsOfAxis(axis);
+    result.scale = by_name->GetScaleOfAxis(axis);
+    for (int i = 0; i < by_name->GetNumberOfLevelsOfAxis(axis); ++i) {
+      result.levels.push_back(by_name->GetCoordinateOfLevel(axis, i));
+      result.levels.push_back(by_name->GetNumberOfLevel(axis, i));
+    }
+  }
+  return result;
+}
+
 bool is_netcdf(vtkAlgorithm* reader)
 {
   return reader->IsA("vtkStratusCFReader") || reader->IsA("vtkStratusUgridReader");

@@ -2,6 +2,8 @@
 // Chooses the reader of a file, one of VTK's or ours: by the extension, and by the content if the extension is ambiguous.
 #pragma once
 
+#include "stratus.h"
+
 #include <vtkAlgorithm.h>
 #include <vtkSmartPointer.h>
 
@@ -13,6 +15,14 @@ namespace cli {
 // How to read a file: the values of --array or --variable, --raw and --select. Empty: the first variable, at the first indices.
 struct reading_options {
   std::string variable, raw, select;
+};
+
+// The file's own numbers along an axis of the coordinates that are drawn.
+struct axis_about {
+  stratus_axis_kind kind = STRATUS_AXIS_NUMBER;
+  std::string title, units;   // "": unknown
+  double scale = 1.0;         // number = coordinate * scale
+  std::vector<double> levels; // of STRATUS_AXIS_LEVELS: pairs of coordinate and number
 };
 
 // The extension with its dot, in small letters; ".nii" for .nii.gz (.hdr.gz, .img.gz alike), and "controldict" for OpenFOAM's file of that
@@ -53,6 +63,8 @@ std::string choice_of(vtkAlgorithm* reader);
 // Whether a reader of variables reads netCDF.
 bool is_netcdf(vtkAlgorithm* reader);
 std::string axis_name_of(vtkAlgorithm* reader, int axis);
+// The file's own numbers along an axis, for labels; those of a reader of whole files are coordinates without a name.
+axis_about axis_about_of(vtkAlgorithm* reader, int axis);
 std::string axis_units_of(vtkAlgorithm* reader, int axis);
 std::string value_units_of(vtkAlgorithm* reader); // of the chosen variable
 // True where the reader does not read by variables. "wind.x" is there where "wind" is.

@@ -22,8 +22,8 @@ frame::frame(const options& o)
     throw usage(
       "--show samples is a picture for people, of another format than OpenEXR; '" + o.output + "' has the samples themselves without it");
   }
-  if (this->IsExr && (o.axes || o.color_bar || !o.caption.empty())) {
-    throw usage("an OpenEXR file has only values: leave out --axes, --color-bar and --caption");
+  if (this->IsExr && (o.axes || o.coast || o.color_bar || !o.caption.empty())) {
+    throw usage("an OpenEXR file has only values: leave out --axes, --coast, --color-bar and --caption");
   }
   if (!this->IsExr && this->Wanted.size() > 1) {
     throw usage("a picture shows one quantity, not " + std::to_string(this->Wanted.size()) + ": give an .exr for all, or one --quantity");
@@ -153,11 +153,11 @@ heat_scale frame::scale_of(size_t number) const
   return { low, high > low ? high : low + 1.0, title, units == "1" ? "" : units };
 }
 
-void frame::annotate(const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time)
+void frame::annotate(const context& core, const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time)
 {
   const bool shows_colors = !this->IsExr && !this->ShowsSamples && this->Wanted.empty();
   if (wish.any() && shows_colors) {
-    wish.draw(this->Rgba, this->Width, this->Height, place, look, time);
+    wish.draw(core, this->view(), place, look, time);
   }
 }
 

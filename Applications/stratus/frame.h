@@ -30,7 +30,7 @@ public:
   // Describes the samples per pixel in a line, or returns "" where they were not counted.
   std::string describe_samples() const;
   // Puts annotations around the picture, unless it shows other numbers than colours.
-  void annotate(const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time);
+  void annotate(const context& core, const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time);
   void write(output_file& file) const;
 
 private:

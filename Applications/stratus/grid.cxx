@@ -35,10 +35,10 @@ stratus_tetra_mode mode_of(const cli::options& o)
 
 namespace cli {
 
-stratus_camera place_camera(const context& core, const options& o, const mesh& m, const stratus_transfer& view)
+stratus_camera place_camera(const context& core, const options& o, const mesh& m, const stratus_transfer& view, const double* room)
 {
   const stratus_volume box = m.outline();
-  return place_camera(core, o, box, view, o.up.empty() ? 2 : o.up[0] - 'x');
+  return place_camera(core, o, { { &box, view } }, o.up.empty() ? 2 : o.up[0] - 'x', room);
 }
 
 } // namespace cli
@@ -90,7 +90,9 @@ void grid_drawing::look()
   this->Transfer = cli::make_transfer(this->Core, this->Mesh.values(this->up()), nullptr, o);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
-  this->Camera = cli::place_camera(this->Core, o, this->Mesh, view);
+  double room[4];
+  const bool moved = cli::annotation(o).find_room(this->Core, this->place(), this->Transfer, room);
+  this->Camera = cli::place_camera(this->Core, o, this->Mesh, view, moved ? room : nullptr);
 }
 
 std::pair<double, double> grid_drawing::range() const

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command line draws a volume to a picture file. `stratus --help` describes it.
+#include "annotation.h"
 #include "colors.h"
 #include "compare.h"
 #include "grid.h"
@@ -122,6 +123,9 @@ void info(const cli::options& given)
   }
   if (!in.grid().empty()) {
     row("coordinates", in.grid());
+  }
+  if (o.about.earth) {
+    row("axes", cli::describe_axes(o, (data.image ? data.image : data.grid)->GetBounds()));
   }
   print_time(in);
   if (in.steps() > 1) {

@@ -90,7 +90,8 @@ Data and appearance
   --exaggerate F          multiply heights (along the upward axis) by F (default 1; of a flat netCDF file on the Earth as much as makes its
                           height a fifth of its width, which the picture says)
   --log                   map colours, and a guessed opacity, to the logarithm of the value, over at most four decades
-  --axes                  draw a box around the data, with its coordinates
+  --axes                  draw a box around the data, with the file's coordinates: degrees, m or km, depths, pressures
+  --coast                 draw coastlines at the bottom of data with longitudes and latitudes, of depths at the top
   --color-bar             draw the colours of values, with the variable's name and unit
   --caption TEXT          draw a line of text at the top; {time} is the step's time
   --nearest               nearest instead of linear interpolation
@@ -592,6 +593,7 @@ constexpr struct {
   { "--nearest", &options::nearest },
   { "--log", &options::logarithmic },
   { "--axes", &options::axes },
+  { "--coast", &options::coast },
   { "--color-bar", &options::color_bar },
   { "--shade", &options::shade },
   { "--scatter", &options::scatter },
@@ -783,9 +785,9 @@ void check_complete(const options& o)
       throw usage(o.command + ": which INPUT?");
     }
     check_output(o);
-    if ((o.shows_samples || !o.quantities.empty()) && (o.axes || o.color_bar || !o.caption.empty())) {
+    if ((o.shows_samples || !o.quantities.empty()) && (o.axes || o.coast || o.color_bar || !o.caption.empty())) {
       throw usage(std::string(o.shows_samples ? "--show samples" : "--quantity") +
-        " is no picture of values: leave out --axes, --color-bar and --caption");
+        " is no picture of values: leave out --axes, --coast, --color-bar and --caption");
     }
     if (o.shows_samples && !o.quantities.empty()) {
       throw usage("--show samples and --quantity are two pictures: leave out one");

@@ -5,6 +5,7 @@
 #include "reading.h"
 #include "stratus.h"
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -20,7 +21,8 @@ struct companion {
 // Names and units of the drawn variable and its grid in the file, for defaults.
 struct data_about {
   bool earth = false; // a netCDF file whose coordinates are lengths or degrees
-  std::string name, standard_name, units;
+  std::string name, standard_name, units = {};
+  std::array<axis_about, 3> axes = {};
 };
 
 struct options {
@@ -60,6 +62,7 @@ struct options {
   data_about about;
   bool logarithmic = false;
   bool axes = false;
+  bool coast = false;
   bool color_bar = false;
   std::string caption; // {time} is the step's
   bool parallel = false;

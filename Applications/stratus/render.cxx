@@ -43,6 +43,9 @@ std::string set_by_data(
     water->set_function(o, grid);
   }
   cli::set_heights(o, in, grid);
+  if (o.coast && (o.about.axes[0].kind != STRATUS_AXIS_LONGITUDE || o.about.axes[1].kind != STRATUS_AXIS_LATITUDE)) {
+    throw cli::usage("--coast: '" + o.source + "' has no longitudes and latitudes along x and y, as netCDF files may have");
+  }
   return cli::set_sun(o, given, in, grid, step);
 }
 
@@ -56,16 +59,10 @@ cli::routed read_apart(cli::series& in, size_t step, const cli::options& o, cons
 }
 
 // Draws the requested annotations around the volume.
-void annotate(cli::frame& frame, const cli::options& o, const cli::drawing& drawing, const cli::series* in, size_t step)
+void annotate(
+  const cli::context& core, cli::frame& frame, const cli::options& o, const cli::drawing& drawing, const cli::series* in, size_t step)
 {
-  cli::scene_frame place = drawing.place();
-  if (in) {
-    for (int axis = 0; axis < 3; ++axis) {
-      place.axes[static_cast<size_t>(axis)] = { in->axis_name(axis), in->axis_units(axis) };
-    }
-    place.title += in->value_units().empty() || in->value_units() == "1" ? "" : " (" + in->value_units() + ")";
-  }
-  frame.annotate(cli::annotation(o), place, drawing.functions(), in ? in->time_of(step) : "");
+  frame.annotate(core, cli::annotation(o), drawing.place(), drawing.functions(), in ? in->time_of(step) : "");
 }
 
 // Of several INPUTs, whose values may have several units, only lengths have one.
@@ -121,7 +118,7 @@ void render_one(const cli::options& given, const cli::routed& data, const cli::s
     set_units(frame, *drawing, data, in, o);
     drawing->measure(frame.numbers());
   }
-  annotate(frame, o, *drawing, in, step);
+  annotate(core, frame, o, *drawing, in, step);
   std::printf("%s\n", o.source.c_str());
   print_reading(o, in, water, sun);
   if (!time.empty()) {
@@ -235,7 +232,7 @@ void render_film(const cli::options& given, cli::series& in, const cli::cloud* w
         set_units(frame, *drawing, data, &in, o);
         drawing->measure(frame.numbers());
       }
-      annotate(frame, o, *drawing, &in, step);
+      annotate(core, frame, o, *drawing, &in, step);
       cli::output_file out(frame_name(o.frames, step));
       frame.write(out);
       drawing->judge();

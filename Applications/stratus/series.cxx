@@ -316,6 +316,7 @@ data_about series::about() const
   result.earth = this->Reader && is_netcdf(this->Reader);
   for (int axis = 0; axis < 3; ++axis) {
     result.earth = result.earth && this->axis_units(axis) == "m";
+    result.axes[static_cast<size_t>(axis)] = this->Reader ? axis_about_of(this->Reader, axis) : axis_about();
   }
   for (const variable_name& one : this->names()) {
     if (result.name.empty() && (this->Variable.empty() || one.name == this->Variable)) {

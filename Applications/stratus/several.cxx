@@ -92,7 +92,7 @@ void several_drawing::take(const cli::routed& data)
     o.opacity = companion.opacity;
     o.color = companion.color;
     o.unit_distance = companion.unit_distance;
-    o.about = { o.about.earth, o.array, "", "" };
+    o.about = { o.about.earth, o.array, "" };
     this->take_member(o, cli::is_scene(o.source) ? cli::routed() : cli::route(cli::read_data(o.source, o.reading()), o.source, o.array));
   }
 }
@@ -148,7 +148,9 @@ void several_drawing::look()
     this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function of '" + one.o.source + "'");
     shown.push_back({ &one.shape(), view });
   }
-  this->Camera = cli::place_camera(this->Core, this->Options, shown, this->Up);
+  double room[4];
+  const bool moved = cli::annotation(this->Options).find_room(this->Core, this->place(), this->functions(), room);
+  this->Camera = cli::place_camera(this->Core, this->Options, shown, this->Up, moved ? room : nullptr);
 }
 
 std::pair<double, double> several_drawing::range() const

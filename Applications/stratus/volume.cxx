@@ -124,7 +124,9 @@ void volume_drawing::look()
   for (const stratus_volume* volume : this->all()) {
     shown.push_back({ volume, view });
   }
-  this->Camera = cli::place_camera(this->Core, o, shown, this->Up);
+  double room[4];
+  const bool moved = cli::annotation(o).find_room(this->Core, this->place(), this->Transfer, room);
+  this->Camera = cli::place_camera(this->Core, o, shown, this->Up, moved ? room : nullptr);
 }
 
 std::pair<double, double> volume_drawing::range() const

@@ -7,6 +7,7 @@
 #include "vtkStratusNetCDFFile.h"
 #include "vtkStratusNetCDFLayout.h"
 #include "vtkStratusUnits.h"
+#include "vtkStratusVariableReader.h"
 
 #include <array>
 #include <memory>
@@ -40,6 +41,8 @@ public:
   // The name of an axis of the points' coordinates and their unit, "" if it has none.
   const std::string& GetAxisName(int axis) const { return this->Names[static_cast<size_t>(axis)]; }
   const std::string& GetAxisUnits(int axis) const { return this->Units[static_cast<size_t>(axis)]; }
+  // The file's own numbers along an axis, for labels.
+  const vtkStratusFileAxis& GetFileAxis(int axis) const { return this->FileAxes[static_cast<size_t>(axis)]; }
   bool IsSheet() const { return this->Flat && !this->Metres; } // x and y are in metres, and z is not
   int GetTime() const { return this->Layout.GetTime(); }       // a dimension, or -1
   const Variable& GetVariable() const { return this->Of; }
@@ -71,6 +74,9 @@ private:
   void ConvertUnits();
   void NameAxes(const std::array<const Variable*, 2>& from, const std::array<vtkStratusUnit, 2>& units, bool degrees);
   void ConvertAxis(int axis);
+  std::string TitleOf(const Variable* coordinate, const std::string& usual) const;
+  void DescribeHorizontal(const std::array<const Variable*, 2>& from, bool degrees);
+  void DescribeVertical();
   double MiddleLatitude() const;
   std::vector<double> ReadHorizontal(int axis, size_t step, std::array<size_t, 3>& strides) const;
   void HideTorn(const std::vector<double>& longitudes, const std::array<size_t, 3>& strides, std::vector<char>& hidden) const;
@@ -91,6 +97,7 @@ private:
   bool Metres = true, Flat = false;                 // all axes are in metres; x and y are
   std::string Description;
   std::array<std::string, 3> Names, Units; // of the points' coordinates
+  std::array<vtkStratusFileAxis, 3> FileAxes;
 };
 
 #endif

@@ -102,6 +102,7 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
   for (int a = 0; a < 3; ++a) {
     this->AxisNames[a] = grid.GetAxisName(a);
     this->AxisUnits[a] = grid.GetAxisUnits(a);
+    this->FileAxes[a] = grid.GetFileAxis(a);
   }
   return grid.IsCurved() ? "vtkStructuredGrid" : grid.IsUniform() ? "vtkImageData" : "vtkRectilinearGrid";
 }

@@ -135,6 +135,12 @@ bool vtkStratusCFVertical::FindWrf()
   return true;
 }
 
+bool vtkStratusCFVertical::IsDepth() const
+{
+  const bool in_sea = this->Kind == Formula && std::string(this->Of->Name).compare(0, 6, "ocean_") == 0;
+  return in_sea || ((this->Kind == Axis || this->Kind == Field) && this->Source && this->Down && this->Unit.IsLength());
+}
+
 std::string vtkStratusCFVertical::Describe() const
 {
   if (this->Kind == Wrf) {

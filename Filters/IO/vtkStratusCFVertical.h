@@ -25,6 +25,12 @@ public:
   bool IsCurved() const { return this->Kind != Axis; }
   bool IsLength() const { return this->Kind == Formula || this->Kind == Wrf || this->Unit.IsLength() || this->Unit.IsPressure(); }
   bool IsWrf() const { return this->Kind == Wrf; }
+  bool IsField() const { return this->Kind == Field; }
+  bool IsSea() const { return this->Sea; }
+  // True if heights are a depth's, below 0, in metres.
+  bool IsDepth() const;
+  const Variable* GetSource() const { return this->Source; } // levels or field, or nullptr
+  const vtkStratusUnit& GetUnit() const { return this->Unit; }
   std::string Describe() const;
   double Convert(double value) const;
   // Writes the heights of all points, x fastest, `stride` apart. A point without a height gets NaN.

@@ -24,6 +24,8 @@ public:
   bool IsOnLayers(const Variable& variable) const;
   bool IsOnBorders(const Variable& variable) const;
   int GetTime() const { return this->Time; } // a dimension, or -1
+  // True if heights are a depth's, below 0.
+  bool IsDepth() const { return this->Kind == Sigma || (this->Kind == Levels && this->Down && this->Unit.IsLength()); }
   std::string Describe() const;
   bool Uses(const Variable& variable) const; // as a height
 

@@ -153,6 +153,14 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
     this->AxisNames[a] = a < 2 ? mesh.GetAxisName(a) : "height";
   }
   this->AxisUnits[2] = "m";
+  for (int a = 0; a < 2 && mesh.IsInDegrees(); ++a) {
+    this->FileAxes[a] = { a == 0 ? AXIS_OF_LONGITUDES : AXIS_OF_LATITUDES, a == 0 ? "longitude" : "latitude", "degrees",
+      1.0 / mesh.GetFactor(a), {} };
+  }
+  if (layers.IsDepth()) {
+    this->FileAxes[2].Title = "depth";
+    this->FileAxes[2].Scale = -1.0;
+  }
   this->Description = mesh.Describe() + "; " + layers.Describe() + mesh.DescribeOthers(chosen) + file.DescribeValues(chosen);
   const int time = mesh.FindTime(chosen) >= 0 ? mesh.FindTime(chosen) : layers.GetTime();
   if (time >= 0) {

@@ -100,6 +100,41 @@ const char* vtkStratusVariableReader::GetUnitsOfAxis(int axis)
   return axis < 0 || axis > 2 ? "" : this->AxisUnits[axis].empty() ? this->LengthUnits.c_str() : this->AxisUnits[axis].c_str();
 }
 
+int vtkStratusVariableReader::GetKindOfAxis(int axis)
+{
+  return axis >= 0 && axis < 3 ? this->FileAxes[axis].Kind : AXIS_OF_NUMBERS;
+}
+
+const char* vtkStratusVariableReader::GetTitleOfAxis(int axis)
+{
+  return axis < 0 || axis > 2 || this->FileAxes[axis].Title.empty() ? this->GetNameOfAxis(axis) : this->FileAxes[axis].Title.c_str();
+}
+
+const char* vtkStratusVariableReader::GetFileUnitsOfAxis(int axis)
+{
+  return axis < 0 || axis > 2 || this->FileAxes[axis].Units.empty() ? this->GetUnitsOfAxis(axis) : this->FileAxes[axis].Units.c_str();
+}
+
+double vtkStratusVariableReader::GetScaleOfAxis(int axis)
+{
+  return axis >= 0 && axis < 3 ? this->FileAxes[axis].Scale : 1.0;
+}
+
+int vtkStratusVariableReader::GetNumberOfLevelsOfAxis(int axis)
+{
+  return axis >= 0 && axis < 3 ? static_cast<int>(this->FileAxes[axis].Levels.size() / 2) : 0;
+}
+
+double vtkStratusVariableReader::GetCoordinateOfLevel(int axis, int level)
+{
+  return level >= 0 && level < this->GetNumberOfLevelsOfAxis(axis) ? this->FileAxes[axis].Levels[2 * static_cast<size_t>(level)] : 0.0;
+}
+
+double vtkStratusVariableReader::GetNumberOfLevel(int axis, int level)
+{
+  return level >= 0 && level < this->GetNumberOfLevelsOfAxis(axis) ? this->FileAxes[axis].Levels[2 * static_cast<size_t>(level) + 1] : 0.0;
+}
+
 const char* vtkStratusVariableReader::GetDescription()
 {
   return this->Description.c_str();
@@ -137,6 +172,7 @@ bool vtkStratusVariableReader::Look()
   for (int axis = 0; axis < 3; ++axis) {
     this->AxisNames[axis].clear();
     this->AxisUnits[axis].clear();
+    this->FileAxes[axis] = vtkStratusFileAxis();
   }
   this->SetErrorCode(vtkErrorCode::NoError);
   if (!this->FileName || !*this->FileName) {

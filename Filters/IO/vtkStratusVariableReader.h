@@ -24,6 +24,16 @@
 
 class vtkStringArray;
 
+#ifndef __VTK_WRAP__
+// The file's numbers along an axis: number = coordinate * Scale, or pairs of both.
+struct vtkStratusFileAxis {
+  int Kind = 0;
+  std::string Title, Units;
+  double Scale = 1.0;
+  std::vector<double> Levels;
+};
+#endif
+
 class STRATUSFILTERSIO_EXPORT vtkStratusVariableReader : public vtkDataSetAlgorithm
 {
 public:
@@ -87,6 +97,27 @@ public:
   //@}
 
   /**
+   * What the file's own numbers of an axis are: numbers, degrees of longitude or latitude, or levels, such as pressures.
+   */
+  enum AxisKind { AXIS_OF_NUMBERS, AXIS_OF_LONGITUDES, AXIS_OF_LATITUDES, AXIS_OF_LEVELS };
+
+  //@{
+  /**
+   * Get the numbers that the file has along an axis, 0 to 2, of the output's coordinates, for labels of axes: their kind, what they are
+   * (the long_name or standard_name of the file's coordinate, such as "air pressure"), and their unit ("hPa"). A number is the output's
+   * coordinate times the scale, which is below 0 for depths. Only levels are pairs of an output's coordinate and a number instead. After
+   * UpdateInformation(). For another axis, numbers are the output's coordinates.
+   */
+  int GetKindOfAxis(int axis);
+  const char* GetTitleOfAxis(int axis);
+  const char* GetFileUnitsOfAxis(int axis);
+  double GetScaleOfAxis(int axis);
+  int GetNumberOfLevelsOfAxis(int axis);
+  double GetCoordinateOfLevel(int axis, int level);
+  double GetNumberOfLevel(int axis, int level);
+  //@}
+
+  /**
    * Get a sentence on how coordinates became a grid, "" before the first update: which variables they are, and how their
    * units were converted.
    */
@@ -122,7 +153,10 @@ protected:
   std::string Description;
   std::string LengthUnits;
   std::string AxisNames[3], AxisUnits[3]; // units: "" as LengthUnits
-  int WholeExtent[6];                     // of an output with an extent
+#ifndef __VTK_WRAP__
+  vtkStratusFileAxis FileAxes[3];
+#endif
+  int WholeExtent[6]; // of an output with an extent
 
 private:
   vtkStratusVariableReader(const vtkStratusVariableReader&) = delete;

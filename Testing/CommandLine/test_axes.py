@@ -106,12 +106,9 @@ same(drawn(short, "--axes"), drawn(bare("metre", ("height (m)", "yh (m)", "xh (m
 changed = write("changed", (("zh", height, metres), ("yh", north, metres), ("other", east, metres)))
 check((numpy.abs(drawn("flat.nc", "--axes") - drawn(changed, "--axes")) > 60).sum() > 50, "the title of x is its coordinate's name")
 
-# Longitudes and latitudes become distances to the east and north, and WRF's levels heights.
+# Places are on a sphere, and WRF's levels heights, but axes have the file's own numbers.
 lon, lat, top = numpy.linspace(-97, -96.3, nx), numpy.linspace(40, 40.5, ny), numpy.linspace(0, 12e3, nz + 1)
-degree = 6371 * numpy.pi / 180
-x, y = lon * degree * numpy.cos(numpy.radians(40.25)), lat * degree
 z = .5 * (top[1:] + top[:-1])
-plain = bare("plain", ("height (km)", "north (km)", "east (km)"), z / 1000, y, x)
 globe = write("globe", (("zh", z, metres), ("lat", lat, {"units": "degrees_north"}), ("lon", lon, {"units": "degrees_east"})))
 stack = numpy.ones((1, ny, nx))
 geopotential = numpy.broadcast_to(9.81 * top[:, None, None], (nz + 1, ny, nx))
@@ -120,9 +117,59 @@ wrf = write("wrf", (("bottom_top", z, None), ("south_north", lat, None), ("west_
     ("XLONG", levels[1:], numpy.broadcast_to(lon, (ny, nx)), {"units": "degree_east"}),
     ("XLAT", levels[1:], numpy.broadcast_to(lat[:, None], (ny, nx)), {"units": "degree_north"}),
     ("PH", levels, 0 * geopotential, {"units": "m2 s-2"}), ("PHB", levels, geopotential, {"units": "m2 s-2"})))
-expected = drawn(plain, "--axes")
-same(drawn(globe, "--axes"), expected, "degrees are distances to the east and north")
-same(drawn(wrf, "--axes"), expected, "WRF's axes have names and units")
+expected = drawn(globe, "--axes")
+same(drawn(wrf, "--axes"), expected, "WRF's axes are longitude, latitude and height")
+north_pole = write("north pole", (("zh", z, metres), ("rlat", lat, {"units": "degrees", "standard_name": "grid_latitude"}),
+    ("rlon", lon, {"units": "degrees", "standard_name": "grid_longitude"})))
+check((numpy.abs(drawn(north_pole, "--axes") - expected) > 60).sum() > 200, "degrees about another pole are not east and north")
+
+
+def axes_of(path):
+    """The row "axes" of info."""
+    done = run("info", path)
+    rows = [line.split(None, 1)[1] for line in done.stdout.splitlines() if line.startswith("  axes")]
+    check(done.returncode == 0 and len(rows) == 1, "%s has one row of axes: %s" % (path, done.stdout))
+    return rows[0] if rows else ""
+
+
+def has_axes(path, expected):
+    found = axes_of(path)
+    check(found == expected, "%s: '%s', not '%s'" % (path, found, expected))
+
+
+degrees = (("lat", lat, {"units": "degrees_north", "long_name": "Latitude"}), ("lon", lon, {"units": "degrees_east"}))
+west = "longitude -97 .. -96.3 degrees, Latitude 40 .. 40.5 degrees, "
+has_axes(globe, "longitude -97 .. -96.3 degrees, latitude 40 .. 40.5 degrees, height 1000 .. 11000 m")
+has_axes(north_pole, "grid longitude -97 .. -96.3 degrees, grid latitude 40 .. 40.5 degrees, height 1000 .. 11000 m")
+has_axes("flat.nc", "xh -10000 .. 20000 m, yh 0 .. 25000 m, height 0 .. 500 m")
+depths = numpy.array([.5, 10, 100, 1000, 3000, 5700])
+deep = write("depths", (("deptht", depths, {"units": "m", "positive": "down", "long_name": "Vertical T levels"}), *degrees))
+has_axes(deep, west + "Vertical T levels 5700 .. 0.5 m")
+sentence = write("sentence", (("depth", depths / 1000, {"units": "km", "standard_name": "depth",
+    "long_name": "depth below the surface of the sea, at points of temperature"}), *degrees))
+has_axes(sentence, west + "depth 5700 .. 0.5 m")
+pressures = numpy.array([100000, 85000, 70000, 50000, 25000, 10000])
+pressure = write("pressure", (("plev", pressures, {"units": "Pa", "standard_name": "air_pressure"}), *degrees))
+has_axes(pressure, west + "air pressure 1000 .. 100 hPa")
+turned = write("turned", (("plev", pressures[::-1] / 100, {"units": "hPa", "standard_name": "air_pressure"}), *degrees))
+has_axes(turned, west + "air pressure 1000 .. 100 hPa")
+same(drawn(turned, "--axes"), drawn(pressure, "--axes"), "levels of pressure from above or below, in Pa or hPa")
+check((numpy.abs(drawn(deep, "--axes") - drawn(deep, "--axes", "--exaggerate", "2")) > 60).sum() > 50, "heights can be exaggerated")
+
+# Coastlines: at the bottom of the air, and at the top of the sea. Europe is there from either side of the meridian where longitudes jump.
+wide = (("lat", numpy.linspace(30, 65, ny), {"units": "degrees_north"}), ("lon", numpy.linspace(-20, 40, nx), {"units": "degrees_east"}))
+beyond = (wide[0], ("lon", numpy.linspace(340, 400, nx), {"units": "degrees_east"}))
+air = write("air", (("zh", z, metres), *wide))
+lines = drawn(air, "--coast", "--parallel", "--elevation", "90", "--azimuth", "-90")
+check((lines > 60).sum() > 1000, "--coast draws the coast of Europe")
+same(drawn(write("air beyond", (("zh", z, metres), *beyond)), "--coast", "--parallel", "--elevation", "90", "--azimuth", "-90"), lines,
+    "longitudes of 340 to 400 degrees")
+sea = write("sea", (("depth", depths, {"units": "m", "positive": "down"}), *wide))
+same(drawn(sea, "--coast", "--parallel", "--elevation", "90", "--azimuth", "-90"), lines, "from above, air and sea have one coast")
+side = [numpy.nonzero(drawn(path, "--coast", "--parallel", "--elevation", "0", "--exaggerate", "100"))[0].mean() for path in (air, sea)]
+check(side[0] < 250 and side[1] > 262, "the coast is at the bottom of the air and at the top of the sea: rows %s" % side)
+refused = run("render", "flat.nc", "-o", "out.png", "--coast")
+check(refused.returncode == 2 and "'flat.nc' has no longitudes and latitudes" in refused.stdout, "--coast without degrees: " + refused.stdout)
 
 # Levels that are only numbers are drawn, with one line that says this.
 numbers = write("numbers", (("lev", numpy.arange(nz) + 1.0, {}), ("lat", lat, {"units": "degrees_north"}),

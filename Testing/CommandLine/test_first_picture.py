@@ -190,12 +190,21 @@ def test_plumes_and_outliers():
     if not 0.02 < share < 0.04:
         fail(f"the plume fills {share:.3f} of the volume")
     words = ("--background", "black", "--azimuth", "-90", "--elevation", "89.9", "--parallel", "--axes")
-    inside, beside = (slice(36, 58), slice(38, 60)), (slice(36, 58), slice(66, 84))  # of the plume and next to it, within the box
+    name = ocean("plume.nc", values, units="kg m-3")
+    full, none = (picture(name, "--opacity", f"0:{alpha}", "--color", "gray", *words)[1] for alpha in (1, 0))
+    rows, columns = numpy.nonzero((full != none).any(axis=2))
+
+    def part(places, low, high):
+        """Of the box, from its upper left corner."""
+        size = places.max() - places.min()
+        return slice(round(places.min() + low * size), round(places.min() + high * size))
+    inside = part(rows, 0.5, 0.7), part(columns, 0.2, 0.4)  # of the plume, and next to it
+    beside = part(rows, 0.5, 0.7), part(columns, 0.6, 0.8)
 
     def levels(name):
         image = picture(name, *words)[1][..., :3].max(axis=2)
         return int(image[inside].max()), int(image[beside].max())
-    plume = levels(ocean("plume.nc", values, units="kg m-3"))
+    plume = levels(name)
     if plume[0] < 100 or plume[1] > 8:
         fail(f"the plume is not seen: {plume[0]} where it is, {plume[1]} where it is not")
     some = numpy.random.default_rng(3).random(values.shape) < 0.8e-3
