@@ -370,6 +370,34 @@ static void clouds(void)
   REFUSES(stratus_sun_direction(context, 0, 0, 2, NULL));
 }
 
+static void annotations(const small_scene* scene)
+{
+  const stratus_annotation annotation = stratus_annotation_default();
+  const stratus_axis axis = stratus_axis_default();
+  stratus_axis_tick ticks[STRATUS_AXIS_TICKS];
+  stratus_camera camera = scene->camera;
+  float rgba[4] = { 0 };
+  stratus_image image = { .width = 1, .height = 1, .rgba = rgba };
+  double room[4] = { 0, 1, 0, 1 };
+  int count = 0;
+  IS_SILENT(stratus_axis_find_ticks(NULL, &axis, 0, 0, 1, 4, ticks, &count));
+  REFUSES(stratus_axis_find_ticks(context, NULL, 0, 0, 1, 4, ticks, &count));
+  REFUSES(stratus_axis_find_ticks(context, &axis, 0, 0, 1, 4, NULL, &count));
+  REFUSES(stratus_axis_find_ticks(context, &axis, 0, 0, 1, 4, ticks, NULL));
+  IS_SILENT(stratus_annotation_room(NULL, &annotation, 1, 1, room));
+  REFUSES(stratus_annotation_room(context, NULL, 1, 1, room));
+  REFUSES(stratus_annotation_room(context, &annotation, 1, 1, NULL));
+  IS_SILENT(stratus_camera_in_room(NULL, &camera, 1, 1, room, &camera));
+  REFUSES(stratus_camera_in_room(context, NULL, 1, 1, room, &camera));
+  REFUSES(stratus_camera_in_room(context, &camera, 1, 1, NULL, &camera));
+  REFUSES(stratus_camera_in_room(context, &camera, 1, 1, room, NULL));
+  IS_SILENT(stratus_annotation_draw(NULL, &annotation, &camera, &image, NULL, 0, NULL));
+  REFUSES(stratus_annotation_draw(context, NULL, &camera, &image, NULL, 0, NULL));
+  REFUSES(stratus_annotation_draw(context, &annotation, NULL, &image, NULL, 0, NULL));
+  REFUSES(stratus_annotation_draw(context, &annotation, &camera, NULL, NULL, 0, NULL));
+  REFUSES(stratus_annotation_draw(context, &annotation, &camera, &image, NULL, 1, NULL));
+}
+
 static void color_maps(void)
 {
   static double points[4 * STRATUS_COLOR_MAP_COLORS];
@@ -697,6 +725,7 @@ static void no_public_function_falls_over_null(void** state)
   ray_casters(&scene);
   clouds();
   color_maps();
+  annotations(&scene);
   looks(&scene);
   path_tracers(&scene);
   frustums(&scene);
