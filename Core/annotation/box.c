@@ -141,6 +141,8 @@ static bool keep_apart(const stratus_sheet* sheet, const edge* where, const stra
       last = text;
       last.left -= gap;
       last.right += gap;
+      last.bottom -= gap / 2;
+      last.top += gap / 2;
     }
   }
   return true;

@@ -76,7 +76,8 @@ class Volume:
         average_range: Sequence[float] | None = ..., jitter: bool = ..., audit: bool = ..., opaque_depth: ArrayLike | None = ...,
         progress: _Progress = ..., dependent: bool = ..., weights: float | Sequence[float] | None = ..., mean_components: bool = ...,
         labels: ArrayLike | None = ..., looks: dict[int, dict[str, Any]] | None = ..., function_2d: dict[str, Any] | None = ...,
-        surface: dict[str, Any] | None = ..., quantities: _Quantities = ..., threshold: float = ...) -> Rendering: ...
+        surface: dict[str, Any] | None = ..., quantities: _Quantities = ..., threshold: float = ..., show_axes: bool = ...,
+        color_bar: bool = ..., caption: str | None = ..., coast: bool = ..., ink: float = ...) -> Rendering: ...
 
 class Tetrahedra:
     context: Context
@@ -91,7 +92,8 @@ class Tetrahedra:
         contours: float | Sequence[float] | None = ..., crop: Sequence[float] | None = ..., clip_planes: Sequence[Sequence[float]] | None = ...,
         average_range: Sequence[float] | None = ..., opaque_depth: ArrayLike | None = ..., progress: _Progress = ..., dependent: bool = ...,
         weights: float | Sequence[float] | None = ..., mean_components: bool = ...,
-        surface: dict[str, Any] | None = ..., quantities: _Quantities = ..., threshold: float = ...) -> Rendering: ...
+        surface: dict[str, Any] | None = ..., quantities: _Quantities = ..., threshold: float = ..., show_axes: bool = ...,
+        color_bar: bool = ..., caption: str | None = ..., coast: bool = ..., ink: float = ...) -> Rendering: ...
 
 class Tree:
     context: Context

@@ -7,6 +7,9 @@ from ._values import background_color, number, positive
 from ._volume import Volume
 
 
+_OF_DATA = ("spacing", "origin", "axes", "scalars", "component", "device", "threads", "matrix", "exaggerate")
+
+
 def drawn_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, exaggerate=None):
     """What draws the data: a Volume or Tetrahedra."""
     if isinstance(data, (Volume, Tetrahedra)):
@@ -82,6 +85,12 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
                    NaN where a ray has no such number. Of the values of the first component, whatever the mode and the functions. Rays are
                    those of the picture: of heights that are exaggerated, exaggerate=1 has true directions
     threshold      of the transmittance, above 0 and below 1; default 0.5
+    show_axes      True: a box around the data, with the numbers of an xarray.DataArray's coordinates (degrees, depths, pressures at their levels),
+                   or of the world if there are none or a matrix turns them. Cameras of azimuth, elevation and zoom leave room for text
+    color_bar      True: the colours of the values of the first component, with their name and unit
+    caption        a text at the top, whose lines break to fit
+    coast          True: coastlines of 1:110 million, at the bottom of data with longitudes and latitudes, of depths at the top
+    ink            grey of lines and text, 0..1; default 0.9
     progress       function of a stage's name and a fraction in 0..1; a true result, an exception, or Ctrl+C ends the call.
                    Or a bar of tqdm's protocol
 
@@ -96,12 +105,21 @@ def show(data, opacity=None, color=None, size=(640, 480), camera=None, backgroun
     """Draws a volume and returns a Picture, an array (height, width, 4) of bytes that notebooks show.
 
     background     (r, g, b) in 0..1, or None for transparent
+    caption        as in `render`; the factor of heights that are exaggerated follows it. "": no text at all
+    ink            default: by the background
     Everything else is as in `render`. The picture's `caption` names the factor of heights that are exaggerated.
     """
     background = background_color(background)
-    rendering = render(data, opacity, color, size, camera, **options)
-    picture, factor = paint(rendering.rgba, background), rendering.counters.get("exaggeration", 1.0)
-    picture.caption = "" if factor == 1 else f"heights x {factor:.15g}"
+    drawn = drawn_of(data, **{name: options.pop(name) for name in _OF_DATA if name in options})
+    factor = getattr(drawn, "exaggeration", 1.0)
+    heights = "" if factor == 1 else f"heights x {factor:.15g}"
+    if options.get("caption") is None and heights:
+        options["caption"] = heights
+    elif options.get("caption") and heights:
+        options["caption"] += ", " + heights
+    options.setdefault("ink", 0.5 if background is None else 0.1 if sum(background) > 1.2 else 0.9)
+    picture = paint(drawn.render(opacity, color, size, camera, **options).rgba, background)
+    picture.caption = heights
     return picture
 
 

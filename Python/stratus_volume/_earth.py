@@ -6,6 +6,7 @@ import ctypes
 import numpy
 
 from . import _declarations as c
+from ._annotation import Axis
 from ._core import address, library
 from ._look import _METRES
 
@@ -61,6 +62,47 @@ def places_of(context, names, coordinates):
     else:
         return None
     return (x, y, z), one or 1.0
+
+
+_TITLE = 32  # letters of a long_name that is no sentence
+
+
+def _title(coordinate, usual):
+    name = str(coordinate.attrs.get("long_name", ""))
+    if not name or len(name) > _TITLE:
+        name = str(coordinate.attrs.get("standard_name", "")).replace("_", " ")
+    return name or usual
+
+
+def axes_of(names, coordinates, places, earth):
+    """The coordinates' own numbers along x, y and z, for labels.
+
+    names, coordinates, places: of x, y and z; places are along the axes, ascending or descending
+    """
+    units = [_units(each) for each in coordinates]
+    numbers = [numpy.asarray(each.values, numpy.float64) for each in coordinates]
+    result = []
+    for axis in range(3):
+        coordinate, unit, kind = coordinates[axis], units[axis], "number"
+        if earth and axis < 2 and unit.lower().startswith("degree"):
+            north = numpy.radians(numbers[1])
+            metres = numpy.radians(_RADIUS) * (numpy.cos(0.5 * (north.min() + north.max())) if axis == 0 else 1.0)
+            kind = ("longitude", "latitude")[axis]
+            if str(coordinate.attrs.get("standard_name", "")).startswith("grid_"):  # about another pole
+                kind = "number"
+            result.append(Axis(_title(coordinate, ("longitude", "latitude")[axis]), "degrees", 1 / metres, kind))
+        elif earth and unit in _LENGTHS:
+            down = axis == 2 and is_down(names[2], coordinate)
+            kept = len(set(units)) == 1  # lengths that all have one unit keep it
+            result.append(Axis(_title(coordinate, names[axis]), unit if kept else "m", -1.0 if down else 1.0))
+        elif earth and unit in _PRESSURES:
+            levels = numbers[axis] * _PRESSURES[unit] / 100
+            result.append(Axis(_title(coordinate, names[axis]), "hPa", kind="levels", levels=list(zip(places[axis], levels))))
+        elif numpy.array_equal(places[axis], numbers[axis]):
+            result.append(Axis(_title(coordinate, names[axis]), unit))
+        else:  # places are in another unit, from another origin
+            result.append(Axis(_title(coordinate, names[axis]), unit, kind="levels", levels=list(zip(places[axis], numbers[axis]))))
+    return result
 
 
 def height_factor(bounds):

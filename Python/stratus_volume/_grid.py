@@ -24,6 +24,7 @@ class Grid:
         self.own, self.matrix = own, None
         # Of an xarray.DataArray: what it says of its variable, whether its places are on the Earth, and the metres of their unit.
         self.about, self.earth, self.metres = None, False, None
+        self.axes = None  # three Axis; None: places are the numbers
         self.components = values.shape[3] if values.ndim == 4 else 1
         self.mask, self.flags, self.world, self.cell_centered = mask, flags, world, cell_centered
         self.spacing, self.origin, self.coordinates = spacing, origin, coordinates
@@ -172,14 +173,15 @@ def _of_xarray(data, spacing, origin, axes):
         for name in "_FillValue", "missing_value":
             if name in where and where is data.attrs:  # values in the encoding were replaced as the file was read
                 values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | numpy.isin(values.data, where[name]), values.data)
-    coordinates, earth = None, None
+    coordinates, earth, labels = None, None, None
     if spacing is None and origin is None and all(name in data.coords for name in data.dims):
         places = [numpy.asarray(data.coords[name].values) for name in data.dims]
         units = {str(data.coords[name].attrs.get("units", "")) for name in data.dims}
         if all(place.ndim == 1 and place.size > 1 and place.dtype.kind in "iuf" for place in places):
             places = [numpy.ascontiguousarray(place, numpy.float64) for place in places]
             ordered = ["".join(axes).index(axis) for axis in "xyz"]
-            earth = _earth.places_of(context_of("host", 1), [str(data.dims[at]) for at in ordered], [data.coords[data.dims[at]] for at in ordered])
+            named = [str(data.dims[at]) for at in ordered], [data.coords[data.dims[at]] for at in ordered]
+            earth = _earth.places_of(context_of("host", 1), *named)
             if earth is not None:
                 for at, place in zip(ordered, earth[0]):
                     places[at] = numpy.ascontiguousarray(place)
@@ -187,8 +189,9 @@ def _of_xarray(data, spacing, origin, axes):
                 # If units differ and are not known, each axis gets the length of its number of values with a spacing of 1.
                 places = [(place - place[0]) * ((place.size - 1) / abs(place[-1] - place[0])) for place in places]
             coordinates = places
+            labels = _earth.axes_of(*named, [places[at] for at in ordered], earth is not None)
     grid = _of_array(values, spacing, origin, axes, coordinates)
-    grid.about, grid.earth, grid.metres = _earth.About(data), earth is not None, earth[1] if earth else None
+    grid.about, grid.earth, grid.metres, grid.axes = _earth.About(data), earth is not None, earth[1] if earth else None, labels
     return grid
 
 

@@ -21,6 +21,7 @@ class Transfer:
         self.points, colors = functions(opacity, color, spread, power)
         if color_spread is not None:
             colors = functions(None, color, color_spread, power)[1]
+        self.colors = colors
         self._opacity, self._color = numpy.array(self.points, numpy.float64), numpy.array(colors, numpy.float64)
         self.struct = library.stratus_transfer_default()
         self.struct.opacity, self.struct.opacity_count = address(self._opacity), len(self._opacity)

@@ -7,6 +7,7 @@ import numpy
 
 from . import _declarations as c
 from . import _view
+from ._annotation import Annotation
 from ._core import Owned, address, as_dict, choice, context as context_of, library, type_of
 from ._grid import affine, chosen, of_package
 from ._look import Image, Quantities, Units, crop_box, set_contours, set_planes, value_interval
@@ -146,7 +147,8 @@ class Tetrahedra:
 
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", method="auto", tolerance=None,
                shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, opaque_depth=None, progress=None,
-               dependent=False, weights=None, mean_components=False, surface=None, quantities=None, threshold=0.5):
+               dependent=False, weights=None, mean_components=False, surface=None, quantities=None, threshold=0.5, show_axes=False, color_bar=False,
+               caption=None, coast=False, ink=0.9):
         """Draws a picture and returns a Rendering: rgba, depth, counters. See `render` for the parameters.
 
         method  march from cell to cell, project sorted cells, or auto: the method of the lower expected cost
@@ -155,17 +157,24 @@ class Tetrahedra:
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_tetra_report()
         numbers = Quantities(quantities, threshold, image, self._units)
+        around = Annotation(show_axes, color_bar, caption, coast, ink)
         with self.context.lock:
             asked = AskedOfCells(self, opacity, color, unit_distance, mode, method, tolerance, shade, gradient_opacity, contours, crop, clip_planes,
                                  average_range, dependent, weights, mean_components, surface)
             if not self.nothing:
-                view = _view.make(self.context, camera, self.bounds, size)
+                around.set_box(self.bounds)
+                around.set_bar(asked.transfers[0], self.spread, self.power)
+                room = None if _view.is_placed(camera) else around.room(self.context, size, False)
+                view = _view.make(self.context, camera, self.bounds, size, room=room)
                 self.context.call(library.stratus_tetra_caster_render, self._caster.pointer, ctypes.byref(asked.mesh), asked.functions,
                                   ctypes.byref(view), ctypes.byref(asked.options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
                 own = c.stratus_ray_cast_input(tetra=self._caster.pointer, mesh=ctypes.addressof(asked.mesh), transfer=asked.functions,
                                                tetra_options=ctypes.addressof(asked.options))
                 numbers.compute(self.context, ctypes.byref(own), 1, view, progress)
         asked.explain(image.rgba, report.rays)
+        if not self.nothing:
+            with self.context.lock:
+                around.draw(self.context, view, image)
         return image.rendering(as_dict(report), numbers.result(0 if self.nothing else self.power))
 
 

@@ -109,11 +109,20 @@ def _filling(bounds, aspect):
     return wishes
 
 
-def make(context, camera, bounds, size, earth=False):
-    """Returns the core's camera. Call it with the context's lock held. earth: of data on the Earth, the default camera is another one."""
+def is_placed(camera):
+    """Whether a camera has a place of its own, instead of one from which all of the data are seen."""
+    return not (camera is None or (isinstance(camera, dict) and set(camera) <= set(_AROUND)))
+
+
+def make(context, camera, bounds, size, earth=False, room=None):
+    """Returns the core's camera. Call it with the context's lock held.
+
+    earth  of data on the Earth, the default camera is another one
+    room   left, right, bottom and top of the picture's part for the data, in pixels, of a camera that is not placed; None: all of it
+    """
     if isinstance(camera, c.stratus_camera):
         return camera
-    aspect = size[0] / size[1]
+    aspect = size[0] / size[1] if room is None else (room[1] - room[0]) / (room[3] - room[2])
     wishes, result = _filling(bounds, aspect) if earth and camera is None else _as_placed(camera, bounds, aspect), c.stratus_camera()
     three = ctypes.c_double * 3
     places = [three(*wishes[name]) for name in ("position", "focal_point", "view_up")]
@@ -121,4 +130,6 @@ def make(context, camera, bounds, size, earth=False):
         context.call(library.stratus_camera_perspective, context.pointer, *places, wishes["view_angle"], aspect, ctypes.byref(result))
     else:
         context.call(library.stratus_camera_parallel, context.pointer, *places, wishes["parallel_scale"], aspect, ctypes.byref(result))
+    if room is not None:
+        context.call(library.stratus_camera_in_room, context.pointer, ctypes.byref(result), *size, room, ctypes.byref(result))
     return result

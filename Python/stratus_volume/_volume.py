@@ -6,6 +6,7 @@ import numpy
 
 from . import _declarations as c
 from . import _earth, _view
+from ._annotation import Annotation
 from ._core import Owned, address, as_dict, choice, context as context_of, library
 from ._grid import affine, grid_of
 from ._look import Image, Quantities, Units, crop_box, set_contours, set_planes, set_shading, value_interval
@@ -47,6 +48,7 @@ class Volume:
         if of_xarray and spacing is None and origin is None:
             dims = [data.dims[own] for _, own in sorted(zip(self.grid.world, self.grid.own))]
         self._place(matrix)
+        self._turned = matrix is not None  # by the caller
         self.context = context_of(device, threads)
         self.exaggeration = self._exaggerate(exaggerate)
         if self.exaggeration != 1.0:
@@ -83,25 +85,44 @@ class Volume:
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", interpolation="linear",
                structure="auto", sampling="auto", sample_distance=0, tolerance=None, shade=False, gradient_opacity=None, contours=None, crop=None,
                clip_planes=None, average_range=None, jitter=False, audit=False, opaque_depth=None, progress=None, dependent=False, weights=None,
-               mean_components=False, labels=None, looks=None, function_2d=None, surface=None, quantities=None, threshold=0.5):
+               mean_components=False, labels=None, looks=None, function_2d=None, surface=None, quantities=None, threshold=0.5,
+               show_axes=False, color_bar=False, caption=None, coast=False, ink=0.9):
         """Draws a picture and returns a Rendering: rgba, depth, counters. See `render` for the parameters."""
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_ray_cast_report()
         numbers = Quantities(quantities, threshold, image, self._units)
+        around = Annotation(show_axes, color_bar, caption, coast, ink)
         with self.context.lock:
             asked = Asked(self, opacity, color, unit_distance, mode, interpolation, structure, sampling, sample_distance, tolerance, shade,
                           gradient_opacity, contours, crop, clip_planes, average_range, jitter, audit, dependent, weights, mean_components, labels,
                           looks, function_2d, surface)
             if not self.grid.nothing:
-                view = _view.make(self.context, camera, asked.bounds, size, self.grid.earth)
+                around.set_box(asked.bounds, self._axes)
+                around.set_bar(asked.transfers[0], self.grid.spread, asked.power, *self._bar_title())
+                room = None if _view.is_placed(camera) else around.room(self.context, size, self.grid.earth and camera is None)
+                view = _view.make(self.context, camera, asked.bounds, size, self.grid.earth, room)
                 self.context.call(library.stratus_ray_caster_render, self._caster.pointer, ctypes.byref(asked.volume), asked.functions,
                                   ctypes.byref(view), ctypes.byref(asked.options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
                 own = c.stratus_ray_cast_input(caster=self._caster.pointer, volume=ctypes.pointer(asked.volume), transfer=asked.functions,
                                                options=ctypes.pointer(asked.options))
                 numbers.compute(self.context, ctypes.byref(own), 1, view, progress)
         asked.explain(image.rgba, report.rays)
+        if not self.grid.nothing:
+            with self.context.lock:
+                around.draw(self.context, view, image)
         counters = dict(as_dict(report), exaggeration=self.exaggeration)
         return image.rendering(counters, numbers.result(0 if self.grid.nothing else asked.power, self._label))
+
+    @property
+    def _axes(self):
+        """The data's numbers along x, y and z of the world, or None: the world's own."""
+        axes = self.grid.axes
+        if axes is None or self._turned:
+            return None
+        return [*axes[:2], axes[2].stretched(self.exaggeration)]
+
+    def _bar_title(self):
+        return tuple(str(text or "") for text in self._named or ("", ""))
 
     def _label(self, name, array, unit):
         """An array of a quantity as the data's own kind."""
