@@ -22,6 +22,7 @@
 static const int near_lengths[NEARS] = { 0, 1, 2, 4 };
 #define NEAR_STEPS_LEAST 2
 #define NEAR_STEPS_MOST 16
+#define DEPTH_MOST 80.0f                 /* of a layer; behind it is no light */
 #define FAINT 1e-4f                      /* nodes that add less than this to a picture are not compared */
 #define LINES 16                         /* a map is compared with so many rows and columns of a finer one; only these are drawn of that */
 #define LAYERS 32                        /* and so many of its layers are compared from the side */
@@ -144,6 +145,7 @@ typedef struct drawing {
   lattice nodes;
   /* of a face: the light that passes to each node at the layers' near sides, one layer after the other, and at the last's far side */
   uint16_t* planes;
+  float* depths;                   /* of limited reach: the optical depth up to each layer, as planes; else NULL */
   float *pictures, *rgba, *passed; /* rgba: of the layer that is looked at */
   int32_t* words;                  /* of the map; NULL: it is drawn to be compared */
   bool column;                     /* columns are drawn to compare, else rows */
@@ -172,6 +174,45 @@ static float passes(const drawing* d, const float* rgba, size_t node)
   return d->goes_on > 0.0 && passed < 1.0f ? powf(passed, (float)(1.0 - d->goes_on)) : passed;
 }
 
+/* The optical depth of a layer there. */
+static float depth_of_layer(const drawing* d, const float* rgba, size_t node)
+{
+  return fminf(-logf(fmaxf(passes(d, rgba, node), 1e-30f)), DEPTH_MOST);
+}
+
+/* The part of light that passes to the end of an optical depth, `layers` from the side that the light comes from, if the matter within
+ * reach hides it. */
+static float passes_within_reach(const drawing* d, size_t node, float depth, double layers)
+{
+  const stratus_light_frame* f = &d->map->frame;
+  const size_t nodes = drawn_nodes(d), at[2] = { node % (size_t)d->nodes.count[0], node / (size_t)d->nodes.count[0] };
+  double square = 1.0; /* of a way that goes through a layer of depth 1 */
+  for (int axis = 0; axis < 2 && f->perspective; ++axis) {
+    const double number = d->nodes.first[axis] + (double)at[axis] * d->nodes.step[axis];
+    const double slope = f->lo[axis] + number * (f->hi[axis] - f->lo[axis]) / (d->map->size[axis] - 1);
+    square += slope * slope;
+  }
+  const double from = layers - d->matter->reach * d->map->size[2] / ((f->hi[2] - f->lo[2]) * sqrt(square));
+  if (from <= 0.0) {
+    return expf(-depth);
+  }
+  const size_t layer = (size_t)from;
+  const float *before = d->depths + layer * nodes + node, part = (float)(from - (double)layer);
+  /* in the layer that is being drawn, only the middle is known */
+  const float rise = layer < (size_t)layers ? (before[nodes] - *before) * part : (depth - *before) * part / (float)(layers - (double)layer);
+  return expf(*before + rise - depth);
+}
+
+/* The light that passes to the middle of a layer that is being compared. */
+static float passes_to_middle(const drawing* d, size_t node, int layer)
+{
+  if (!d->depths) {
+    return d->passed[node] * 0.5f * (1.0f + passes(d, d->rgba, node));
+  }
+  const float depth = d->depths[(size_t)layer * drawn_nodes(d) + node] + 0.5f * depth_of_layer(d, d->rgba, node);
+  return passes_within_reach(d, node, depth, layer + 0.5);
+}
+
 /* The part that passes to a depth, in layers, of a node. */
 static float passed_to(const drawing* d, size_t node, double depth)
 {
@@ -192,7 +233,7 @@ static void add_difference(const drawing* d, int face, int x, int y, int layer, 
 {
   const int *n = d->map->size, *c = d->coarse->size, at[2] = { x, y };
   const size_t node = (size_t)y * (size_t)d->nodes.count[0] + (size_t)x;
-  const float here = d->passed[node] * 0.5f * (1.0f + passes(d, d->rgba, node));
+  const float here = passes_to_middle(d, node, layer);
   part *= color_at(d, node);
   double place[3] = { 0.0, 0.0, 0.0 };
   for (int i = 0; i < 2; ++i) {
@@ -292,7 +333,13 @@ static void pass_layers(const drawing* d, const float* pictures, int first, int 
     uint16_t* plane = d->planes + (size_t)(layer + 1) * nodes;
     for (size_t i = from; i < beyond; ++i) {
       d->passed[i] *= passes(d, rgba, i);
-      plane[i] = (uint16_t)(d->passed[i] * 65535.0f + 0.5f);
+      float light = d->passed[i];
+      if (d->depths) {
+        const float depth = d->depths[(size_t)layer * nodes + i] + depth_of_layer(d, rgba, i);
+        d->depths[(size_t)(layer + 1) * nodes + i] = depth;
+        light = passes_within_reach(d, i, depth, layer + 1.0);
+      }
+      plane[i] = (uint16_t)(light * 65535.0f + 0.5f);
     }
   }
 }
@@ -313,6 +360,9 @@ static stratus_status draw_rows(drawing* d, int face, int from, int rows, int to
   for (size_t i = 0; i < nodes; ++i) {
     d->passed[i] = 1.0f;
     d->planes[i] = 65535;
+    if (d->depths) {
+      d->depths[i] = 0.0f;
+    }
   }
   if (!sees && d->words) { /* all light passes */
     memset(d->planes, 255, ((size_t)layers + 1) * nodes * sizeof *d->planes);
@@ -357,11 +407,15 @@ static stratus_status draw_faces(drawing* d)
   const int some = (int)(PICTURES_BYTES / row_pictures) / ROWS * ROWS;
   const int rows = !d->matter->together || !d->words || some >= n[1] ? n[1] : some > ROWS ? some : ROWS;
   const size_t nodes = (size_t)n[0] * (size_t)rows;
-  void *picture = NULL, *sums = NULL, *planes = NULL;
+  void *picture = NULL, *sums = NULL, *planes = NULL, *depths = NULL;
   stratus_status status;
   TRY_CLEANUP(stratus_allocate(d->context, nodes, 4 * sizeof(float) * (size_t)together, &picture));
   TRY_CLEANUP(stratus_allocate(d->context, nodes, (d->words ? 1 : 1 + NEARS) * sizeof(float), &sums));
   TRY_CLEANUP(stratus_allocate(d->context, nodes, ((size_t)layers + 1) * sizeof(uint16_t), &planes));
+  if (d->matter->reach > 0.0) {
+    TRY_CLEANUP(stratus_allocate(d->context, nodes, ((size_t)layers + 1) * sizeof(float), &depths));
+  }
+  d->depths = depths;
   d->pictures = picture;
   d->passed = sums;
   d->along = d->passed + nodes;
@@ -378,6 +432,7 @@ cleanup:
   stratus_release(d->context, picture);
   stratus_release(d->context, sums);
   stratus_release(d->context, planes);
+  stratus_release(d->context, depths);
   return status;
 }
 
@@ -527,13 +582,17 @@ static double brightness_of(const stratus_light* lights, int count)
   return sqrt(squares);
 }
 
-stratus_status stratus_light_maps_build(stratus_context* context, const stratus_light_matter* matter, const stratus_shading* shading,
+stratus_status stratus_light_maps_build(stratus_context* context, const stratus_light_matter* given, const stratus_shading* shading,
   const stratus_light* lights, int count, stratus_light_maps** maps)
 {
+  stratus_light_matter limited = *given;
+  const stratus_light_matter* matter = &limited;
   int32_t* words[STRATUS_LIGHTS_MAX] = { NULL };
   void *memory = NULL, *all = NULL, *slot = NULL;
   stratus_light_maps* made = NULL;
   stratus_status status;
+  limited.reach = shading->shadow_length;
+  limited.step = limited.reach > 0.0 ? 0.0 : given->step; /* near rays would add to the reach */
   TRY_CLEANUP(stratus_allocate_zero(context, 1, sizeof *made, &memory));
   made = memory;
   made->context = context;
@@ -716,6 +775,7 @@ uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* tr
 
 uint64_t stratus_light_key_of_scattering(uint64_t key, const stratus_shading* shading, const stratus_light* lights, int count)
 {
+  key = shading->shadow_length > 0.0 ? stratus_light_key(key, &shading->shadow_length, sizeof shading->shadow_length) : key;
   if (!shading->multiple) {
     return key;
   }

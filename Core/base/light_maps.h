@@ -22,6 +22,7 @@ typedef struct stratus_light_matter {
   double detail;      /* length of the finest cells in which it scatters light again; 0: not known */
   double reflectance; /* of a light, the matter sends to the eye at most this times the colour that `draw` shows */
   double tolerance;   /* of pictures, root mean square over the matter; 0: as fine as maps can be */
+  double reach;       /* the length within which matter hides a light from a place; 0: the whole way */
 } stratus_light_matter;
 
 /* Build the maps of all lights, given in the world. If light is scattered more than once, solve for it, too. A map has the least of 32, 64,
@@ -53,8 +54,8 @@ void stratus_light_state_drop(stratus_light_state* state);
 uint64_t stratus_light_key(uint64_t key, const void* bytes, size_t count);
 /* The same of transfer functions, their points included. */
 uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* transfers, int count);
-/* The same of lights and the sky, if light is scattered more than once; and of the albedo of matter but for the shading's diffuse number.
- * materials: of `components`; NULL: none of their own. */
+/* The same of the shadows' length; of lights and the sky, if light is scattered more than once; and of the albedo of matter but for the
+ * shading's diffuse number. materials: of `components`; NULL: none of their own. */
 uint64_t stratus_light_key_of_scattering(uint64_t key, const stratus_shading* shading, const stratus_light* lights, int count);
 uint64_t stratus_light_key_of_albedo(
   uint64_t key, const stratus_transfer* transfers, int count, const stratus_material* materials, int components);

@@ -103,6 +103,10 @@ stratus_status stratus_shading_check(stratus_context* context, const stratus_sha
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "scattering %g must be 0..1, and anisotropy %g -%g..%g", shading->scattering,
       shading->anisotropy, STRATUS_ANISOTROPY_MOST, STRATUS_ANISOTROPY_MOST);
   }
+  if (!(shading->shadow_length >= 0.0) || !isfinite(shading->shadow_length)) {
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "shadows have a length of %g, must be 0 or more and finite", shading->shadow_length);
+  }
   if (shading->multiple) {
     TRY(check_multiple(context, shading));
   }

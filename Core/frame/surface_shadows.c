@@ -112,11 +112,12 @@ stratus_status stratus_ray_caster_shade_surfaces(
   const stratus_ray_cast_input* lit = stratus_ray_light_of(inputs, count);
   TRY(stratus_image_check(context, image));
   TRY(stratus_camera_check(context, camera, image));
-  if (!lit || !image->opaque_depth) {
+  const stratus_shading* shading = !lit ? NULL : lit->tetra ? &lit->tetra_options->shading : &lit->options->light.shading;
+  if (!shading || shading->shadow_length > 0.0 || !image->opaque_depth) {
     return STRATUS_OK;
   }
   scene s = { .camera = camera, .image = image };
   s.maps = inputs->tetra ? inputs->tetra->light.maps : inputs->caster->light.maps;
-  s.count = stratus_lights_in_world(camera, lit->tetra ? &lit->tetra_options->shading : &lit->options->light.shading, s.lights);
+  s.count = stratus_lights_in_world(camera, shading, s.lights);
   return stratus_each_tile(context, "light", image->height, shade_row, &s, counts);
 }

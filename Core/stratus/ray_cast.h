@@ -128,6 +128,10 @@ typedef struct stratus_shading {
    * regions and masks hide matter from light, too. Maps of the light that passes are built again if data, functions or lights change. For
    * lights that move with the camera they are built again with each camera. Default 0. */
   int shadows;
+  /* With `shadows`: the world length from a place towards each light within which matter hides the light; at least 0, finite. Matter that
+   * is farther away lets all light pass. Surfaces hide light at any distance, and take no shadows. Light that is scattered again passes all
+   * matter. 0 (default): the whole way. */
+  double shadow_length;
   /* Composite and isosurface: the share of light that the matter scatters, 0..1; the rest is reflected by the gradient as above. A light of
    * colour l scatters diffuse l p C, where p is the phase function of Henyey and Greenstein (1941) times 4 pi:
    * (1 - g^2) / (1 + g^2 - 2 g cos)^1.5. cos is between the directions of light before and after. So diffuse C is the single-scattering

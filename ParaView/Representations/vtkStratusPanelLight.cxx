@@ -275,6 +275,7 @@ template <class Mapper> vtkVolumeProperty* vtkStratusPanelLight::ApplyTo(Mapper*
   mapper->SetShadows(whole && this->Shadows);
   mapper->SetVolumetricScatteringBlending(cloud ? 2.0 : whole ? this->VolumetricScatteringBlending : 0.0); // which has shadows
   mapper->SetScatteringAnisotropy(cloud ? STRATUS_CLOUD_ANISOTROPY : this->ScatteringAnisotropy);
+  mapper->SetGlobalIlluminationReach(cloud ? 1.0 : this->GlobalIlluminationReach);
   mapper->SetMultipleScattering(cloud || this->MultipleScattering);
   mapper->SetSkyZenith(zenith);
   mapper->SetSkyHorizon(horizon);
@@ -300,6 +301,7 @@ void vtkStratusPanelLight::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Shadows: " << this->Shadows << "\n";
   os << indent << "VolumetricScatteringBlending: " << this->VolumetricScatteringBlending << "\n";
   os << indent << "ScatteringAnisotropy: " << this->ScatteringAnisotropy << "\n";
+  os << indent << "GlobalIlluminationReach: " << this->GlobalIlluminationReach << "\n";
   os << indent << "MultipleScattering: " << this->MultipleScattering << "\n";
   os << indent << "SkyZenith: " << this->SkyZenith[0] << " " << this->SkyZenith[1] << " " << this->SkyZenith[2] << "\n";
   os << indent << "SkyHorizon: " << this->SkyHorizon[0] << " " << this->SkyHorizon[1] << " " << this->SkyHorizon[2] << "\n";

@@ -42,6 +42,7 @@ public:
   vtkSetMacro(Shadows, bool);
   vtkSetMacro(VolumetricScatteringBlending, double);
   vtkSetMacro(ScatteringAnisotropy, double);
+  vtkSetMacro(GlobalIlluminationReach, double);
   vtkSetMacro(MultipleScattering, bool);
   vtkSetVector3Macro(SkyZenith, double);
   vtkSetVector3Macro(SkyHorizon, double);
@@ -123,7 +124,7 @@ private:
   class Internals;
   std::unique_ptr<Internals> Internal;
   bool Shadows = false, MultipleScattering = false, Cloud = false;
-  double VolumetricScatteringBlending = 0.0, ScatteringAnisotropy = 0.0;
+  double VolumetricScatteringBlending = 0.0, ScatteringAnisotropy = 0.0, GlobalIlluminationReach = 1.0;
   double SkyZenith[3] = { 0.0, 0.0, 0.0 }, SkyHorizon[3] = { 0.0, 0.0, 0.0 }, SkyUp[3] = { 0.0, 0.0, 1.0 };
   std::string WaterUnits = "auto", SunTime;
   double EffectiveRadius = 0.0, MetresPerUnit = 0.0;

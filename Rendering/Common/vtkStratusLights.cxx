@@ -5,6 +5,7 @@
 #include "vtkLight.h"
 #include "vtkLightCollection.h"
 #include "vtkMatrix4x4.h"
+#include "vtkProp3D.h"
 #include "vtkRenderer.h"
 #include "vtkVersion.h"
 #include "vtkVolumeProperty.h"
@@ -58,6 +59,15 @@ void SetLight(vtkLight* light, vtkCamera* camera, stratus_light& result)
   }
 }
 } // namespace
+
+double vtkStratusShadowLength(vtkProp3D* prop, double reach)
+{
+  if (reach >= 1.0) {
+    return 0.0;
+  }
+  const double diagonal = prop->GetLength();
+  return std::isfinite(diagonal) ? diagonal * std::max(1.0 - std::pow(1.0 - reach, 0.33), 1e-3) : 0.0;
+}
 
 bool vtkStratusSetShading(vtkRenderer* renderer, vtkLight* sun, vtkVolumeProperty* property, stratus_shading& shading, std::string& error)
 {

@@ -6,9 +6,12 @@
 #include "stratus.h"
 #include "vtkStratusPrivate.h"
 
+#include "vtkVolume.h"
+
 #include <string>
 
 class vtkLight;
+class vtkProp3D;
 class vtkRenderer;
 class vtkVolumeProperty;
 
@@ -20,13 +23,18 @@ VTK_STRATUS_PRIVATE bool vtkStratusSetShading(
 // The anisotropy of a mapper; 0: the property's, where VTK has one.
 VTK_STRATUS_PRIVATE double vtkStratusAnisotropy(double mapper, vtkVolumeProperty* property);
 
+// The length of shadows for a GlobalIlluminationReach of 0..1, as vtkGPUVolumeRayCastMapper has it: from next to nothing to the diagonal of
+// the prop's bounds. 0: the whole way.
+VTK_STRATUS_PRIVATE double vtkStratusShadowLength(vtkProp3D* prop, double reach);
+
 // Sets how light passes through matter, by a mapper's settings.
-template <class Mapper> void vtkStratusSetScattering(Mapper* mapper, vtkVolumeProperty* property, stratus_shading& shading)
+template <class Mapper> void vtkStratusSetScattering(Mapper* mapper, vtkVolume* volume, stratus_shading& shading)
 {
   const double blending = mapper->GetVolumetricScatteringBlending(); // 0..2, as vtkGPUVolumeRayCastMapper has it
   shading.shadows = mapper->GetShadows() || blending > 0.0 ? 1 : 0;
   shading.scattering = 0.5 * blending;
-  shading.anisotropy = vtkStratusAnisotropy(mapper->GetScatteringAnisotropy(), property);
+  shading.anisotropy = vtkStratusAnisotropy(mapper->GetScatteringAnisotropy(), volume->GetProperty());
+  shading.shadow_length = vtkStratusShadowLength(volume, mapper->GetGlobalIlluminationReach());
   shading.multiple = mapper->GetMultipleScattering() && blending > 0.0 ? 1 : 0;
   mapper->GetSkyZenith(shading.sky_zenith);
   mapper->GetSkyHorizon(shading.sky_horizon);

@@ -175,7 +175,7 @@ bool vtkStratusSurfaces::TakeShadows(vtkRenderer* renderer, const stratus_ray_ca
   return !renderer->GetSelector() && !renderer->GetUseDepthPeelingForVolumes() &&
     std::any_of(inputs, inputs + count, [](const stratus_ray_cast_input& input) {
       const stratus_shading& shading = input.mesh ? input.tetra_options->shading : input.options->light.shading;
-      return shading.shadows && shading.surfaces && shading.surfaces->triangle_count > 0;
+      return shading.shadows && shading.shadow_length == 0.0 && shading.surfaces && shading.surfaces->triangle_count > 0;
     });
 }
 

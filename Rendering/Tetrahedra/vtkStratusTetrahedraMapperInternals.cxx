@@ -83,8 +83,9 @@ bool vtkStratusTetrahedraMapper::Internals::SetClipPlanes(stratus_tetra_options&
 }
 
 bool vtkStratusTetrahedraMapper::Internals::SetShading(
-  vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error)
+  vtkRenderer* renderer, vtkVolume* volume, stratus_tetra_options& options, std::string& error)
 {
+  vtkVolumeProperty* property = volume->GetProperty();
   options.gradient_distance = this->Mapper->GradientOpacityDistance;
   options.dependent = property->GetIndependentComponents() ? 0 : 1;
   options.mean_components = this->Mapper->ComponentMixing == MEAN_COMPONENTS ? 1 : 0;
@@ -108,7 +109,7 @@ bool vtkStratusTetrahedraMapper::Internals::SetShading(
   }
   options.materials = alike ? nullptr : this->Materials.data();
   options.shade = property->GetShade();
-  vtkStratusSetScattering(this->Mapper, property, options.shading);
+  vtkStratusSetScattering(this->Mapper, volume, options.shading);
   options.shading.surfaces = lit && options.shading.shadows ? this->Surfaces.Find(renderer) : nullptr;
   return !lit || vtkStratusSetShading(renderer, this->Mapper->GetSun(), property, options.shading, error);
 }
@@ -317,7 +318,7 @@ bool vtkStratusTetrahedraMapper::Internals::Describe(vtkRenderer* renderer, vtkV
   this->NoteLeftOut(prop->GetProperty());
   if (!this->CheckMapper(description.Error) || !this->PrepareInput(prop, empty, description.Error) ||
     !this->SetOptions(prop->GetProperty(), description.Options, description.Error) ||
-    !this->SetShading(renderer, prop->GetProperty(), description.Options, description.Error)) {
+    !this->SetShading(renderer, prop, description.Options, description.Error)) {
     return false;
   }
   this->LeftOut.Warn(this->Mapper);
@@ -390,7 +391,7 @@ bool vtkStratusTetrahedraMapper::Internals::Render(vtkRenderer* renderer, vtkVol
     return true;
   }
   stratus_tetra_options options;
-  if (!this->SetOptions(prop->GetProperty(), options, error) || !this->SetShading(renderer, prop->GetProperty(), options, error)) {
+  if (!this->SetOptions(prop->GetProperty(), options, error) || !this->SetShading(renderer, prop, options, error)) {
     return false;
   }
   this->LeftOut.Warn(this->Mapper);

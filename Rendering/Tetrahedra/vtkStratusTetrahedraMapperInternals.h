@@ -80,7 +80,7 @@ private:
   bool SetClipPlanes(stratus_tetra_options& options, std::string& error) const;
   bool SetOptions(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
   bool SetMode(vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error) const;
-  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_tetra_options& options, std::string& error);
+  bool SetShading(vtkRenderer* renderer, vtkVolume* volume, stratus_tetra_options& options, std::string& error);
   stratus_ray_cast_input InputOf(const stratus_tetra_options& options);
   bool Cast(vtkRenderer* renderer, stratus_tetra_options& options, const float* opaqueDepth, std::string& error);
 

@@ -321,6 +321,7 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   to->SetShadows(settings->GetShadows());
   to->SetVolumetricScatteringBlending(settings->GetVolumetricScatteringBlending());
   to->SetScatteringAnisotropy(settings->GetScatteringAnisotropy());
+  to->SetGlobalIlluminationReach(settings->GetGlobalIlluminationReach());
   to->SetMultipleScattering(settings->GetMultipleScattering());
   to->SetSkyZenith(settings->GetSkyZenith());
   to->SetSkyHorizon(settings->GetSkyHorizon());

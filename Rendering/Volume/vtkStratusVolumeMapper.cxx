@@ -262,6 +262,7 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Shadows: " << this->Shadows << "\n";
   os << indent << "VolumetricScatteringBlending: " << this->VolumetricScatteringBlending << "\n";
   os << indent << "ScatteringAnisotropy: " << this->ScatteringAnisotropy << "\n";
+  os << indent << "GlobalIlluminationReach: " << this->GlobalIlluminationReach << "\n";
   os << indent << "MultipleScattering: " << this->MultipleScattering << "\n";
   os << indent << "SkyZenith: " << this->SkyZenith[0] << " " << this->SkyZenith[1] << " " << this->SkyZenith[2] << "\n";
   os << indent << "SkyHorizon: " << this->SkyHorizon[0] << " " << this->SkyHorizon[1] << " " << this->SkyHorizon[2] << "\n";

@@ -240,8 +240,8 @@ public:
   /**
    * Set/Get whether matter absorbs light on its way from each light, where shading is on, in composite and isosurface. Matter that clip
    * planes, cropping and masks hide casts no shadow. Opaque surfaces of the renderer that are lit cast shadows on the matter, and take its
-   * shadows. Maps of light are built again if data, functions or lights change; for lights that
-   * move with the camera, such as VTK's headlight, also with the camera. Default off; a VolumetricScatteringBlending above 0 counts as on.
+   * shadows. Maps of light are built again if data, functions or lights change; for lights that move with the camera, such as VTK's
+   * headlight, also with the camera. Default off; a VolumetricScatteringBlending above 0 counts as on.
    */
   vtkSetMacro(Shadows, vtkTypeBool);
   vtkGetMacro(Shadows, vtkTypeBool);
@@ -265,6 +265,16 @@ public:
    */
   vtkSetClampMacro(ScatteringAnisotropy, double, -0.99, 0.99);
   vtkGetMacro(ScatteringAnisotropy, double);
+  //@}
+
+  //@{
+  /**
+   * Set/Get how far away matter casts its shadows, 0..1: from next to nothing to the diagonal of the volume's bounds. This is the property
+   * of vtkGPUVolumeRayCastMapper, which maps it to lengths alike, but 1 is the default here, the whole way. Below 1, opaque surfaces take
+   * no shadows.
+   */
+  vtkSetClampMacro(GlobalIlluminationReach, double, 0.0, 1.0);
+  vtkGetMacro(GlobalIlluminationReach, double);
   //@}
 
   //@{
@@ -732,7 +742,7 @@ protected:
   double CellError = 0.0;
   double LightSpread = 0.0;
   vtkTypeBool Shadows = 0;
-  double VolumetricScatteringBlending = 0.0, ScatteringAnisotropy = 0.0;
+  double VolumetricScatteringBlending = 0.0, ScatteringAnisotropy = 0.0, GlobalIlluminationReach = 1.0;
   vtkTypeBool MultipleScattering = 0;
   double SkyZenith[3] = { 0.0, 0.0, 0.0 }, SkyHorizon[3] = { 0.0, 0.0, 0.0 }, SkyUp[3] = { 0.0, 0.0, 1.0 };
   vtkSmartPointer<vtkLight> Sun;

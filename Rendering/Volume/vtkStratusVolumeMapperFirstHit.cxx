@@ -27,8 +27,9 @@ bool vtkStratusVolumeMapper::Internals::SetMaterials(vtkVolumeProperty* property
 }
 
 bool vtkStratusVolumeMapper::Internals::SetShading(
-  vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error)
+  vtkRenderer* renderer, vtkVolume* volume, stratus_ray_cast_options& options, std::string& error)
 {
+  vtkVolumeProperty* property = volume->GetProperty();
   const bool shade = property->GetShade() && this->HasLight();
   if (!this->SetMaterials(property, options) && !this->IsFirstHit() && !shade) {
     return true;
@@ -36,7 +37,7 @@ bool vtkStratusVolumeMapper::Internals::SetShading(
   stratus_shading& shading = options.light.shading;
   shading.on = shade || options.light.materials ? 1 : 0;
   options.light.shade = shade ? 1 : 0;
-  vtkStratusSetScattering(this->Mapper, property, shading);
+  vtkStratusSetScattering(this->Mapper, volume, shading);
   shading.surfaces = shading.shadows ? this->Surfaces.Find(renderer) : nullptr;
   return vtkStratusSetShading(renderer, this->Mapper->GetSun(), property, shading, error);
 }

@@ -109,7 +109,7 @@ private:
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
   // Light and first hits (vtkStratusVolumeMapperFirstHit.cxx).
   bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
-  bool SetShading(vtkRenderer* renderer, vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
+  bool SetShading(vtkRenderer* renderer, vtkVolume* volume, stratus_ray_cast_options& options, std::string& error);
   bool SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options);
   bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
   // Functions of two variables (vtkStratusVolumeMapperLookup.cxx).
@@ -138,7 +138,7 @@ private:
   vtkSmartPointer<vtkAbstractArray> Offered; // the array of the tree that the caster was last given
   vtkMTimeType OfferedTime = 0;
   const stratus_ray_caster* OfferedTo = nullptr;
-  std::array<double, 26> LearnedFor{}; // settings and geometry for which FullMilliseconds and FullSampleDistance hold
+  std::array<double, 27> LearnedFor{}; // settings and geometry for which FullMilliseconds and FullSampleDistance hold
   double FullMilliseconds = 0.0;       // estimated cast time of an exact picture, 0: unknown
   double FullSampleDistance = 0.0;
   stratus_sampling FullSampling = STRATUS_SAMPLING_AUTO;

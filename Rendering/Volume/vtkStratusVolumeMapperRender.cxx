@@ -32,7 +32,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   vtkRenderWindow* window = renderer->GetRenderWindow();
   // The time of a full picture holds only for the settings and geometry that it was learned from.
   const stratus_volume& volume = this->Image.GetVolume();
-  std::array<double, 26> learnedFor;
+  std::array<double, 27> learnedFor;
   learnedFor[0] = mapper->SampleDistance;
   std::copy_n(volume.spacing, 3, learnedFor.begin() + 1);
   std::copy_n(volume.matrix, 12, learnedFor.begin() + 4);
@@ -46,6 +46,7 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   learnedFor[23] = mapper->VolumetricScatteringBlending;
   learnedFor[24] = mapper->ScatteringAnisotropy;
   learnedFor[25] = mapper->MultipleScattering;
+  learnedFor[26] = mapper->GlobalIlluminationReach;
   if (learnedFor != this->LearnedFor) {
     this->LearnedFor = learnedFor;
     this->FullMilliseconds = 0.0;
@@ -142,8 +143,7 @@ bool vtkStratusVolumeMapper::Internals::Describe(
     return false;
   }
   this->NoteLeftOut(property);
-  return this->PrepareInput(prop, error) && this->SetOptions(property, options, error) &&
-    this->SetShading(renderer, property, options, error);
+  return this->PrepareInput(prop, error) && this->SetOptions(property, options, error) && this->SetShading(renderer, prop, options, error);
 }
 
 bool vtkStratusVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume* prop, double choice[4])

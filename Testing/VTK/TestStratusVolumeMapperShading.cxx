@@ -493,6 +493,15 @@ void Shadows()
   scene.Mapper->SetScatteringAnisotropy(0.8);
   CHECK(scene.Picture() != scattered, "the anisotropy changes nothing");
   scene.Mapper->SetScatteringAnisotropy(0.0);
+  double before = Brightness(scattered);
+  for (const double reach : { 0.3, 0.1, 0.0 }) { // the shorter shadows are, the less is dark
+    scene.Mapper->SetGlobalIlluminationReach(reach);
+    const double now = Brightness(scene.Picture());
+    CHECK(now > 1.02 * before, "a reach of %g: %g of %g", reach, now, before);
+    before = now;
+  }
+  scene.Mapper->SetGlobalIlluminationReach(2.0);
+  CHECK(scene.Mapper->GetGlobalIlluminationReach() == 1.0 && scene.Picture() == scattered, "a reach of 1 is not the whole way");
   scene.Mapper->MultipleScatteringOn();
   const std::vector<float> many = scene.Picture();
   CHECK(Brightness(many) > 1.02 * Brightness(scattered), "scattered again: %g of %g", Brightness(many), Brightness(scattered));

@@ -288,6 +288,10 @@ double reference_passing(const reference_scene* scene, const reference_matter* m
       return 0.0;
     }
   }
+  if (scene->shading->shadow_length > 0.0) {
+    const double *w = camera.forward, length = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    camera.far_k = fmin(camera.far_k, scene->shading->shadow_length / length);
+  }
   dark.camera = &camera;
   dark.shading = NULL;
   dark.materials = NULL;

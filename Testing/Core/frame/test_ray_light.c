@@ -9,6 +9,7 @@
 
 static picture drawn;
 static picture other;
+static picture kept;
 static float reference[4 * CASE_PIXELS_MOST];
 
 /* The reference draws one pixel of each tile of so many: each of its samples has rays of its own. */
@@ -63,6 +64,13 @@ static void matter_shadows_itself_as_the_reference_says(void** state)
   make_case(context, &c, STRATUS_FLOAT32);
   stratus_shading* s = &c.options.light.shading;
   compare("scattered evenly", context, &c, LEAST_DB);
+  s->shadow_length = 6.0;
+  compare("shadows of 6 voxels", context, &c, 46.0); /* without near rays */
+  memcpy(kept.rgba, drawn.rgba, sizeof drawn.rgba);
+  s->shadow_length = 1e6;
+  compare("shadows longer than the volume", context, &c, 46.0);
+  assert_true(reference_psnr(kept.rgba, drawn.rgba, CASE_PIXELS) < 30.0);
+  s->shadow_length = 0.0;
   s->anisotropy = 0.7;
   if (!few_run()) {
     compare("scattered forward", context, &c, LEAST_DB);
@@ -72,6 +80,9 @@ static void matter_shadows_itself_as_the_reference_says(void** state)
   s->lights[1] = (stratus_light){ .vector = { 60, 50, -40 }, .color = { 0.3, 0.5, 1.5 }, .positional = 1 };
   if (!few_run()) { /* the lamp in the volume is another position, of the same two lights */
     compare("a direction and a position", context, &c, LEAST_DB);
+    s->shadow_length = 8.0;
+    compare("shadows of 8 voxels from both", context, &c, 46.0);
+    s->shadow_length = 0.0;
   }
   s->lights[1].vector[0] = 16.0;
   s->lights[1].vector[1] = 11.0;
@@ -664,7 +675,12 @@ static void bad_scattering_is_refused(void** state)
       stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
     assert_non_null(strstr(stratus_context_message(context), "scattering"));
   }
-  c.options.light.shading.scattering = c.options.light.shading.anisotropy = 0.0; /* and of several, before maps are made */
+  c.options.light.shading.scattering = c.options.light.shading.anisotropy = 0.0;
+  c.options.light.shading.shadow_length = -1.0;
+  assert_int_equal(
+    stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "shadows have a length of -1"));
+  c.options.light.shading.shadow_length = 0.0; /* and of several, before maps are made */
   c.options.light.shading.light_count = 20;
   c.options.mode = STRATUS_MODE_ISOSURFACE;
   c.options.optics.contour_count = 1;
