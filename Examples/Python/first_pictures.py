@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""first_pictures.py SHEET.png: writes netCDF files in the layouts of models of ocean and atmosphere, draws each by `stratus render` without an
-option for its look, and joins the pictures in a sheet. Needs `stratus` on the path, netCDF4, and VTK to read and write the pictures."""
+"""first_pictures.py SHEET.png [FOLDER]: writes netCDF files in the layouts of models of ocean and atmosphere, draws each by `stratus render`
+without an option for its look, and joins the pictures in a sheet. The files stay in FOLDER, if it is given. Needs `stratus` on the path,
+netCDF4, and VTK to read and write the pictures."""
 import os
 import subprocess
 import sys
@@ -138,12 +139,13 @@ def join(pictures, path, columns=3):
 
 
 def main():
-    if len(sys.argv) != 2:
+    if len(sys.argv) not in (2, 3):
         raise SystemExit(__doc__)
-    with tempfile.TemporaryDirectory() as folder:
-        pictures = []
+    with tempfile.TemporaryDirectory() as temporary:
+        pictures, folder = [], sys.argv[2] if len(sys.argv) > 2 else temporary
+        os.makedirs(folder, exist_ok=True)
         for path in write_all(folder):
-            pictures.append(path[:-3] + ".png")
+            pictures.append(os.path.join(temporary, os.path.basename(path)[:-3] + ".png"))
             subprocess.run(["stratus", "render", path, "-o", pictures[-1], "--size", "360x270", "--color-bar"], check=True, stdout=subprocess.DEVNULL)
         join(pictures, sys.argv[1])
 

@@ -270,15 +270,9 @@ void vtkStratusCFGrid::ConvertUnits()
   }
 }
 
-// What a coordinate is called in words: its long_name, unless that is a sentence, or its standard_name.
-std::string vtkStratusCFGrid::TitleOf(const Variable* coordinate, const std::string& usual) const
+std::string vtkStratusCFGrid::TitleOr(const Variable* coordinate, const std::string& usual) const
 {
-  constexpr size_t longest = 32;
-  std::string title = coordinate ? this->File.Text(*coordinate, "long_name") : "";
-  if (title.empty() || title.size() > longest) {
-    title = coordinate ? this->File.Text(*coordinate, "standard_name") : "";
-    std::replace(title.begin(), title.end(), '_', ' ');
-  }
+  const std::string title = coordinate ? this->File.Title(*coordinate) : "";
   return title.empty() ? usual : title;
 }
 
@@ -287,7 +281,7 @@ void vtkStratusCFGrid::DescribeHorizontal(const std::array<const Variable*, 2>& 
   for (size_t a = 0; a < 2; ++a) {
     vtkStratusFileAxis& axis = this->FileAxes[a];
     const bool turned = from[a] && this->File.Text(*from[a], "standard_name").compare(0, 5, "grid_") == 0; // about another pole
-    axis.Title = this->TitleOf(from[a], degrees ? (a == 0 ? "longitude" : "latitude") : this->Names[a]);
+    axis.Title = this->TitleOr(from[a], degrees ? (a == 0 ? "longitude" : "latitude") : this->Names[a]);
     if (degrees) {
       axis.Kind = turned ? vtkStratusVariableReader::AXIS_OF_NUMBERS
         : a == 0         ? vtkStratusVariableReader::AXIS_OF_LONGITUDES
@@ -304,14 +298,14 @@ void vtkStratusCFGrid::DescribeVertical()
   vtkStratusFileAxis& axis = this->FileAxes[2];
   const bool down = this->Vertical->IsDepth();
   const bool of_levels = !this->Vertical->IsCurved() || this->Vertical->IsField(); // else the formula's heights have no name in the file
-  axis.Title = this->TitleOf(of_levels ? this->Vertical->GetSource() : nullptr, down ? "depth" : this->Names[2]);
+  axis.Title = this->TitleOr(of_levels ? this->Vertical->GetSource() : nullptr, down ? "depth" : this->Names[2]);
   axis.Scale = down ? -1.0 : 1.0;
   if (this->Vertical->IsCurved() || !this->Along[2] || !this->Vertical->GetUnit().IsPressure()) {
     return;
   }
   const double unit = this->Vertical->IsSea() ? 1e4 : 100.0; // Pa
   axis.Kind = vtkStratusVariableReader::AXIS_OF_LEVELS;
-  axis.Title = this->TitleOf(this->Along[2], "pressure");
+  axis.Title = this->TitleOr(this->Along[2], "pressure");
   axis.Units = this->Vertical->IsSea() ? "dbar" : "hPa";
   axis.Scale = 1.0;
   for (double level : this->Axes[2]) {

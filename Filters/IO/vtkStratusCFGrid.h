@@ -74,7 +74,7 @@ private:
   void ConvertUnits();
   void NameAxes(const std::array<const Variable*, 2>& from, const std::array<vtkStratusUnit, 2>& units, bool degrees);
   void ConvertAxis(int axis);
-  std::string TitleOf(const Variable* coordinate, const std::string& usual) const;
+  std::string TitleOr(const Variable* coordinate, const std::string& usual) const;
   void DescribeHorizontal(const std::array<const Variable*, 2>& from, bool degrees);
   void DescribeVertical();
   double MiddleLatitude() const;

@@ -264,6 +264,20 @@ size_t vtkStratusNetCDFFile::CountOf(const Variable& variable) const
   return count;
 }
 
+std::string vtkStratusNetCDFFile::Title(const Variable& variable) const
+{
+  constexpr size_t longest = 32;
+  std::string title = this->Text(variable, "long_name");
+  if (title.empty() || title.size() > longest) {
+    title = this->Text(variable, "standard_name");
+    std::replace(title.begin(), title.end(), '_', ' ');
+  }
+  if (title == "projection x coordinate" || title == "projection y coordinate") {
+    return title.substr(11, 1); // the letter says as much
+  }
+  return title;
+}
+
 std::string vtkStratusNetCDFFile::Text(const Variable& variable, const char* attribute) const
 {
   nc_type type = NC_NAT;

@@ -64,6 +64,8 @@ public:
   size_t CountOf(const Variable& variable) const;   // values
 
   std::string Text(const Variable& variable, const char* attribute) const; // "" if there is none
+  // Returns the name of a coordinate in words: its long_name, unless that is a sentence, or its standard_name, or "".
+  std::string Title(const Variable& variable) const;
   bool Has(const Variable& variable, const char* attribute) const;
   bool Number(const Variable& variable, const char* attribute, double& value) const;
 

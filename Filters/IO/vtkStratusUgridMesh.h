@@ -48,6 +48,7 @@ public:
     const std::string& name = axis == 0 ? this->XName : this->YName;
     return this->Degrees ? (axis == 0 ? "east" : "north") : name.substr(name.rfind('/') + 1);
   }
+  const std::string& GetCoordinateName(int axis) const { return axis == 0 ? this->XName : this->YName; } // in the file
   bool IsInDegrees() const { return this->Degrees; }
   double GetFactor(int axis) const { return this->Factors[static_cast<size_t>(axis)]; } // from the file's x and y, or degrees, to metres
   bool IsInMetres() const { return this->Metres; }

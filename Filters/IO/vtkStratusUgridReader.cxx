@@ -153,9 +153,13 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
     this->AxisNames[a] = a < 2 ? mesh.GetAxisName(a) : "height";
   }
   this->AxisUnits[2] = "m";
-  for (int a = 0; a < 2 && mesh.IsInDegrees(); ++a) {
-    this->FileAxes[a] = { a == 0 ? AXIS_OF_LONGITUDES : AXIS_OF_LATITUDES, a == 0 ? "longitude" : "latitude", "degrees",
-      1.0 / mesh.GetFactor(a), {} };
+  for (int a = 0; a < 2; ++a) {
+    if (mesh.IsInDegrees()) {
+      this->FileAxes[a] = { a == 0 ? AXIS_OF_LONGITUDES : AXIS_OF_LATITUDES, a == 0 ? "longitude" : "latitude", "degrees",
+        1.0 / mesh.GetFactor(a), {} };
+    }
+    const std::string title = file.Title(*file.Find(mesh.GetCoordinateName(a)));
+    this->FileAxes[a].Title = title.empty() ? this->FileAxes[a].Title : title;
   }
   if (layers.IsDepth()) {
     this->FileAxes[2].Title = "depth";

@@ -71,7 +71,7 @@ def _title(coordinate, usual):
     name = str(coordinate.attrs.get("long_name", ""))
     if not name or len(name) > _TITLE:
         name = str(coordinate.attrs.get("standard_name", "")).replace("_", " ")
-    return name or usual
+    return {"projection x coordinate": "x", "projection y coordinate": "y"}.get(name, name or usual)
 
 
 def axes_of(names, coordinates, places, earth):
