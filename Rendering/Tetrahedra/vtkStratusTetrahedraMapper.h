@@ -127,7 +127,7 @@ public:
   //@{
   /**
    * Set/Get how far away matter casts its shadows, 0..1: from next to nothing to the diagonal of the volume's bounds. This is the property
-   * of vtkGPUVolumeRayCastMapper, which maps it to lengths alike, but 1 is the default here, the whole way. Below 1, opaque surfaces take
+   * of vtkGPUVolumeRayCastMapper, which maps it to lengths alike; but the default here is 1, without a limit. Below 1, opaque surfaces take
    * no shadows.
    */
   vtkSetClampMacro(GlobalIlluminationReach, double, 0.0, 1.0);

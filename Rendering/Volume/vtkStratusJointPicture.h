@@ -59,6 +59,10 @@ public:
   void ForgetTime() { this->FullMilliseconds = 0.0; }
   void ReleaseGraphicsResources(vtkWindow* window) { this->Display.ReleaseGraphicsResources(window); }
 
+  // The error of random paths through several grids.
+  static constexpr const char* NoPaths =
+    "paths go through one grid alone, not through several: composite mode with MultipleScattering scatters light in all of them";
+
   // Whether another prop is drawn by this module and writes no depth, so that no ray ends at it.
   static bool EndsNoRay(vtkProp* other);
 

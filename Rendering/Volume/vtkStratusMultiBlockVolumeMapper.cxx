@@ -350,6 +350,10 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
 bool vtkStratusMultiBlockVolumeMapper::Internals::Describe(vtkRenderer* renderer, vtkVolume* volume, std::string& error)
 {
   const size_t count = this->Mappers.size();
+  if (this->Settings->GetRenderMode() == vtkStratusVolumeMapper::PATH_MODE) {
+    error = vtkStratusJointPicture::NoPaths;
+    return false;
+  }
   double ranges[4] = { HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL }; // of all blocks
   for (size_t i = 0; i<count&& this->Transfer2DRanges[0]> this->Transfer2DRanges[1]; ++i) {
     this->Mappers[i]->Internal->AddTransfer2DRanges(volume->GetProperty(), ranges);

@@ -125,7 +125,9 @@ bool vtkStratusMultiVolume::Internals::PrepareContext(std::string& error)
 bool vtkStratusMultiVolume::Internals::DescribeVolume(
   vtkRenderer* renderer, vtkVolume* volume, vtkStratusVolumeMapper* mapper, std::string& error)
 {
-  if (mapper->Internal->Describe(renderer, volume, this->Options[this->Count], error)) {
+  if (mapper->GetRenderMode() == vtkStratusVolumeMapper::PATH_MODE) {
+    error = vtkStratusJointPicture::NoPaths;
+  } else if (mapper->Internal->Describe(renderer, volume, this->Options[this->Count], error)) {
     mapper->Internal->LeftOut.Warn(mapper);
   }
   this->First = this->First ? this->First : mapper;

@@ -148,7 +148,7 @@ const char* vtkStratusVolumeMapper::GetStructureAsString()
 
 const char* vtkStratusVolumeMapper::GetRenderModeAsString()
 {
-  return stratus_mode_name(static_cast<stratus_mode>(this->RenderMode));
+  return this->RenderMode == PATH_MODE ? "path" : stratus_mode_name(static_cast<stratus_mode>(this->RenderMode));
 }
 
 bool vtkStratusVolumeMapper::GetToleranceMet()
@@ -254,6 +254,8 @@ void vtkStratusVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FinalColorWindow: " << this->FinalColorWindow << "\n";
   os << indent << "FinalColorLevel: " << this->FinalColorLevel << "\n";
   os << indent << "RenderMode: " << this->GetRenderModeAsString() << "\n";
+  os << indent << "PathTolerance: " << this->PathTolerance << "\n";
+  os << indent << "PathSeconds: " << this->PathSeconds << "\n";
   os << indent << "Normals: " << (this->Normals == GRADIENT_NORMALS ? "gradient" : "faces") << "\n";
   os << indent << "Structure: " << this->GetStructureAsString() << "\n";
   os << indent << "Sampling: " << this->GetSamplingAsString() << "\n";

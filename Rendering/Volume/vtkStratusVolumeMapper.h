@@ -63,6 +63,11 @@
  * Ambient, Diffuse, Specular and SpecularPower apply. A voxel of point data is a box about its point, halfway to the next ones, so that
  * the mapper's bounds extend half a voxel farther.
  *
+ * RenderModeToPath shows the light that the matter scatters by random paths, without a model: the reference of
+ * VolumetricScatteringBlending 2, and of MultipleScattering where that is on. A Render() adds paths for PathSeconds, and continues the last
+ * picture if nothing has changed. Until PathTolerance is reached it invokes vtkCommand::UpdateEvent, so that a program can draw the
+ * next one. Images of one component, without labels and gradient opacity. Surfaces end its rays, and take and cast no shadows.
+ *
  * The tree of an image that carries one (vtkStratusHybridTreeFilter) is used if it serves the transfer function: by first hits and by
  * HYBRID_STRUCTURE always, by AUTO_STRUCTURE where it is faster.
  *
@@ -100,17 +105,46 @@ public:
   vtkTypeMacro(vtkStratusVolumeMapper, vtkVolumeMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  enum RenderModeType { COMPOSITE_MODE, FIRST_HIT_MODE };
+  enum RenderModeType { COMPOSITE_MODE, FIRST_HIT_MODE, PATH_MODE };
   //@{
   /**
    * Set/Get the render mode. COMPOSITE_MODE collects light along the whole ray. FIRST_HIT_MODE shows the first voxel of opacity > 0 as a
-   * lit, opaque solid. Default COMPOSITE_MODE.
+   * lit, opaque solid. PATH_MODE shows scattered light by random paths. Default COMPOSITE_MODE.
    */
-  vtkSetClampMacro(RenderMode, int, COMPOSITE_MODE, FIRST_HIT_MODE);
+  vtkSetClampMacro(RenderMode, int, COMPOSITE_MODE, PATH_MODE);
   vtkGetMacro(RenderMode, int);
   void SetRenderModeToComposite() { this->SetRenderMode(COMPOSITE_MODE); }
   void SetRenderModeToFirstHit() { this->SetRenderMode(FIRST_HIT_MODE); }
+  void SetRenderModeToPath() { this->SetRenderMode(PATH_MODE); }
   const char* GetRenderModeAsString();
+  //@}
+
+  //@{
+  /**
+   * Set/Get at which standard error a picture of PATH_MODE is finished, at least 0: root mean square over the pixels that show something.
+   * Default 0.01. 0: never.
+   */
+  vtkSetClampMacro(PathTolerance, double, 0.0, 1e30);
+  vtkGetMacro(PathTolerance, double);
+  //@}
+
+  //@{
+  /**
+   * Set/Get for how many seconds a Render() of PATH_MODE adds paths, at least 0. An unfinished picture gets at least one path a pixel more,
+   * a new one two. Default 0.2.
+   */
+  vtkSetClampMacro(PathSeconds, double, 0.0, 1e30);
+  vtkGetMacro(PathSeconds, double);
+  //@}
+
+  //@{
+  /**
+   * Get the standard error of the last picture of PATH_MODE (NaN: none was drawn), its paths a pixel, and whether it has reached
+   * PathTolerance.
+   */
+  double GetPathError();
+  vtkTypeUInt64 GetPathSamples();
+  bool GetPathFinished();
   //@}
 
   enum NormalsType { FACE_NORMALS, GRADIENT_NORMALS };
@@ -270,7 +304,7 @@ public:
   //@{
   /**
    * Set/Get how far away matter casts its shadows, 0..1: from next to nothing to the diagonal of the volume's bounds. This is the property
-   * of vtkGPUVolumeRayCastMapper, which maps it to lengths alike, but 1 is the default here, the whole way. Below 1, opaque surfaces take
+   * of vtkGPUVolumeRayCastMapper, which maps it to lengths alike; but the default here is 1, without a limit. Below 1, opaque surfaces take
    * no shadows.
    */
   vtkSetClampMacro(GlobalIlluminationReach, double, 0.0, 1.0);
@@ -736,6 +770,7 @@ protected:
   float FinalColorWindow = 1.0f;
   float FinalColorLevel = 0.5f;
   int RenderMode = COMPOSITE_MODE;
+  double PathTolerance = 0.01, PathSeconds = 0.2;
   int Normals = FACE_NORMALS;
   int Structure = AUTO_STRUCTURE;
   int Sampling = AUTO_SAMPLING;

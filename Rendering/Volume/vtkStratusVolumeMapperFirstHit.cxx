@@ -31,14 +31,14 @@ bool vtkStratusVolumeMapper::Internals::SetShading(
 {
   vtkVolumeProperty* property = volume->GetProperty();
   const bool shade = property->GetShade() && this->HasLight();
-  if (!this->SetMaterials(property, options) && !this->IsFirstHit() && !shade) {
+  if (!this->SetMaterials(property, options) && !this->IsFirstHit() && !this->IsPath() && !shade) {
     return true;
   }
   stratus_shading& shading = options.light.shading;
   shading.on = shade || options.light.materials ? 1 : 0;
   options.light.shade = shade ? 1 : 0;
   vtkStratusSetScattering(this->Mapper, volume, shading);
-  shading.surfaces = shading.shadows ? this->Surfaces.Find(renderer) : nullptr;
+  shading.surfaces = shading.shadows && !this->IsPath() ? this->Surfaces.Find(renderer) : nullptr;
   return vtkStratusSetShading(renderer, this->Mapper->GetSun(), property, shading, error);
 }
 

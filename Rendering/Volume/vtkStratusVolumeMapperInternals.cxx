@@ -27,7 +27,10 @@ vtkStratusVolumeMapper::Internals::Internals(vtkStratusVolumeMapper* mapper)
   this->Report.tolerance_met = 1;
   this->Context.OnRelease = [this] {
     stratus_ray_caster_destroy(this->Caster);
+    stratus_path_tracer_destroy(this->Tracer);
     this->Caster = nullptr;
+    this->Tracer = nullptr;
+    this->PathReport = stratus_path_report();
     this->OfferedTo = nullptr; // the next caster may get the same address
     this->FullMilliseconds = 0.0;
   };
@@ -66,8 +69,9 @@ bool vtkStratusVolumeMapper::Internals::CheckMapper(std::string& error) const
   const int blend = mapper->BlendMode;
   if (blend < vtkVolumeMapper::COMPOSITE_BLEND || blend > vtkVolumeMapper::SLICE_BLEND) {
     error = "blend mode " + std::to_string(blend) + " is not supported, only composite (0) to slice (6) are";
-  } else if (this->IsFirstHit() && blend != vtkVolumeMapper::COMPOSITE_BLEND) {
-    error = "blend mode " + std::to_string(blend) + " is not supported in first hits, only composite (0) is";
+  } else if ((this->IsFirstHit() || this->IsPath()) && blend != vtkVolumeMapper::COMPOSITE_BLEND) {
+    error = "blend mode " + std::to_string(blend) + " is not supported in " + (this->IsPath() ? "paths" : "first hits") +
+      ", only composite (0) is";
   } else if (this->HasLabels() && mapper->MaskBlendFactor != 1.0f) {
     error = "MaskBlendFactor is " + std::to_string(mapper->MaskBlendFactor) + ", only 1 is supported: labels replace what the property has";
   } else if (!std::isfinite(mapper->GradientOpacityDistance)) {

@@ -64,6 +64,8 @@ public:
   stratus_ray_caster* Caster = nullptr;
   vtkStratusContext Context;
   stratus_ray_cast_report Report = stratus_ray_cast_report();
+  stratus_path_tracer* Tracer = nullptr; // of paths; belongs to the context
+  stratus_path_report PathReport = stratus_path_report();
   vtkNew<vtkTable> BuildReport;
   vtkStratusCellFinder Finder;
   vtkStratusImageView Image;
@@ -109,6 +111,9 @@ private:
   bool SetOptions(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);
   // Light and first hits (vtkStratusVolumeMapperFirstHit.cxx).
   bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
+  // Random paths (vtkStratusVolumeMapperPath.cxx).
+  bool IsPath() const { return this->Mapper->RenderMode == PATH_MODE; }
+  stratus_status CastPaths(const stratus_ray_cast_options& options, const stratus_image& image);
   bool SetShading(vtkRenderer* renderer, vtkVolume* volume, stratus_ray_cast_options& options, std::string& error);
   bool SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options);
   bool SetMask(vtkVolumeProperty* property, stratus_ray_cast_options& options, std::string& error);

@@ -4,6 +4,7 @@
 
 #include "vtkStratusJointPicture.h"
 
+#include "vtkCommand.h"
 #include "vtkImageData.h"
 #include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
@@ -102,8 +103,9 @@ bool vtkStratusVolumeMapper::Internals::Cast(
     this->Rgba, this->Depth, opaqueDepth, this->HasSamples ? &this->Samples : nullptr, bytes ? &this->Bytes : nullptr);
   this->Renderer = renderer;
   stratus_context_start_build_report(this->Context.Get());
-  const stratus_status status = stratus_ray_caster_render(
-    this->Caster, &this->Image.GetVolume(), this->Functions.data(), &this->Picture.Camera, &options, &image, &this->Report);
+  const stratus_status status = this->IsPath() ? this->CastPaths(options, image)
+                                               : stratus_ray_caster_render(this->Caster, &this->Image.GetVolume(), this->Functions.data(),
+                                                   &this->Picture.Camera, &options, &image, &this->Report);
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
   }
@@ -243,12 +245,15 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
     this->Finder.Set(this->PickedOf ? this->PickedOf.Get() : this->Mapper->GetDataObjectInput(), prop->GetMatrix());
     pixels.Finder = &this->Finder;
   }
-  if (!this->IsFirstHit() && this->Mapper->BlendMode == vtkVolumeMapper::COMPOSITE_BLEND) {
+  if (!this->IsFirstHit() && !this->IsPath() && this->Mapper->BlendMode == vtkVolumeMapper::COMPOSITE_BLEND) {
     pixels.Cast = [this, options](const float* depths, std::vector<float>& rgba) { return this->CastTo(options, depths, rgba); };
   }
   const bool drawn = this->Display.Draw(renderer, this->Picture, pixels, error);
   if (drawn) {
     this->DrawMilliseconds = Now() - cast + read - start;
+  }
+  if (drawn && this->IsPath() && !this->Mapper->GetPathFinished()) {
+    this->Mapper->InvokeEvent(vtkCommand::UpdateEvent);
   }
   return drawn;
 }

@@ -113,7 +113,7 @@ void RenderModesAndNormals()
   scene.Mapper->SetNormals(9);
   CHECK(scene.Mapper->GetNormals() == Mapper::GRADIENT_NORMALS, "normals %d", scene.Mapper->GetNormals());
   scene.Mapper->SetRenderMode(9);
-  CHECK(scene.Mapper->GetRenderMode() == Mapper::FIRST_HIT_MODE, "mode %d", scene.Mapper->GetRenderMode());
+  CHECK(scene.Mapper->GetRenderMode() == Mapper::PATH_MODE, "mode %d", scene.Mapper->GetRenderMode());
   scene.Mapper->SetRenderMode(-9);
   property->ShadeOff();
   CHECK(scene.Mapper->GetRenderMode() == Mapper::COMPOSITE_MODE && scene.Picture() == light, "mode %d", scene.Mapper->GetRenderMode());
