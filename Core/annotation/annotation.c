@@ -10,6 +10,8 @@
 
 #include <string.h>
 
+#define MOST_LONGITUDE 3600.0 /* degrees: lines are drawn anew in each turn */
+
 stratus_annotation stratus_annotation_default(void)
 {
   stratus_annotation annotation;
@@ -30,6 +32,22 @@ static stratus_status check_bar(stratus_context* context, const stratus_annotati
   for (size_t i = 0; i < 4 * a->color_count; ++i) {
     if (!isfinite(a->color[i])) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "point %zu of the colour bar is not finite", i / 4);
+    }
+  }
+  return STRATUS_OK;
+}
+
+static stratus_status check_coast(stratus_context* context, const stratus_annotation* a)
+{
+  if (stratus_coast_face(a) < 0) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "coastlines need an axis of longitudes and one of latitudes");
+  }
+  for (int side = 0; side < 6; ++side) {
+    const stratus_axis* const axis = &a->axis[side / 2];
+    const double degrees = a->bounds[side] * axis->scale;
+    if (axis->kind == STRATUS_AXIS_LONGITUDE && !(fabs(degrees) <= MOST_LONGITUDE)) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "coastlines at longitude %g degrees, must be in -%g..%g", degrees,
+        MOST_LONGITUDE, MOST_LONGITUDE);
     }
   }
   return STRATUS_OK;
@@ -57,10 +75,7 @@ static stratus_status check(stratus_context* context, const stratus_annotation* 
     }
     TRY(stratus_axis_check(context, &a->axis[axis]));
   }
-  if (a->coast && stratus_coast_face(a) < 0) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "coastlines need an axis of longitudes and one of latitudes");
-  }
-  return STRATUS_OK;
+  return a->coast ? check_coast(context, a) : STRATUS_OK;
 }
 
 stratus_status stratus_annotation_room(

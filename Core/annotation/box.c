@@ -95,7 +95,7 @@ static edge find_edge(const stratus_sheet* sheet, const stratus_annotation* anno
       result.seen = true;
     }
   }
-  result.length = hypot(result.end[0] - result.begin[0], result.end[1] - result.begin[1]);
+  result.length = stratus_length_2(result.end[0] - result.begin[0], result.end[1] - result.begin[1]);
   result.seen = result.seen && result.length >= LEAST_EDGE && stratus_sheet_project(sheet, center, middle);
   if (result.seen) {
     for (int i = 0; i < 2; ++i) {

@@ -78,7 +78,7 @@ void stratus_sheet_line(stratus_sheet* sheet, const double from[2], const double
     for (int j = low; j <= high; ++j) {
       const double p[2] = { along == 0 ? i : j, along == 0 ? j : i };
       const double t = fmin(fmax(((p[0] - from[0]) * d[0] + (p[1] - from[1]) * d[1]) / square, 0.0), 1.0);
-      const double distance = hypot(p[0] - from[0] - t * d[0], p[1] - from[1] - t * d[1]);
+      const double distance = stratus_length_2(p[0] - from[0] - t * d[0], p[1] - from[1] - t * d[1]);
       float* const put = &sheet->coverage[(size_t)p[1] * (size_t)sheet->width + (size_t)p[0]];
       *put = fmaxf(*put, 0.8f * (float)fmin(fmax(reach - distance, 0.0), 1.0));
     }
@@ -159,7 +159,7 @@ stratus_status stratus_sheet_take(stratus_sheet* sheet, stratus_pixels where)
 
 stratus_status stratus_sheet_keep_off(stratus_sheet* sheet, const double from[2], const double to[2])
 {
-  const int count = (int)fmin(hypot(to[0] - from[0], to[1] - from[1]) / 4.0, 4096.0) + 1;
+  const int count = (int)fmin(stratus_length_2(to[0] - from[0], to[1] - from[1]) / 4.0, 4096.0) + 1;
   for (int i = 0; i <= count; ++i) {
     const double t = (double)i / count, x = from[0] + t * (to[0] - from[0]), y = from[1] + t * (to[1] - from[1]);
     if (x >= 0.0 && y >= 0.0 && x < sheet->width && y < sheet->height) {

@@ -17,6 +17,11 @@
 #define RAISED_BY 6.0
 #define CURVE 6 /* lines of each part of a curve */
 
+double stratus_length_2(double x, double y)
+{
+  return sqrt(x * x + y * y);
+}
+
 /* The places of a glyph's units in pixels, so that straight strokes are in the middles of pixels. */
 typedef struct pen {
   double unit, wide, small, capital, half; /* half: of the stroke's width */
@@ -91,7 +96,7 @@ static void draw_line(stratus_text* text, const pen* p, const double a[2], const
   for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
       const double t = fmin(fmax(((x - a[0]) * dx + (y - a[1]) * dy) / square, 0.0), 1.0);
-      const double distance = hypot(x - a[0] - t * dx, y - a[1] - t * dy);
+      const double distance = stratus_length_2(x - a[0] - t * dx, y - a[1] - t * dy);
       float* const to = &text->coverage[(size_t)y * (size_t)text->width + (size_t)x];
       *to = fmaxf(*to, (float)fmin(fmax(p->half + 0.5 - distance, 0.0), 1.0));
     }

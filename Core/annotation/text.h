@@ -23,6 +23,9 @@ int stratus_text_width(const char* line, double size);
 int stratus_text_height(const char* line, double size);
 int stratus_line_height(double size);
 
+/* sqrt(x * x + y * y): glibc 2.35 has another hypot() than older ones. */
+double stratus_length_2(double x, double y);
+
 /* Reads a character of UTF-8 and moves on. Bytes that are none are characters of Latin-1. */
 uint32_t stratus_text_next(const char** at);
 

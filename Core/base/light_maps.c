@@ -947,7 +947,7 @@ double stratus_light_maps_error(const stratus_light_maps* maps)
   double squares = maps ? maps->scatter_error * maps->scatter_error : 0.0;
   for (int i = 0; maps && i < maps->count; ++i) {
     const map* m = &maps->of[i];
-    const double error = hypot(m->error, m->surface_error) * brightness_of(&m->light, 1);
+    const double error = sqrt(m->error * m->error + m->surface_error * m->surface_error) * brightness_of(&m->light, 1);
     squares += error * error;
   }
   return sqrt(squares);

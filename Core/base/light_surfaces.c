@@ -53,7 +53,7 @@ static void draw_triangle(const drawing* d, float* face, double p[3][3], int fir
   double edge[3]; /* the weight that a distance of EDGE is, of each corner */
   for (int i = 0; i < 3; ++i) {
     const double *a = p[(i + 1) % 3], *b = p[(i + 2) % 3];
-    edge[i] = EDGE * hypot(b[0] - a[0], b[1] - a[1]) / fabs(area);
+    edge[i] = EDGE * sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1])) / fabs(area);
   }
   for (int y = (int)ceil(lo[1]); y <= (int)floor(hi[1]); ++y) {
     for (int x = (int)ceil(lo[0]); x <= (int)floor(hi[0]); ++x) {

@@ -59,7 +59,7 @@ typedef struct stratus_annotation {
   double bounds[6];     /* of the volume in the world: xmin, xmax, ymin, ymax, zmin, zmax */
   stratus_axis axis[3]; /* x, y, z */
   /* 1: coastlines within `bounds`, on the face where the axis that is neither longitude nor latitude begins; of depths, scale < 0, where it
-   * ends. Needs a LONGITUDE and a LATITUDE. Default 0. */
+   * ends. Needs a LONGITUDE, within 3600 degrees, and a LATITUDE. Default 0. */
   int coast;
   /* Of the colour bar: quadruples of value, red, green and blue in 0..1, by ascending value, `color_count` of them. Default 0: no bar. */
   const double* color;

@@ -385,6 +385,9 @@ static void wrong_annotations_are_refused(void** state)
   a.coast = 1;
   a.axis[0].kind = STRATUS_AXIS_NUMBER;
   refused(stratus_annotation_room(context, &a, 64, 64, room), "coastlines need an axis of longitudes");
+  a.axis[0].kind = STRATUS_AXIS_LONGITUDE;
+  a.axis[0].scale = 1e3;
+  refused(stratus_annotation_room(context, &a, 64, 64, room), "coastlines at longitude -6000 degrees, must be in -3600..3600");
   a = crowded(6.0, 3.0, 2.0);
   stratus_camera flat = camera;
   memcpy(flat.up, flat.right, sizeof flat.up);
