@@ -87,8 +87,8 @@ std::string describe_axes(const options& o, const double bounds[6])
   for (size_t a = 0; a < 3; ++a) {
     const axis_about& axis = o.about.axes[a];
     const size_t n = axis.levels.size(), first = n > 0 && axis.levels[0] < axis.levels[n - 2] ? 0 : n - 2;
-    const double low = n > 0 ? axis.levels[first + 1] : bounds[2 * a] * axis.scale,
-                 high = n > 0 ? axis.levels[n - 1 - first] : bounds[2 * a + 1] * axis.scale;
+    const double low = n > 0 ? axis.levels[first + 1] : bounds[2 * a] * axis.scale + 0.0,
+                 high = n > 0 ? axis.levels[n - 1 - first] : bounds[2 * a + 1] * axis.scale + 0.0; // no -0
     text += (a > 0 ? ", " : "") + (axis.title.empty() ? std::string(1, "xyz"[a]) : axis.title) + format(" %.6g .. %.6g", low, high) +
       (axis.units.empty() ? "" : " " + axis.units);
   }

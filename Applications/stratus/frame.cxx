@@ -161,18 +161,16 @@ void frame::annotate(const context& core, const annotation& wish, const scene_fr
   }
 }
 
-void frame::write(output_file& file) const
+void frame::write(const context& core, output_file& file) const
 {
   if (this->IsExr) {
     file.write(this->encode_exr());
-  } else if (this->ShowsSamples) {
+  } else if (this->ShowsSamples || !this->Wanted.empty()) {
     const std::vector<float> samples(this->Samples.begin(), this->Samples.end());
-    const heat_scale scale = { 0.0, std::max(1.0, range_of(samples).high), "samples a pixel", "" };
-    file.write(
-      encode(this->Format, heat_map(samples, this->Width, this->Height, scale, this->Color), this->Width + heat_bar_width, this->Height));
-  } else if (!this->Wanted.empty()) {
-    file.write(encode(this->Format, heat_map(this->Numbers[0], this->Width, this->Height, this->scale_of(0), this->Color),
-      this->Width + heat_bar_width, this->Height));
+    const heat_scale scale =
+      this->ShowsSamples ? heat_scale{ 0.0, std::max(1.0, range_of(samples).high), "samples a pixel", "" } : this->scale_of(0);
+    const heat_picture map = heat_map(core, this->ShowsSamples ? samples : this->Numbers[0], this->Width, this->Height, scale, this->Color);
+    file.write(encode(this->Format, map.rgb, map.width, this->Height));
   } else {
     file.write(
       encode(this->Format, to_bytes(this->Rgba, this->Width, this->Height, this->Behind, this->Linear), this->Width, this->Height));

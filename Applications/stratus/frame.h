@@ -31,7 +31,7 @@ public:
   std::string describe_samples() const;
   // Puts annotations around the picture, unless it shows other numbers than colours.
   void annotate(const context& core, const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time);
-  void write(output_file& file) const;
+  void write(const context& core, output_file& file) const;
 
 private:
   std::vector<uint8_t> encode_exr() const;

@@ -134,7 +134,7 @@ void render_one(const cli::options& given, const cli::routed& data, const cli::s
   if (o.report) {
     core.print_build_report();
   }
-  frame.write(out);
+  frame.write(core, out);
   row("picture", o.output);
   drawing->judge();
 }
@@ -234,7 +234,7 @@ void render_film(const cli::options& given, cli::series& in, const cli::cloud* w
       }
       annotate(core, frame, o, *drawing, &in, step);
       cli::output_file out(frame_name(o.frames, step));
-      frame.write(out);
+      frame.write(core, out);
       drawing->judge();
       progress.done(step + 1, frame_name(o.frames, step), in.describe(step));
       if (next.valid()) {

@@ -67,6 +67,18 @@ static size_t piece_of(const char* text)
   return n + (text[n] ? 1 : 0);
 }
 
+/* Adds a line, without the space where it broke. */
+static void add_line(stratus_lines* to, char* line, double size, int width)
+{
+  const size_t length = strlen(line);
+  if (length > 0 && line[length - 1] == ' ') {
+    line[length - 1] = '\0';
+  }
+  shorten(line, size, width);
+  snprintf(to->line[to->count++], STRATUS_LAYOUT_BYTES, "%s", line);
+  line[0] = '\0';
+}
+
 /* Breaks a text into at most `most` lines. The last one is shortened if there are more. Returns whether the lines have all of the text. */
 static bool break_lines(const char* text, double size, int width, int most, stratus_lines* to)
 {
@@ -81,9 +93,7 @@ static bool break_lines(const char* text, double size, int width, int most, stra
     snprintf(longer, sizeof longer, "%s%.*s", line, (int)(shown < 256 ? shown : 256), text);
     const bool fits = stratus_text_width(longer, size) <= width;
     if (line[0] && !fits && !last) {
-      shorten(line, size, width);
-      snprintf(to->line[to->count++], STRATUS_LAYOUT_BYTES, "%s", line);
-      line[0] = '\0';
+      add_line(to, line, size, width);
       continue;
     }
     snprintf(line, sizeof line, "%.*s", STRATUS_LAYOUT_BYTES - 8, longer);
@@ -93,9 +103,7 @@ static bool break_lines(const char* text, double size, int width, int most, stra
       if (last && *text) {
         strcat(line, "\xe2\x80\xa6"); /* there is more */
       }
-      shorten(line, size, width);
-      snprintf(to->line[to->count++], STRATUS_LAYOUT_BYTES, "%s", line);
-      line[0] = '\0';
+      add_line(to, line, size, width);
     }
   }
   return all && !*text;

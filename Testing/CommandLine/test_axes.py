@@ -156,6 +156,33 @@ has_axes(turned, west + "air pressure 1000 .. 100 hPa")
 same(drawn(turned, "--axes"), drawn(pressure, "--axes"), "levels of pressure from above or below, in Pa or hPa")
 check((numpy.abs(drawn(deep, "--axes") - drawn(deep, "--axes", "--exaggerate", "2")) > 60).sum() > 50, "heights can be exaggerated")
 
+# Heights that a formula gives, and unstructured meshes: depths count downwards.
+levels = ("sigma", "y", "x")
+sigma = write("terrain", (("sigma", numpy.linspace(-1, 0, nz), {"standard_name": "ocean_sigma_coordinate", "positive": "up",
+    "formula_terms": "sigma: sigma eta: eta depth: bed"}), ("y", lat, None), ("x", lon, None)), (
+    ("XLONG", levels[1:], numpy.broadcast_to(lon, (ny, nx)), {"units": "degrees_east"}),
+    ("XLAT", levels[1:], numpy.broadcast_to(lat[:, None], (ny, nx)), {"units": "degrees_north"}),
+    ("eta", levels[1:], numpy.zeros((ny, nx)), {"units": "m"}), ("bed", levels[1:], numpy.full((ny, nx), 200.0), {"units": "m"})))
+has_axes(sigma, "longitude -97 .. -96.3 degrees, latitude 40 .. 40.5 degrees, depth 200 .. 0 m")
+with netCDF4.Dataset("mesh.nc", "w") as file:
+    for name, size in ("node", 4), ("face", 2), ("corner", 3), ("layer", nz):
+        file.createDimension(name, size)
+    file.createVariable("mesh", "i4").setncatts({"cf_role": "mesh_topology", "topology_dimension": 2, "node_coordinates": "node_x node_y",
+        "face_node_connectivity": "corners"})
+    for name, values, about in (("node_x", [5, 6, 6, 5], {"units": "degrees_east", "long_name": "longitude of nodes"}),
+            ("node_y", [50, 50, 51, 51], {"units": "degrees_north", "standard_name": "latitude"})):
+        file.createVariable(name, "f8", ("node",))[:] = values
+        file[name].setncatts(about)
+    file.createVariable("corners", "i4", ("face", "corner"))[:] = [[0, 1, 2], [0, 2, 3]]
+    file["corners"].setncatts({"start_index": 0})
+    file.createVariable("layer", "f8", ("layer",))[:] = depths
+    file["layer"].setncatts({"units": "m", "positive": "down", "standard_name": "depth"})
+    file.createVariable("q", "f8", ("face", "layer"))[:] = numpy.arange(2 * nz).reshape(2, nz)
+    file["q"].setncatts({"mesh": "mesh", "location": "face"})
+found = axes_of("mesh.nc")
+check(found.startswith("longitude of nodes 5 .. 6 degrees, latitude 50 .. 51 degrees, depth ") and found.endswith(" m"), "UGRID: " + found)
+check([float(word) for word in found.split()[-4:-1:2]][0] > 5000, "UGRID's lowest layer is the deepest: " + found)
+
 # Coastlines: at the bottom of the air, and at the top of the sea. Europe is there from either side of the meridian where longitudes jump.
 wide = (("lat", numpy.linspace(30, 65, ny), {"units": "degrees_north"}), ("lon", numpy.linspace(-20, 40, nx), {"units": "degrees_east"}))
 beyond = (wide[0], ("lon", numpy.linspace(340, 400, nx), {"units": "degrees_east"}))
