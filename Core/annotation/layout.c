@@ -188,8 +188,13 @@ static stratus_status place_bar(stratus_context* context, const stratus_annotati
   /* The narrowest column in which the title has few lines. */
   int column = word < most ? word : most;
   column = own > column ? own : column;
-  while (!break_lines(title, title_size, column, TITLE_LINES, &layout->title) && column < most) {
+  bool whole = break_lines(title, title_size, column, TITLE_LINES, &layout->title);
+  while (!whole && column < most) {
     column += layout->bar_wide;
+    whole = break_lines(title, title_size, column, TITLE_LINES, &layout->title);
+  }
+  if (!whole) {
+    break_lines(title, title_size, column, STRATUS_LAYOUT_LINES, &layout->title);
   }
   const int line = stratus_line_height(title_size), titles = layout->title.count * line;
   layout->bar_tall = (int)fmax(0.6 * (below - titles), 2.0);
