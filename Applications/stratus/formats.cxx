@@ -388,6 +388,30 @@ void select_indices(vtkAlgorithm* reader, const std::string& select)
   throw usage("--select " + select + ": only netCDF has dimensions with names to select from");
 }
 
+void place_on_globe(vtkAlgorithm* reader, double factor)
+{
+#ifdef STRATUS_NETCDF
+  if (vtkStratusNetCDFReader* const earth = vtkStratusNetCDFReader::SafeDownCast(reader)) {
+    earth->SetCoordinatesToSphere();
+    earth->SetHeightFactor(factor);
+    return;
+  }
+#endif
+  (void)factor;
+  throw usage("--globe: only a netCDF file has longitudes and latitudes");
+}
+
+double height_factor_of(vtkAlgorithm* reader)
+{
+#ifdef STRATUS_NETCDF
+  if (vtkStratusNetCDFReader* const earth = vtkStratusNetCDFReader::SafeDownCast(reader)) {
+    return earth->GetUsedHeightFactor();
+  }
+#endif
+  (void)reader;
+  return 0.0;
+}
+
 std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time)
 {
   std::vector<variable_entry> list;

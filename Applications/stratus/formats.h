@@ -15,6 +15,8 @@ namespace cli {
 // How to read a file: the values of --array or --variable, --raw and --select. Empty: the first variable, at the first indices.
 struct reading_options {
   std::string variable, raw, select;
+  bool globe = false;         // longitudes and latitudes are places on a sphere
+  double height_factor = 0.0; // on it; 0: automatic
 };
 
 // The file's own numbers along an axis of the coordinates that are drawn.
@@ -72,6 +74,10 @@ bool has_variable(vtkAlgorithm* reader, const std::string& name);
 void choose_variable(vtkAlgorithm* reader, const std::string& name);
 // Sets the indices at which dimensions are read, "NAME=INDEX,NAME=INDEX". Throws usage for a reader of files without named dimensions.
 void select_indices(vtkAlgorithm* reader, const std::string& select);
+// Places a reader's longitudes and latitudes on a sphere, with heights times `factor`, or 0: automatic. Throws usage for a file that is not
+// netCDF.
+void place_on_globe(vtkAlgorithm* reader, double factor);
+double height_factor_of(vtkAlgorithm* reader); // that was used on a sphere; 0: there is none
 
 // The parts of a step of a .pvd: all files of one time.
 struct collection_step {

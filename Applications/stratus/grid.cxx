@@ -4,6 +4,7 @@
 #include "camera.h"
 #include "casting.h"
 #include "drawing.h"
+#include "globe.h"
 #include "mesh.h"
 
 #include <algorithm>
@@ -66,6 +67,7 @@ public:
 
 private:
   stratus_tetra_options how() const;
+  int across() const { return this->Options.globe ? -1 : this->up(); } // the axis across layers, -1: away from the middle
   int up() const { return this->Options.up.empty() ? 2 : this->Options.up[0] - 'x'; }
 
   const cli::options& Options;
@@ -87,7 +89,7 @@ void grid_drawing::take(const cli::routed& data)
 void grid_drawing::look()
 {
   const cli::options& o = this->Options;
-  this->Transfer = cli::make_transfer(this->Core, this->Mesh.values(this->up()), nullptr, o);
+  this->Transfer = cli::make_transfer(this->Core, this->Mesh.values(this->across()), nullptr, o);
   const stratus_transfer view = this->Transfer.view();
   this->Core.check(stratus_transfer_check(this->Core, &view), "transfer function");
   double room[4];
@@ -97,7 +99,7 @@ void grid_drawing::look()
 
 std::pair<double, double> grid_drawing::range() const
 {
-  const stratus_look_values found = cli::count_values(this->Core, this->Mesh.values(this->up()));
+  const stratus_look_values found = cli::count_values(this->Core, this->Mesh.values(this->across()));
   return { found.low, found.high };
 }
 
@@ -139,8 +141,17 @@ void grid_drawing::draw(const stratus_image& image)
   }
   const stratus_tetra_options how = this->how();
   const stratus_transfer view = this->Transfer.view();
-  this->Core.check(
-    stratus_tetra_caster_render(this->Caster, &this->Mesh.view(), &view, &this->Camera, &how, &image, &this->Report), "render");
+  stratus_camera camera = this->Camera;
+  stratus_image to = image;
+  std::unique_ptr<cli::globe> earth;
+  if (this->Options.globe) {
+    earth = std::make_unique<cli::globe>(this->Mesh.view());
+    earth->end_rays(camera, to);
+  }
+  this->Core.check(stratus_tetra_caster_render(this->Caster, &this->Mesh.view(), &view, &camera, &how, &to, &this->Report), "render");
+  if (earth) {
+    earth->draw(image);
+  }
 }
 
 void grid_drawing::measure(const stratus_quantities& wanted)

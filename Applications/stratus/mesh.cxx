@@ -60,9 +60,15 @@ stratus_volume mesh::box() const
   return box;
 }
 
-// Height of a point of a lattice. Only the axis of heights is stretched.
+// Height of a point of a lattice. Only the axis of heights is stretched. up: -1: heights are distances from the middle.
 static double height_of(const stratus_mesh& m, size_t point, int up)
 {
+  if (up < 0) {
+    const auto at = [&](size_t axis) {
+      return m.points ? m.points[3 * point + axis] : static_cast<double>(m.float_points[3 * point + axis]);
+    };
+    return std::hypot(at(0), at(1), at(2));
+  }
   const double own = m.points ? m.points[3 * point + static_cast<size_t>(up)] : m.float_points[3 * point + static_cast<size_t>(up)];
   return own * m.matrix[5 * up];
 }
@@ -122,6 +128,9 @@ look_input mesh::values(int up) const
   look_input result;
   result.volumes.push_back(this->box());
   result.unordered = m.lattice[0] == 0;
+  if (result.unordered && up < 0) {
+    return result;
+  }
   if (result.unordered) {
     set_columns(m, up, result);
     return result;

@@ -25,7 +25,7 @@ public:
   const stratus_mesh& view() const { return this->View.GetMesh(); }
   vtkIdType ignored() const { return this->View.GetLeftOut(); }
   // Returns the grid's values to guess an opacity from: those of a structured grid in their order, with the world lengths along its
-  // columns, and others in no spatial order, without the last few. up: the world's axis of heights.
+  // columns, and others in no spatial order, without the last few. up: the axis of heights in the world, -1: away from its middle.
   look_input values(int up) const;
   // Returns a volume of the grid's size, whose values have no spatial order.
   stratus_volume box() const;

@@ -89,6 +89,8 @@ Data and appearance
   --unit-distance D       world length to which alpha applies (default: a voxel's edge)
   --exaggerate F          multiply heights (along the upward axis) by F (default 1; of a flat netCDF file on the Earth as much as makes its
                           height a fifth of its width, which the picture says)
+  --globe                 show longitudes and latitudes of a netCDF file on a sphere of 6371 km, with heights times F of --exaggerate
+                          (default: as much as makes them reach over a tenth of its radius)
   --log                   map colours, and a guessed opacity, to the logarithm of the value, over at most four decades
   --axes                  draw a box around the data, with the file's coordinates: degrees, m or km, depths, pressures
   --coast                 draw coastlines at the bottom of data with longitudes and latitudes, of depths at the top
@@ -594,6 +596,7 @@ constexpr struct {
   { "--log", &options::logarithmic },
   { "--axes", &options::axes },
   { "--coast", &options::coast },
+  { "--globe", &options::globe },
   { "--color-bar", &options::color_bar },
   { "--shade", &options::shade },
   { "--scatter", &options::scatter },

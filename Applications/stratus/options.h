@@ -63,6 +63,7 @@ struct options {
   bool logarithmic = false;
   bool axes = false;
   bool coast = false;
+  bool globe = false;
   bool color_bar = false;
   std::string caption; // {time} is the step's
   bool parallel = false;
@@ -114,7 +115,10 @@ struct options {
   stratus_structure structure = STRATUS_STRUCTURE_AUTO;
   stratus_sampling sampling = STRATUS_SAMPLING_AUTO;
 
-  reading_options reading() const { return { this->array, this->raw, this->select }; }
+  reading_options reading() const
+  {
+    return { this->array, this->raw, this->select, this->globe, this->has_exaggeration ? this->exaggeration : 0.0 };
+  }
 };
 
 // Throws usage for an invalid command line.

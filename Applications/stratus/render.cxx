@@ -90,7 +90,9 @@ void print_reading(const cli::options& o, const cli::series* in, const cli::clou
     row("coordinates", in->grid());
   }
   if (!o.heights.empty()) {
-    row("heights", cli::format("x %.15g, because the data are flat; --exaggerate 1 for true heights", o.exaggeration));
+    row("heights",
+      o.globe ? o.heights.substr(o.heights.find('x')) + " on the globe; --exaggerate 1 for true heights"
+              : cli::format("x %.15g, because the data are flat; --exaggerate 1 for true heights", o.exaggeration));
   }
   if (water) {
     water->print_rows();
@@ -255,6 +257,10 @@ void cli::render(const options& given)
 {
   options o = given;
   std::unique_ptr<cloud> water;
+  if (o.globe && (is_scene(o.source) || !o.companions.empty())) {
+    throw usage(
+      is_scene(o.source) ? "--globe: only a netCDF file has longitudes and latitudes" : "--globe shows one INPUT: leave out the others");
+  }
   if (is_scene(o.source)) {
     if (!o.time.empty() || !o.frames.empty()) {
       throw usage("'" + o.source + "' is a scene, which has no time: leave out " + (o.time.empty() ? "--frames" : "--time"));

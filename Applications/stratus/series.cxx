@@ -179,6 +179,9 @@ void series::open()
     if (!this->Select.empty()) {
       throw usage("--select " + this->Select + ": '" + path + "' is a list of files, which has no dimensions with names");
     }
+    if (this->Globe) {
+      throw usage("--globe: '" + path + "' is a list of files, only a netCDF file has longitudes and latitudes");
+    }
     this->Parts = read_collection(path);
     for (const collection_step& step : this->Parts) {
       this->Times.push_back(step.time);
@@ -194,6 +197,9 @@ void series::open()
   this->Reader = found.reader;
   if (!this->Select.empty()) {
     select_indices(this->Reader, this->Select);
+  }
+  if (this->Globe) {
+    place_on_globe(this->Reader, this->HeightFactor);
   }
   watch.run(this->Reader, [this] {
     this->Reader->UpdateInformation();
@@ -211,7 +217,8 @@ void series::open()
 }
 
 series::series(const std::string& path, const reading_options& reading)
-    : Path(path), Variable(reading.variable), Raw(reading.raw), Select(reading.select)
+    : Path(path), Variable(reading.variable), Raw(reading.raw), Select(reading.select), Globe(reading.globe),
+      HeightFactor(reading.height_factor)
 {
   this->open();
   if (this->Reader && !this->Variable.empty() && !has_variable(this->Reader, this->Variable)) {
@@ -326,6 +333,11 @@ data_about series::about() const
     }
   }
   return result;
+}
+
+double series::height_factor() const
+{
+  return this->Globe ? height_factor_of(this->Reader) : 0.0;
 }
 
 std::string series::describe(size_t step) const

@@ -35,6 +35,7 @@ public:
   std::string value_units() const;
   // The drawn variable's name, standard name and unit, and whether the file is netCDF with coordinates that are lengths.
   data_about about() const;
+  double height_factor() const; // of heights on a globe; 0: there is none
   // Returns "step 3 of 24, at 1.5 hours since ...", or "" for a file without time.
   std::string describe(size_t step) const;
   // The file's variables at a step, none of a file that is not read by variables.
@@ -55,6 +56,8 @@ private:
   void open();
 
   std::string Path, Variable, Raw, Select;
+  bool Globe;
+  double HeightFactor;
   vtkSmartPointer<vtkAlgorithm> Reader; // null for a collection
   std::vector<collection_step> Parts;   // of a collection
   std::vector<double> Times;

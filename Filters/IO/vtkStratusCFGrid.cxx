@@ -3,6 +3,7 @@
 #include "vtkStratusText.h"
 
 #include "vtkStratusLongitudes.h"
+#include "vtkStratusSphere.h"
 
 #include "vtkDoubleArray.h"
 
@@ -11,8 +12,6 @@
 #include <netcdf.h>
 
 namespace {
-constexpr double EarthRadius = 6371000.0; // metres
-
 bool IsOneOf(const std::string& word, std::initializer_list<const char*> words)
 {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -251,7 +250,7 @@ void vtkStratusCFGrid::ConvertUnits()
   this->Metres = this->Flat && this->Vertical->IsLength();
   if (degrees) {
     const double degree = std::acos(-1.0) / 180.0, middle = this->MiddleLatitude();
-    this->Factors = { { EarthRadius * degree * std::cos(middle * degree), EarthRadius * degree } };
+    this->Factors = { { vtkStratusSphere::EarthRadius * degree * std::cos(middle * degree), vtkStratusSphere::EarthRadius * degree } };
     this->Description += "degrees as metres at latitude " + vtkStratusNumberText(middle) + "; ";
   }
   for (size_t a = 0; a < 2; ++a) {
@@ -288,6 +287,7 @@ void vtkStratusCFGrid::DescribeHorizontal(const std::array<const Variable*, 2>& 
                          : vtkStratusVariableReader::AXIS_OF_LATITUDES;
       axis.Units = "degrees";
       axis.Scale = 1.0 / this->Factors[a];
+      this->Degrees = !turned;
     }
   }
 }
@@ -488,6 +488,25 @@ vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::ReadPoints(
   }
   this->HideMissing(points, hidden_points);
   return points;
+}
+
+std::array<std::vector<double>, 2> vtkStratusCFGrid::ReadPlaces(size_t step) const
+{
+  std::array<std::vector<double>, 2> places;
+  for (size_t a = 0; a < 2; ++a) {
+    std::array<size_t, 3> strides = { { a == 0, a == 1, 0 } };
+    std::vector<double> at = this->Axes[a];
+    std::transform(at.begin(), at.end(), at.begin(), [this, a](double value) { return value / this->Factors[a]; });
+    if (this->Horizontal[a]) {
+      at = this->ReadHorizontal(static_cast<int>(a), step, strides);
+    }
+    for (size_t j = 0; j < this->GetLength(1); ++j) {
+      for (size_t i = 0; i < this->GetLength(0); ++i) {
+        places[a].push_back(at[i * strides[0] + j * strides[1]]);
+      }
+    }
+  }
+  return places;
 }
 
 // Marks points that have no place, and puts them where the last one is that has one.

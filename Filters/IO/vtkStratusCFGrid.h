@@ -37,6 +37,10 @@ public:
   bool IsCurved() const { return this->Horizontal[0] || this->Vertical->IsCurved(); }
   bool IsUniform() const;
   std::string Describe() const { return this->Description; }
+  bool IsInDegrees() const { return this->Degrees; } // longitudes and latitudes of the Earth, which became metres
+  std::array<double, 2> GetDegrees() const { return { { 1.0 / this->Factors[0], 1.0 / this->Factors[1] } }; } // in a metre of x and y
+  // Longitudes and latitudes of the columns and rows, x fastest, in degrees: of the lowest level where they differ between levels.
+  std::array<std::vector<double>, 2> ReadPlaces(size_t step) const;
   bool IsInMetres() const { return this->Metres; }
   // The name of an axis of the points' coordinates and their unit, "" if it has none.
   const std::string& GetAxisName(int axis) const { return this->Names[static_cast<size_t>(axis)]; }
@@ -94,7 +98,8 @@ private:
   std::array<double, 2> Spacing = { { 0.0, 0.0 } }; // of points without coordinates, in metres; 0: unknown
   std::array<double, 2> Factors = { { 1.0, 1.0 } }; // of x and y in m or degrees, to metres
   bool Continuous = false;                          // longitudes were made so
-  bool Metres = true, Flat = false;                 // all axes are in metres; x and y are
+  bool Degrees = false;
+  bool Metres = true, Flat = false; // all axes are in metres; x and y are
   std::string Description;
   std::array<std::string, 3> Names, Units; // of the points' coordinates
   std::array<vtkStratusFileAxis, 3> FileAxes;

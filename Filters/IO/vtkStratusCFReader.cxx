@@ -2,10 +2,12 @@
 #include "vtkStratusCFReader.h"
 
 #include "vtkStratusCFGrid.h"
+#include "vtkStratusSphere.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -60,6 +62,40 @@ void Hide(vtkDataSetAttributes* data, const std::vector<char>& hidden, unsigned 
   std::transform(hidden.begin(), hidden.end(), ghosts->GetPointer(0), [flag](char one) { return one ? flag : 0; });
   data->AddArray(ghosts);
 }
+
+vtkStratusSphere::Lattice LatticeOf(const vtkStratusCFGrid& grid, size_t step)
+{
+  const std::array<std::vector<double>, 2> places = grid.ReadPlaces(step);
+  const size_t columns = grid.GetLength(0);
+  return vtkStratusSphere::FindLattice(columns, grid.GetLength(1), [&](size_t i, size_t j, double degrees[2]) {
+    degrees[0] = places[0][j * columns + i];
+    degrees[1] = places[1][j * columns + i];
+  });
+}
+
+// Builds the grid on the sphere. factor: of heights, 0: automatic. Returns the one that is used.
+double BuildSphere(const vtkStratusCFGrid& grid, size_t step, double factor, vtkStructuredGrid* output)
+{
+  const vtkStratusSphere::Lattice lattice = LatticeOf(grid, step);
+  const size_t levels = grid.GetLength(2);
+  std::vector<char> hidden, torn; // torn: on a plane
+  vtkSmartPointer<vtkDataArray> at = grid.ReadPoints(step, hidden, torn);
+  at = vtkStratusSphere::Spread(lattice, levels, at);
+  hidden = vtkStratusSphere::Spread(lattice, levels, hidden);
+  vtkDoubleArray* places = vtkDoubleArray::SafeDownCast(at);
+  vtkStratusSphere::PlacePoles(lattice, levels, grid.GetDegrees(), places);
+  factor = factor > 0.0 ? factor : vtkStratusSphere::FactorOf(places, hidden);
+  vtkStratusSphere::Place(places, grid.GetDegrees(), factor);
+  vtkNew<vtkPoints> points;
+  points->SetData(places);
+  output->SetDimensions(static_cast<int>(lattice.Columns.size()), static_cast<int>(lattice.GetRows()), static_cast<int>(levels));
+  output->SetPoints(points);
+  Hide(output->GetPointData(), hidden, vtkDataSetAttributes::HIDDENPOINT);
+  const vtkSmartPointer<vtkDataArray> values = vtkStratusSphere::Spread(lattice, levels, grid.ReadValues(step));
+  output->GetPointData()->AddArray(values);
+  output->GetPointData()->SetActiveScalars(values->GetName());
+  return factor;
+}
 } // namespace
 
 std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
@@ -93,6 +129,17 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
     this->TimeCalendar = steps.Calendar;
     this->Description += steps.Note;
   }
+  if (this->Coordinates == SPHERE) {
+    if (!grid.IsInDegrees()) {
+      file.Fail("'" + this->ChosenName() + "' has no longitudes and latitudes of the Earth, so that it has no place on a sphere");
+    }
+    const vtkStratusSphere::Lattice lattice = LatticeOf(grid, 0);
+    this->WholeExtent[1] = static_cast<int>(lattice.Columns.size()) - 1;
+    this->WholeExtent[3] = static_cast<int>(lattice.GetRows()) - 1;
+    this->Description += "; on a sphere of 6371 km" + lattice.Description;
+    this->SetAxesOnSphere();
+    return "vtkStructuredGrid";
+  }
   if (grid.IsSheet()) {
     vtkWarningMacro(
       << file.GetPath() << ": the levels of '" << this->ChosenName()
@@ -110,6 +157,10 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
 void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
 {
   const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName()));
+  if (this->Coordinates == SPHERE) {
+    this->UsedHeightFactor = BuildSphere(grid, step, this->HeightFactor, vtkStructuredGrid::SafeDownCast(output));
+    return;
+  }
   const int n[3] = { static_cast<int>(grid.GetLength(0)), static_cast<int>(grid.GetLength(1)), static_cast<int>(grid.GetLength(2)) };
   if (vtkImageData* image = vtkImageData::SafeDownCast(output)) {
     image->SetDimensions(n[0], n[1], n[2]);

@@ -110,5 +110,7 @@ void vtkStratusNetCDFReader::Build(size_t step, vtkDataObject* output)
 void vtkStratusNetCDFReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Coordinates: " << (this->Coordinates == SPHERE ? "sphere" : "plane") << "\n";
+  os << indent << "HeightFactor: " << this->HeightFactor << "\n";
   os << indent << "Selection: " << (this->Selection ? this->Selection : "(none)") << "\n";
 }

@@ -43,6 +43,38 @@ public:
   vtkGetStringMacro(Selection);
   //@}
 
+  /**
+   * How longitudes and latitudes become coordinates.
+   */
+  enum CoordinatesType { PLANE, SPHERE };
+
+  //@{
+  /**
+   * Set/Get how longitudes and latitudes become coordinates. PLANE (default): metres on a plane, at the middle latitude. SPHERE: places on
+   * a sphere of 6,371 km about 0, whose x axis goes through longitude 0 on the equator, and whose z axis goes through the north pole;
+   * heights, times HeightFactor, are added to the radius. Images and rectilinear grids become a vtkStructuredGrid then. Lattices that go
+   * all the way round are closed by one more column, and rows around a pole by points at the pole; columns and rows that a file repeats are
+   * left out. A grid without longitudes and latitudes of the Earth is an error.
+   */
+  vtkSetClampMacro(Coordinates, int, PLANE, SPHERE);
+  vtkGetMacro(Coordinates, int);
+  void SetCoordinatesToPlane() { this->SetCoordinates(PLANE); }
+  void SetCoordinatesToSphere() { this->SetCoordinates(SPHERE); }
+  //@}
+
+  //@{
+  /**
+   * Set/Get the factor of heights on the sphere, at least 0. Default 0: as much as makes them reach over a tenth of the radius.
+   */
+  vtkSetClampMacro(HeightFactor, double, 0.0, 1e30);
+  vtkGetMacro(HeightFactor, double);
+  //@}
+
+  /**
+   * Get the factor of heights of the last output on the sphere; 0: there was none.
+   */
+  vtkGetMacro(UsedHeightFactor, double);
+
 protected:
   vtkStratusNetCDFReader() = default;
   ~vtkStratusNetCDFReader() override;
@@ -59,6 +91,8 @@ protected:
   void Build(size_t step, vtkDataObject* output) override;
 
   char* Selection = nullptr;
+  int Coordinates = PLANE;
+  double HeightFactor = 0.0, UsedHeightFactor = 0.0;
 
 private:
   std::vector<int> Ranks; // of Variables

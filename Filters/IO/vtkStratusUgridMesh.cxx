@@ -2,6 +2,7 @@
 #include "vtkStratusUgridMesh.h"
 
 #include "vtkStratusLongitudes.h"
+#include "vtkStratusSphere.h"
 #include "vtkStratusUnits.h"
 
 #include <algorithm>
@@ -11,8 +12,7 @@
 #include <numeric>
 
 namespace {
-constexpr double EarthRadius = 6371000.0; // metres
-constexpr size_t MostCorners = 64;        // of a face; a shorter dimension of a connectivity counts corners
+constexpr size_t MostCorners = 64; // of a face; a shorter dimension of a connectivity counts corners
 } // namespace
 
 const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindTopology(const vtkStratusNetCDFFile& file)
@@ -83,7 +83,7 @@ void vtkStratusUgridMesh::ReadNodes(const Variable& x, const Variable& y)
   if (this->Degrees) {
     const auto ends = std::minmax_element(this->Y.begin(), this->Y.end());
     const double degree = std::acos(-1.0) / 180.0, middle = 0.5 * (*ends.first + *ends.second);
-    this->Factors = { { EarthRadius * degree * std::cos(middle * degree), EarthRadius * degree } };
+    this->Factors = { { vtkStratusSphere::EarthRadius * degree * std::cos(middle * degree), vtkStratusSphere::EarthRadius * degree } };
     this->Description = "degrees as metres at latitude " + vtkStratusNumberText(middle) + "; ";
   }
   this->Description += "nodes at '" + x.Name + "' and '" + y.Name + "'";

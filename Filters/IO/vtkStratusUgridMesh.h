@@ -42,13 +42,14 @@ public:
     return &this->Corners[this->Offsets[face]];
   }
   // Returns whether longitudes around a pole tear the face apart.
-  bool IsTorn(size_t face) const { return !this->Torn.empty() && this->Torn[face] != 0; }
+  bool IsTorn(size_t face) const { return !this->Sphere && !this->Torn.empty() && this->Torn[face] != 0; }
   std::string GetAxisName(int axis) const
   {
     const std::string& name = axis == 0 ? this->XName : this->YName;
     return this->Degrees ? (axis == 0 ? "east" : "north") : name.substr(name.rfind('/') + 1);
   }
   const std::string& GetCoordinateName(int axis) const { return axis == 0 ? this->XName : this->YName; } // in the file
+  void SetOnSphere() { this->Sphere = true; }                                                            // on which no face is torn
   bool IsInDegrees() const { return this->Degrees; }
   double GetFactor(int axis) const { return this->Factors[static_cast<size_t>(axis)]; } // from the file's x and y, or degrees, to metres
   bool IsInMetres() const { return this->Metres; }
@@ -92,7 +93,7 @@ private:
   std::map<int, int> Copies;  // of nodes, a turn further east
   std::vector<char> Torn;
   std::array<double, 2> Factors = { { 1.0, 1.0 } };
-  bool Degrees = false;
+  bool Degrees = false, Sphere = false;
   std::vector<size_t> Offsets = { 0 };
   std::vector<int> Corners;
   std::string Description;

@@ -3,6 +3,7 @@
 
 #include "vtkStratusUgridLayers.h"
 #include "vtkStratusUgridMesh.h"
+#include "vtkStratusSphere.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -166,6 +167,13 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
     this->FileAxes[2].Scale = -1.0;
   }
   this->Description = mesh.Describe() + "; " + layers.Describe() + mesh.DescribeOthers(chosen) + file.DescribeValues(chosen);
+  if (this->Coordinates == SPHERE) {
+    if (!mesh.IsInDegrees()) {
+      file.Fail("the mesh has no longitudes and latitudes, so that it has no place on a sphere");
+    }
+    this->Description += "; on a sphere of 6371 km";
+    this->SetAxesOnSphere();
+  }
   const int time = mesh.FindTime(chosen) >= 0 ? mesh.FindTime(chosen) : layers.GetTime();
   if (time >= 0) {
     const vtkStratusNetCDFFile::TimeSteps steps = file.ReadTimes(time);
@@ -183,10 +191,17 @@ void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFFile& file, size_t s
   vtkStratusUgridMesh mesh(file);
   const vtkStratusUgridLayers layers(mesh);
   mesh.SetLayers(layers.GetDimensions(), layers.GetCount());
+  if (this->Coordinates == SPHERE) {
+    mesh.SetOnSphere();
+  }
   std::vector<double> z;
   std::vector<char> dry;
   layers.Read(step, z, dry);
   grid->SetPoints(MakePoints(mesh, z));
+  if (vtkDoubleArray* places = this->Coordinates == SPHERE ? vtkDoubleArray::SafeDownCast(grid->GetPoints()->GetData()) : nullptr) {
+    this->UsedHeightFactor = this->HeightFactor > 0.0 ? this->HeightFactor : vtkStratusSphere::FactorOf(places, {});
+    vtkStratusSphere::Place(places, { { 1.0 / mesh.GetFactor(0), 1.0 / mesh.GetFactor(1) } }, this->UsedHeightFactor);
+  }
   AddCells(mesh, z, dry, grid);
   const Variable& chosen = *file.Find(this->ChosenName());
   const vtkStratusUgridValues values = mesh.Read(chosen, step);

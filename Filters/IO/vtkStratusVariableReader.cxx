@@ -192,6 +192,17 @@ bool vtkStratusVariableReader::Look()
   return !this->OutputClass.empty();
 }
 
+void vtkStratusVariableReader::SetAxesOnSphere()
+{
+  static const char* const names[] = { "x", "y", "z" };
+  this->LengthUnits = "m";
+  for (int axis = 0; axis < 3; ++axis) {
+    this->AxisNames[axis] = names[axis];
+    this->AxisUnits[axis] = "m";
+    this->FileAxes[axis] = vtkStratusFileAxis();
+  }
+}
+
 int vtkStratusVariableReader::RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
   if (!this->Look()) {

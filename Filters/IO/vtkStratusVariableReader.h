@@ -158,6 +158,9 @@ protected:
 #endif
   int WholeExtent[6]; // of an output with an extent
 
+  /// Says that the output's coordinates are places on a sphere, in metres.
+  void SetAxesOnSphere();
+
 private:
   vtkStratusVariableReader(const vtkStratusVariableReader&) = delete;
   void operator=(const vtkStratusVariableReader&) = delete;

@@ -44,7 +44,7 @@ class Read:
     """What a reader makes of a file: error, description, and of its output points[k, j, i, xyz] and values[k, j, i] in the file's order
     or, of an image or rectilinear grid, in ascending order."""
 
-    def __init__(self, path, variable=None, time=None, cls="vtkStratusCFReader"):
+    def __init__(self, path, variable=None, time=None, cls="vtkStratusCFReader", prepare=None):
         self.error = ""
 
         def hear(_object, _event, text):
@@ -55,6 +55,8 @@ class Read:
         reader.AddObserver("ErrorEvent", hear)
         reader.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
         reader.SetFileName(path)
+        if prepare:
+            prepare(reader)
         if variable:
             reader.SetVariableName(variable)
         reader.UpdateInformation()

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`stratus render --globe`: the Earth's disk is as large as the camera says, it hides what is behind it, data are where their longitude and
+latitude are, and other data are refused. Usage: test_globe.py PATH-OF-STRATUS FOLDER"""
+import math
+import re
+
+from checking import done, expect, fail
+
+import netCDF4
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+SIZE = 160
+RADIUS = 6371000.0
+
+
+def write(name, east, north, levels, values):
+    with netCDF4.Dataset(name, "w") as file:
+        for axis, places, units in (("z", levels, "m"), ("lat", north, "degrees_north"), ("lon", east, "degrees_east")):
+            file.createDimension(axis, len(places))
+            file.createVariable(axis, "f8", (axis,))[:] = places
+            file[axis].units = units
+        file["z"].positive = "up"
+        file.createVariable("q", "f4", ("z", "lat", "lon"))[:] = values
+
+
+def spot(east, north, longitude, latitude):
+    """1 within 5 degrees of a place."""
+    a, b = numpy.meshgrid(numpy.radians(east), numpy.radians(north))
+    c, d = math.radians(longitude), math.radians(latitude)
+    cosine = numpy.sin(b) * math.sin(d) + numpy.cos(b) * math.cos(d) * numpy.cos(a - c)
+    return numpy.tile((cosine > math.cos(math.radians(5))).astype("f4"), (3, 1, 1))
+
+
+def picture(*words):
+    said = expect(0, "picture", "render", *words, "--device", "host", "--size", f"{SIZE}x{SIZE}", "--background", "black", "-o", "globe.png")
+    reader = vtkPNGReader()
+    reader.SetFileName("globe.png")
+    reader.Update()
+    image = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(SIZE, SIZE, -1)[..., :3].astype(int)
+    return said, image
+
+
+LOOK = ("--opacity", "0:0,0.5:0,0.6:1", "--color", "0:1:0:0,1:1:0:0", "--caption", "")  # red where the spot is
+levels = numpy.array([0.0, 5000.0, 10000.0])
+east, north = 1.0 + 2.0 * numpy.arange(180), -89.0 + 2.0 * numpy.arange(90)
+write("world.nc", east, north, levels, spot(east, north, 40, 20))
+
+said, bare = picture("world.nc", "--globe", "--opacity", "0:0,1:0", "--exaggerate", "1")
+eye = [float(x) for x in re.search(r"eye (\S+) (\S+) (\S+),", said).groups()]
+angle = math.radians(float(re.search(r"angle (\S+)", said).group(1)))
+distance = math.hypot(*eye)
+across = math.tan(math.asin(0.9997 * RADIUS / distance)) / math.tan(angle / 2) * SIZE / 2
+disk = (bare.max(axis=2) > 8).sum()
+print(f"the disk has {disk} pixels, {math.pi * across**2:.0f} by the camera")
+if abs(disk / (math.pi * across**2) - 1) > 0.02 or across < 0.3 * SIZE:
+    fail(f"the Earth has {disk} pixels, a circle of {across:.1f} has {math.pi * across**2:.0f}")
+
+for azimuth, elevation, seen in ((40, 20, True), (220, -20, False), (130, 0, False)):
+    said, image = picture("world.nc", "--globe", *LOOK, "--azimuth", str(azimuth), "--elevation", str(elevation))
+    red = (image[..., 0] > 80) & (image[..., 0] > 3 * image[..., 1])
+    if not re.search(r"heights +x 63.71 on the globe", said):
+        fail(f"heights of a tenth of the radius:\n{said}")
+    if seen:
+        rows, columns = numpy.nonzero(red)
+        middle = (columns.mean() - (SIZE - 1) / 2, rows.mean() - (SIZE - 1) / 2) if len(rows) else (SIZE, SIZE)
+        if not len(rows) or math.hypot(*middle) > 3:
+            fail(f"the spot is {middle} from the middle, where the camera looks")
+    elif azimuth == 220 and red.any():
+        fail(f"the Earth hides no spot behind it: {red.sum()} pixels")
+
+# a region is looked at from above
+east, north = numpy.linspace(100, 130, 31), numpy.linspace(-40, -20, 21)
+write("region.nc", east, north, levels, spot(east, north, 115, -30))
+said, image = picture("region.nc", "--globe", *LOOK)
+red = (image[..., 0] > 80) & (image[..., 0] > 3 * image[..., 1])
+rows, columns = numpy.nonzero(red)
+if red.sum() < 50 or abs(columns.mean() - SIZE / 2) > 0.15 * SIZE or abs(rows.mean() - SIZE / 2) > 0.15 * SIZE:
+    fail(f"the middle of a region is seen: {red.sum()} pixels")
+
+with netCDF4.Dataset("flat.nc", "w") as file:
+    for axis in "zyx":
+        file.createDimension(axis, 4)
+        file.createVariable(axis, "f8", (axis,))[:] = numpy.arange(4.0)
+        file[axis].units = "m"
+    file.createVariable("q", "f4", ("z", "y", "x"))[:] = 1
+expect(1, "has no longitudes and latitudes of the Earth", "render", "flat.nc", "--globe", "-o", "no.png")
+expect(2, "--globe: only a netCDF file has longitudes and latitudes", "render", "cloud", "--globe", "-o", "no.png")
+expect(2, "leave out the others", "render", "world.nc", "region.nc", "--globe", "-o", "no.png")
+expect(2, "--coast", "render", "world.nc", "--globe", "--coast", "-o", "no.png")
+done()
