@@ -25,7 +25,7 @@ void annotation::lend(const scene_frame& frame, const transfer& look, lent& to) 
   const options& o = this->Options;
   stratus_annotation& view = to.view;
   view.axes = o.axes ? 1 : 0;
-  view.coast = o.coast ? 1 : 0;
+  view.coast = o.coast && !o.globe ? 1 : 0; // on a globe they are part of the Earth
   std::copy_n(frame.bounds, 6, view.bounds);
   for (size_t axis = 0; axis < 3; ++axis) {
     const axis_about& about = o.about.axes[axis];

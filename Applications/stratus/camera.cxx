@@ -94,7 +94,7 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
   double eye[3];
   for (size_t n = 0; n < shown.size(); ++n) {
     double own[6];
-    if (o.axes || o.coast) { // the box is seen as a whole
+    if (o.axes || (o.coast && !o.globe)) { // the box is seen as a whole
       core.check(stratus_volume_bounds(core, shown[n].volume, own), "bounds");
     } else {
       shown_bounds(core, *shown[n].volume, shown[n].transfer, own);

@@ -8,6 +8,7 @@ namespace cli {
 
 // Cells between points are chords of the sphere. This is the sagitta of 3 degrees.
 constexpr double chord = 0.9997;
+constexpr double earth_radius = 6371000.0;          // as the readers have it
 constexpr float color[3] = { 0.30f, 0.33f, 0.36f }; // of the sphere where it faces the eye, as of a map's land
 
 globe::globe(const stratus_mesh& mesh)
@@ -63,17 +64,29 @@ void globe::end_rays(stratus_camera& camera, stratus_image& image)
   image.opaque_depth = this->Depth.data();
 }
 
-void globe::draw(const stratus_image& image) const
+void globe::draw(const context& core, const stratus_camera& camera, bool coast, double ink, const stratus_image& image) const
 {
+  const bool below = this->Radius < 0.999 * earth_radius;
+  std::vector<float> sphere(4 * this->Depth.size(), 0.0f);
+  stratus_image ground = image;
+  ground.rgba = sphere.data();
   for (size_t pixel = 0; pixel < this->Depth.size(); ++pixel) {
-    float* rgba = image.rgba + 4 * pixel;
-    const float left = 1.0f - rgba[3];
-    if (this->Depth[pixel] < 1.0f && left > 0.0f) {
-      for (int c = 0; c < 3; ++c) {
-        rgba[c] += left * color[c] * (0.3f + 0.7f * this->Light[pixel]);
-      }
-      rgba[3] = 1.0f;
+    for (size_t c = 0; this->Depth[pixel] < 1.0f && c < 4; ++c) {
+      sphere[4 * pixel + c] = c < 3 ? color[c] * (0.3f + 0.7f * this->Light[pixel]) : 1.0f;
     }
+  }
+  stratus_annotation lines = stratus_annotation_default();
+  lines.coast = coast ? 1 : 0;
+  lines.globe = earth_radius;
+  lines.ink = ink;
+  if (!below) {
+    core.check(stratus_annotation_draw(core, &lines, &camera, &ground, nullptr, 0, nullptr), "coastlines");
+  }
+  for (size_t i = 0; i < sphere.size(); ++i) {
+    image.rgba[i] += (1.0f - image.rgba[i | 3]) * sphere[i]; // alpha is the last of four
+  }
+  if (below) {
+    core.check(stratus_annotation_draw(core, &lines, &camera, &image, nullptr, 0, nullptr), "coastlines");
   }
 }
 } // namespace cli

@@ -6,6 +6,7 @@
 #include "drawing.h"
 #include "globe.h"
 #include "mesh.h"
+#include "picture.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -150,7 +151,8 @@ void grid_drawing::draw(const stratus_image& image)
   }
   this->Core.check(stratus_tetra_caster_render(this->Caster, &this->Mesh.view(), &view, &camera, &how, &to, &this->Report), "render");
   if (earth) {
-    earth->draw(image);
+    const cli::background behind = cli::parse_background(this->Options.background);
+    earth->draw(this->Core, camera, this->Options.coast, behind.transparent ? 0.5 : 0.85, image);
   }
 }
 

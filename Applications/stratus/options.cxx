@@ -93,7 +93,7 @@ Data and appearance
                           (default: as much as makes them reach over a tenth of its radius)
   --log                   map colours, and a guessed opacity, to the logarithm of the value, over at most four decades
   --axes                  draw a box around the data, with the file's coordinates: degrees, m or km, depths, pressures
-  --coast                 draw coastlines at the bottom of data with longitudes and latitudes, of depths at the top
+  --coast                 draw coastlines at the bottom of data with longitudes and latitudes, of depths at the top, or on the globe
   --color-bar             draw the colours of values, with the variable's name and unit
   --caption TEXT          draw a line of text at the top; {time} is the step's time
   --nearest               nearest instead of linear interpolation

@@ -43,7 +43,7 @@ std::string set_by_data(
     water->set_function(o, grid);
   }
   cli::set_heights(o, in, grid);
-  if (o.coast && (o.about.axes[0].kind != STRATUS_AXIS_LONGITUDE || o.about.axes[1].kind != STRATUS_AXIS_LATITUDE)) {
+  if (o.coast && !o.globe && (o.about.axes[0].kind != STRATUS_AXIS_LONGITUDE || o.about.axes[1].kind != STRATUS_AXIS_LATITUDE)) {
     throw cli::usage("--coast: '" + o.source + "' has no longitudes and latitudes along x and y, as netCDF files may have");
   }
   return cli::set_sun(o, given, in, grid, step);

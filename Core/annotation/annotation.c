@@ -39,6 +39,12 @@ static stratus_status check_bar(stratus_context* context, const stratus_annotati
 
 static stratus_status check_coast(stratus_context* context, const stratus_annotation* a)
 {
+  if (!(a->globe >= 0.0) || !isfinite(a->globe)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "a globe of radius %g, must be 0 or more and finite", a->globe);
+  }
+  if (a->globe > 0.0) {
+    return STRATUS_OK;
+  }
   if (stratus_coast_face(a) < 0) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "coastlines need an axis of longitudes and one of latitudes");
   }
@@ -67,7 +73,7 @@ static stratus_status check(stratus_context* context, const stratus_annotation* 
   if (stratus_layout_has_bar(a)) {
     TRY(check_bar(context, a));
   }
-  for (int axis = 0; axis < 3 && (a->axes || a->coast); ++axis) {
+  for (int axis = 0; axis < 3 && (a->axes || (a->coast && !(a->globe > 0.0))); ++axis) {
     const double low = a->bounds[2 * axis], high = a->bounds[2 * axis + 1];
     if (!isfinite(low) || !isfinite(high) || low > high) {
       return stratus_fail(
@@ -175,7 +181,11 @@ static stratus_status draw_all(
   bool facing[6];
   stratus_box_facing(a, camera, facing);
   for (int front = 0; front < 2; ++front) {
-    if (a->coast && facing[stratus_coast_face(a)] == (front == 1)) {
+    if (a->coast && a->globe > 0.0) {
+      if (front) {
+        stratus_coast_draw_globe(sheet, a->globe);
+      }
+    } else if (a->coast && facing[stratus_coast_face(a)] == (front == 1)) {
       stratus_coast_draw(sheet, a);
     }
     if (a->axes) {

@@ -18,6 +18,8 @@ stratus_status stratus_box_axes(
 int stratus_coast_face(const stratus_annotation* annotation);
 /* Draws coastlines on that face. */
 void stratus_coast_draw(stratus_sheet* sheet, const stratus_annotation* annotation);
+/* Draws coastlines on the side of a sphere about 0 that faces the eye. */
+void stratus_coast_draw_globe(stratus_sheet* sheet, double radius);
 
 /* Visits the lines of the coast that are within bounds: longitudes of any turn and latitudes, west, east, south, north. */
 typedef void stratus_coast_visit(void* data, const double from[2], const double to[2]);

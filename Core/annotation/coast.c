@@ -4,6 +4,8 @@
 
 #include "coast_lines.h"
 
+#define DEGREE 0.017453292519943295
+
 int stratus_coast_face(const stratus_annotation* annotation)
 {
   int longitude = -1, latitude = -1;
@@ -97,4 +99,40 @@ void stratus_coast_draw(stratus_sheet* sheet, const stratus_annotation* annotati
     }
   }
   stratus_coast_within(bounds, draw_piece, &p);
+}
+
+typedef struct globe {
+  stratus_sheet* sheet;
+  double radius;
+} globe;
+
+/* Gives a place on the sphere. Returns whether it is on the side that faces the eye. */
+static bool place_on_globe(const globe* g, const double degrees[2], double place[3])
+{
+  const stratus_sheet* const s = g->sheet;
+  const double longitude = degrees[0] * DEGREE, latitude = degrees[1] * DEGREE;
+  double faces = 0.0;
+  place[0] = g->radius * cos(latitude) * cos(longitude);
+  place[1] = g->radius * cos(latitude) * sin(longitude);
+  place[2] = g->radius * sin(latitude);
+  for (int a = 0; a < 3; ++a) {
+    faces += place[a] * (s->parallel ? -s->forward[a] : s->eye[a] - place[a]);
+  }
+  return faces > 0.0;
+}
+
+static void draw_on_globe(void* data, const double from[2], const double to[2])
+{
+  const globe* const g = data;
+  double a[3], b[3];
+  if (place_on_globe(g, from, a) && place_on_globe(g, to, b)) {
+    stratus_sheet_line_in_world(g->sheet, a, b);
+  }
+}
+
+void stratus_coast_draw_globe(stratus_sheet* sheet, double radius)
+{
+  static const double all[4] = { -180.0, 180.0, -90.0, 90.0 };
+  globe g = { sheet, radius };
+  stratus_coast_within(all, draw_on_globe, &g);
 }

@@ -61,6 +61,9 @@ typedef struct stratus_annotation {
   /* 1: coastlines within `bounds`, on the face where the axis that is neither longitude nor latitude begins; of depths, scale < 0, where it
    * ends. Needs a LONGITUDE, within 3600 degrees, and a LATITUDE. Default 0. */
   int coast;
+  /* Above 0 and finite: coastlines are on a sphere of this radius about 0 in the world, longitude 0 towards x and north towards z, on the
+   * side that faces the eye; bounds and axes do not count for them. 0 (default): as above. */
+  double globe;
   /* Of the colour bar: quadruples of value, red, green and blue in 0..1, by ascending value, `color_count` of them. Default 0: no bar. */
   const double* color;
   size_t color_count;

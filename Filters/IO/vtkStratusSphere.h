@@ -34,7 +34,7 @@ struct Lattice {
 // - where the last row repeats a row before it in reverse, as lattices with two poles in the north have it: it is left out.
 Lattice FindLattice(size_t columns, size_t rows, const std::function<void(size_t, size_t, double[2])>& place);
 
-// Values on the lattice and `levels` levels, x fastest, from those of the file. A pole has the mean of the row that is next to it.
+// Values on the lattice and `levels` levels, x fastest, from the file's values. A pole has the mean of the row that is next to it.
 vtkSmartPointer<vtkDataArray> Spread(const Lattice& lattice, size_t levels, vtkDataArray* values);
 std::vector<char> Spread(const Lattice& lattice, size_t levels, const std::vector<char>& hidden);
 

@@ -88,5 +88,19 @@ with netCDF4.Dataset("flat.nc", "w") as file:
 expect(1, "has no longitudes and latitudes of the Earth", "render", "flat.nc", "--globe", "-o", "no.png")
 expect(2, "--globe: only a netCDF file has longitudes and latitudes", "render", "cloud", "--globe", "-o", "no.png")
 expect(2, "leave out the others", "render", "world.nc", "region.nc", "--globe", "-o", "no.png")
-expect(2, "--coast", "render", "world.nc", "--globe", "--coast", "-o", "no.png")
+
+# coastlines are where the coast is: Cape Agulhas in the south of Africa, in the middle of the picture, and none in the Pacific
+said, plain = picture("world.nc", "--globe", "--opacity", "0:0,1:0", "--exaggerate", "1", "--azimuth", "20", "--elevation", "-34.8", "--zoom", "4")
+said, image = picture("world.nc", "--globe", "--opacity", "0:0,1:0", "--exaggerate", "1", "--azimuth", "20", "--elevation", "-34.8", "--zoom",
+                      "4", "--coast")
+rows, columns = numpy.nonzero((image != plain).any(axis=2))
+apart = numpy.hypot(rows - (SIZE - 1) / 2, columns - (SIZE - 1) / 2) if len(rows) else numpy.array([SIZE])
+south = SIZE - rows.max() if len(rows) else 0
+if apart.min() > 4 or not 0.3 < (rows > SIZE / 2 - 4).mean():
+    fail(f"the cape is {apart.min():.0f} pixels from the middle; {(rows > SIZE / 2).mean():.2f} of the coast is north of it")
+said, plain = picture("world.nc", "--globe", "--opacity", "0:0,1:0", "--exaggerate", "1", "--azimuth", "-130", "--elevation", "-30", "--zoom", "5")
+said, image = picture("world.nc", "--globe", "--opacity", "0:0,1:0", "--exaggerate", "1", "--azimuth", "-130", "--elevation", "-30", "--zoom",
+                      "5", "--coast")
+if (image != plain).any():
+    fail(f"the South Pacific has no coast: {(image != plain).any(axis=2).sum()} pixels")
 done()

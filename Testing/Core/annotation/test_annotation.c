@@ -383,6 +383,9 @@ static void wrong_annotations_are_refused(void** state)
   refused(stratus_annotation_room(context, &a, 64, 64, room), "bounds along axis 0 are -6 to nan");
   a = crowded(6.0, 3.0, 2.0);
   a.coast = 1;
+  a.globe = -1.0;
+  refused(stratus_annotation_room(context, &a, 64, 64, room), "a globe of radius -1, must be 0 or more");
+  a.globe = 0.0;
   a.axis[0].kind = STRATUS_AXIS_NUMBER;
   refused(stratus_annotation_room(context, &a, 64, 64, room), "coastlines need an axis of longitudes");
   a.axis[0].kind = STRATUS_AXIS_LONGITUDE;
@@ -453,12 +456,55 @@ int test_annotation(void)
   return cmocka_run_group_tests(tests, make, destroy);
 }
 
+/* On a globe: ink at the pixel of each vertex that is nearer to the eye than the limb, and none outside of the disk. */
+static void coast_is_on_the_side_of_the_globe_that_faces_the_eye(void** state)
+{
+  (void)state;
+  const int size = 480;
+  for (int parallel = 0; parallel < 2; ++parallel) {
+    stratus_annotation a = stratus_annotation_default();
+    a.coast = 1;
+    a.globe = 2.0;
+    const double eye = parallel ? 9.0 : 7.0, half = parallel ? 2.5 : 0.4;
+    const stratus_camera camera = {
+      .eye = { 0.0, -eye, 0.0 }, .forward = { 0.0, 1.0, 0.0 }, .right = { half, 0.0, 0.0 }, .up = { 0.0, 0.0, half }, .parallel = parallel
+    };
+    float* const rgba = draw(&a, &camera, size, size, NULL, 0, NULL);
+    found_lines found = { 0.0, { -180.0, 180.0, -90.0, 90.0 }, INFINITY, { 0.0, 0.0 }, 0, NULL };
+    found.list = calloc(20000, sizeof *found.list);
+    stratus_coast_within(found.bounds, keep, &found);
+    size_t seen = 0, inked = 0;
+    for (size_t i = 0; i + 1 < found.count; ++i) {
+      const double longitude = found.list[i][0] * RADIANS, latitude = found.list[i][1] * RADIANS;
+      const double place[3] = { 2.0 * cos(latitude) * cos(longitude), 2.0 * cos(latitude) * sin(longitude), 2.0 * sin(latitude) };
+      double at[2];
+      /* a line to the next vertex may pass the limb */
+      if (-place[1] > (parallel ? 0.0 : 4.0 / eye) + 0.2 && project(&camera, place, size, size, at)) {
+        const size_t pixel = (size_t)lround(at[1]) * (size_t)size + (size_t)lround(at[0]);
+        assert_true(rgba[4 * pixel + 3] > 0.15f);
+        ++seen;
+      }
+    }
+    const double disk = (parallel ? 2.0 : 2.0 / sqrt(eye * eye - 4.0)) / half * 0.5 * size + 2.0; /* in pixels */
+    for (int i = 0; i < size * size; ++i) {
+      const bool ink = rgba[4 * i + 3] > 0.0f;
+      inked += ink ? 1 : 0;
+      assert_true(!ink || hypot(i % size - 0.5 * (size - 1), (double)(i / size) - 0.5 * (size - 1)) < disk);
+    }
+    assert_in_range(seen, 500, 5000);
+    assert_in_range(inked, 1000, 30000);
+    free(found.list);
+    free(rgba);
+  }
+}
+
 int test_coast(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(coast_is_where_places_are),
     cmocka_unit_test(coast_is_as_long_from_every_meridian),
     cmocka_unit_test(coast_is_drawn_where_the_camera_has_it),
+    cmocka_unit_test(coast_is_on_the_side_of_the_globe_that_faces_the_eye),
   };
   return cmocka_run_group_tests(tests, make, destroy);
 }
