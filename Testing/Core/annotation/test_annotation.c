@@ -229,7 +229,7 @@ static void camera_of_the_whole_picture_sees_the_part_as_before(void** state)
       STRATUS_OK);
     assert_int_equal(stratus_camera_in_room(context, &part, 400, 300, room, &whole), STRATUS_OK);
     for (int n = 0; n < 100; ++n) {
-      double place[3], own[2], at[2];
+      double place[3], own[2], at[2] = { NAN, NAN };
       for (int a = 0; a < 3; ++a) {
         place[a] = (double)random_below(&random, 2001) / 500.0 - 2.0;
       }

@@ -11,14 +11,14 @@ static stratus_context* context;
 static void assert_ticks(const stratus_axis* axis, int kilo, double low, double high, int most, const char* expected)
 {
   stratus_axis_tick ticks[STRATUS_AXIS_TICKS];
-  char found[2048] = "";
+  char found[STRATUS_AXIS_TICKS * (sizeof ticks->text + 1)] = "";
   int count = -1;
   assert_int_equal(stratus_axis_find_ticks(context, axis, kilo, low, high, most, ticks, &count), STRATUS_OK);
   assert_true(count >= 0 && count <= most);
   for (int i = 0; i < count; ++i) {
     assert_true(ticks[i].place >= low - 1e-6 * (high - low) && ticks[i].place <= high + 1e-6 * (high - low));
     assert_true(i == 0 || ticks[i].place > ticks[i - 1].place);
-    snprintf(found + strlen(found), sizeof found - strlen(found), "%s%s", i ? " " : "", ticks[i].text);
+    strcat(strcat(found, i ? " " : ""), ticks[i].text);
   }
   if (strcmp(found, expected) != 0) {
     fail_msg("%g..%g: '%s', not '%s'", low, high, found, expected);
