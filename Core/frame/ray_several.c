@@ -41,8 +41,10 @@ static stratus_status draw_on_host(stratus_context* context, const stratus_sever
   static stratus_ray_cast_tile* const tiles[] = STRATUS_ISA_EACH(stratus_several_tile);
   const int width = frame->picture.arguments->picture.width, height = frame->picture.arguments->picture.height;
   const int columns = (width + STRATUS_RAY_TILE - 1) / STRATUS_RAY_TILE, rows = (height + STRATUS_RAY_TILE - 1) / STRATUS_RAY_TILE;
-  const several_job job = { frame, tiles[stratus_isa_at_most(context->isa)], columns };
+  stratus_several_frame mine = *frame;
+  const several_job job = { &mine, tiles[stratus_isa_at_most(context->isa)], columns };
   uint64_t sums[STRATUS_TILE_COUNTS];
+  void* memory = NULL;
   for (int n = 0; n < frame->count; ++n) {
     const stratus_several_part* part = &frame->volumes[n];
     stratus_tetra_counts found;
@@ -50,7 +52,12 @@ static stratus_status draw_on_host(stratus_context* context, const stratus_sever
       TRY(stratus_tetra_count_entries(context, part->mesh, &part->tetra->buffers, &found));
     }
   }
-  TRY(stratus_each_tile(context, "ray cast", columns * rows, draw_tile, &job, sums));
+  mine.room = (size_t)stratus_several_part_count(frame) * STRATUS_SEVERAL_PART_BYTES;
+  TRY(stratus_allocate(context, (size_t)context->threads, mine.room, &memory));
+  mine.rooms = memory;
+  const stratus_status status = stratus_each_tile(context, "ray cast", columns * rows, draw_tile, &job, sums);
+  stratus_release(context, memory);
+  TRY(status);
   *counts = (stratus_ray_counts){ .rays = sums[0], .samples = sums[1], .skipped = sums[2], .lookups = sums[3] };
   return STRATUS_OK;
 }

@@ -64,11 +64,6 @@ stratus_status stratus_several_check_volume(stratus_context* context, int n, con
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "volume %d of several has gradients that clip planes change, must be the only volume", n);
   }
-  if (options->clipping.crop && options->clipping.crop_regions != STRATUS_CROP_INSIDE &&
-    options->clipping.crop_regions != STRATUS_CROP_ALL) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several shows crop regions 0x%x, must be the inside (0x%x) or all", n,
-      (unsigned)options->clipping.crop_regions, (unsigned)STRATUS_CROP_INSIDE);
-  }
   return STRATUS_OK;
 }
 
@@ -80,10 +75,6 @@ stratus_status stratus_several_check_mesh(stratus_context* context, int n, const
   if (options->mode != STRATUS_TETRA_COMPOSITE) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has mode %s, which does not mix with composite", n,
       stratus_tetra_mode_name(options->mode));
-  }
-  if (stratus_tetra_modes_regions(options)) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several shows crop regions 0x%x, must be the inside (0x%x) or all", n,
-      (unsigned)options->crop_regions, (unsigned)STRATUS_CROP_INSIDE);
   }
   if (options->method == STRATUS_TETRA_METHOD_PROJECT) {
     return stratus_fail(

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Rays through several volumes on the OpenCL device. Each volume's caster keeps its data there; the first one keeps the picture's. */
 #include "ray_device_buffers.h"
-#include "ray_several_host.h"
+#include "ray_several_picture.h"
 #include "tetra_caster.h"
 
 #include <stdio.h>
@@ -36,7 +36,7 @@ static int common_type(const stratus_several_frame* frame)
 
 static stratus_status find_kernel(several_device* d)
 {
-  char defines[256];
+  char defines[320];
   int has = 0, cells = 0, media = 0;
   bool lit = false; /* a mesh */
   for (int n = 0; n < d->frame->count; ++n) {
@@ -47,11 +47,12 @@ static stratus_status find_kernel(several_device* d)
     lit = lit || (part->mesh && part->mesh->lit);
   }
   snprintf(defines, sizeof defines,
-    "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d -DSEVERAL_MOST=%d -DSEVERAL_CELLS=%d -DSEVERAL_MEDIA=%d "
+    "-DSTRATUS_DEVICE=1 -DSTRATUS_TYPE=%d -DSTRATUS_WIDTH=%d -DRAY_TILE=%d -DSEVERAL_MOST=%d -DSEVERAL_PARTS=%d -DSEVERAL_CELLS=%d "
+    "-DSEVERAL_MEDIA=%d "
     "-DSTRATUS_ARGUMENTS_BYTES=%zu -DRAY_HAS=%d%s%s%s",
-    common_type(d->frame), d->packets ? 16 : 1, STRATUS_RAY_DEVICE_TILE, d->frame->count, cells, media, sizeof(stratus_ray_cast_arguments),
-    has, stratus_device_has_double(d->context->device) ? "" : " -DSTRATUS_REAL_PAIR=1", d->meshes ? " -DSEVERAL_MESHES=1" : "",
-    lit ? " -DTETRA_LIT=1" : "");
+    common_type(d->frame), d->packets ? 16 : 1, STRATUS_RAY_DEVICE_TILE, d->frame->count, stratus_several_part_count(d->frame), cells,
+    media, sizeof(stratus_ray_cast_arguments), has, stratus_device_has_double(d->context->device) ? "" : " -DSTRATUS_REAL_PAIR=1",
+    d->meshes ? " -DSEVERAL_MESHES=1" : "", lit ? " -DTETRA_LIT=1" : "");
   return stratus_device_kernel(d->context, "ray_several", defines, "ray_several", &d->kernel);
 }
 

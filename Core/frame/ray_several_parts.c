@@ -291,3 +291,13 @@ stratus_status stratus_several_set_part(
   }
   return set_volume(s, in, number, a, part);
 }
+
+int stratus_several_part_count(const stratus_several_frame* frame)
+{
+  int parts = frame->count;
+  for (int n = 0; n < frame->count; ++n) {
+    const stratus_several_part* part = &frame->volumes[n];
+    parts += (part->mesh ? part->mesh->arguments.regions : part->frame.arguments->crop.regions) ? CROP_PIECES - 1 : 0;
+  }
+  return parts;
+}

@@ -60,5 +60,7 @@ stratus_status stratus_several_choose_step(stratus_several* s);
 /* Sets what rays read of an input, unless they meet nothing of it: then in->part is -1, else `number`. */
 stratus_status stratus_several_set_part(
   const stratus_several* s, stratus_several_input* in, int number, stratus_ray_cast_arguments* a, stratus_several_part* part);
+/* Returns the number of volumes and of further pieces of those that crop regions cut, each of which marches by itself. */
+int stratus_several_part_count(const stratus_several_frame* frame);
 
 #endif

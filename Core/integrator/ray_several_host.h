@@ -21,9 +21,14 @@ typedef struct stratus_several_part {
   stratus_several_arguments arguments;
 } stratus_several_part;
 
+/* The most that the rays of a packet need of memory for a volume, or for a piece of one that crop regions cut. */
+#define STRATUS_SEVERAL_PART_BYTES 20480
+
 typedef struct stratus_several_frame {
   stratus_ray_cast_frame picture;        /* output of the rays; the arguments are the first volume's */
   const struct stratus_light_maps* maps; /* of light, that all share; NULL: none */
+  unsigned char* rooms;                  /* on the host: memory of `room` bytes for each thread, not on their stacks, which may be small */
+  size_t room;
   int count;
   stratus_several_part volumes[STRATUS_SEVERAL_MAX];
 } stratus_several_frame;

@@ -6,6 +6,8 @@
 #include "ray_several_host.h"
 #include "tetra_march_view.h"
 
+#include <omp.h>
+
 #define STRATUS_TYPE -2
 #define STRATUS_PREINTEGRATED 0
 #define STRATUS_RAY_MODE STRATUS_RAY_SHADING
@@ -17,6 +19,7 @@
 #include "ray_several.h"
 
 _Static_assert(SEVERAL_MOST == STRATUS_SEVERAL_MAX, "as many as the API takes");
+_Static_assert(sizeof(several_volume) <= STRATUS_SEVERAL_PART_BYTES, "a room holds it");
 
 /* Finds where the tile's rays enter a mesh. */
 static void find_mesh(const several_mesh* m, int x0, int y0, int x1, int y1)
@@ -36,8 +39,9 @@ void STRATUS_ISA_NAME(stratus_several_tile)(
 {
   const stratus_several_frame* frame = (const stratus_several_frame*)(const void*)picture;
   tile_counts mine = { vi_set(0), vi_set(0), vi_set(0), 0 };
-  several_source from[SEVERAL_MOST];
+  several_source from[SEVERAL_PARTS];
   several_mesh meshes[SEVERAL_MOST];
+  several_volume* volumes = (several_volume*)(void*)(frame->rooms + (size_t)omp_get_thread_num() * frame->room);
   for (int n = 0; n < frame->count; ++n) {
     const stratus_several_part* part = &frame->volumes[n];
     const stratus_ray_cast_frame* of = &part->frame;
@@ -62,12 +66,12 @@ void STRATUS_ISA_NAME(stratus_several_tile)(
       find_mesh(&meshes[n], x0, y0, x1, y1);
     }
   }
+  const int parts = several_add_pieces(from, frame->count);
   for (int y = y0; y < y1; y += PACKET_Y) {
     for (int x = x0; x < x1; x += PACKET_X) {
-      several_volume volumes[SEVERAL_MOST];
       stratus_packet k;
-      several_load(from, frame->count, picture->opaque_depth, x, y, volumes, &k);
-      several_march(from, volumes, frame->count, &k);
+      several_load(from, parts, picture->opaque_depth, x, y, volumes, &k);
+      several_march(from, volumes, parts, &k);
       store_packet(picture, &k, x, y, &mine);
     }
   }

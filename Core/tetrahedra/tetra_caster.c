@@ -295,6 +295,12 @@ static bool shows_values(const stratus_tetra_caster* caster, const stratus_mesh*
   return several ? caster->components.shown : caster->look.table->shown > 0;
 }
 
+/* Whether no crop region shows. */
+static bool crops_all(const stratus_tetra_options* options)
+{
+  return stratus_tetra_modes_regions(options) && options->crop_regions == 0;
+}
+
 static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh* mesh, const stratus_transfer* transfer,
   const stratus_camera* camera, const stratus_tetra_options* options, const stratus_image* image, stratus_tetra_report* report)
 {
@@ -302,9 +308,8 @@ static stratus_status draw_one(stratus_tetra_caster* caster, const stratus_mesh*
   const double start = stratus_now_ms();
   const bool adds = options->mode == STRATUS_TETRA_AVERAGE || options->mode == STRATUS_TETRA_ADDITIVE; /* black where nothing shows */
   const bool shows = shows_values(caster, mesh, options);
-  const bool cropped = stratus_tetra_modes_regions(options) && options->crop_regions == 0;
   const bool needs = !adds && options->mode != STRATUS_TETRA_ISOSURFACE && options->mode != STRATUS_TETRA_QUANTITIES;
-  if ((!shows && needs) || caster->mesh->face_count == 0 || cropped) {
+  if ((!shows && needs) || caster->mesh->face_count == 0 || crops_all(options)) {
     report->method = options->method == STRATUS_TETRA_METHOD_PROJECT ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH;
     snprintf(report->why, sizeof report->why, "nothing to draw: no cell, or none that shows");
     stratus_image_clear(image);
@@ -446,7 +451,7 @@ stratus_status stratus_tetra_caster_prepare(stratus_tetra_caster* caster, const 
 {
   const stratus_mesh* drawn = NULL;
   TRY(take(caster, of, camera, image, &drawn, report));
-  *shows = shows_values(caster, drawn, of->options) && caster->mesh->face_count > 0;
+  *shows = shows_values(caster, drawn, of->options) && caster->mesh->face_count > 0 && !crops_all(of->options);
   if (*shows) {
     TRY(stratus_tetra_frame_prepare(caster->context, caster->mesh, drawn, camera, image, true, &caster->buffers, frame));
     frame->table = caster->look.table;

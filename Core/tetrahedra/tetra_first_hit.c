@@ -44,7 +44,6 @@ typedef struct hits {
 /* Where a part begins or a place is: a plane's number, or one of these. */
 #define CUT_NEAR (-1)
 #define CUT_NONE (-2)
-#define PARTS 4 /* as many as six planes leave of a ray, see crop_pieces() in kernels/base/crop.h */
 
 /* A seen part of a ray. */
 typedef struct hit_part {
@@ -55,7 +54,7 @@ typedef struct hit_part {
 /* Places are relative to the eye; the ray is at from + k along. */
 typedef struct hit_ray {
   double from[3], along[3], length;
-  hit_part parts[PARTS];
+  hit_part parts[CROP_PIECES];
   int count;
 } hit_ray;
 
@@ -108,7 +107,7 @@ static void take_parts(const hits* h, hit_part whole, hit_ray* ray)
   for (int i = 0; h->crop_count > 0 && i < count; ++i) {
     const double end = i + 1 < count ? cuts[i + 1].begin : whole.end, begin = cuts[i].begin;
     const bool shows = begin < end && in_region(h, ray, end < INFINITY ? 0.5 * (begin + end) : begin + 1.0);
-    if (shows && !before && ray->count < PARTS) {
+    if (shows && !before && ray->count < CROP_PIECES) {
       ray->parts[ray->count++] = cuts[i];
     }
     if (shows) {

@@ -13,7 +13,8 @@
 static picture on_host, on_device;
 static stratus_ray_cast_report reports[STRATUS_SEVERAL_MAX];
 
-/* Two to four volumes: of one type where seed is even, with light, gradient opacity, jitter, stretched grids and walls in turn. */
+/* Two to four volumes: of one type where seed is even, with light, gradient opacity, jitter, crop regions, stretched grids and walls in
+ * turn. */
 static void make_case(stratus_context* context, uint32_t seed, several_case* m, grid_case* grid)
 {
   static const double gradient[4] = { 0.0, 0.2, 1e9, 1.0 };
@@ -44,6 +45,12 @@ static void make_case(stratus_context* context, uint32_t seed, several_case* m, 
     const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
     const double opacity[8] = { base - scale, 0, base + 0.2 * scale, 0.1, base + 0.2 * scale, 1.0, base + scale, 1.0 };
     memcpy(c->opacity, opacity, sizeof opacity);
+  }
+  if (seed % 3 == 0) { /* crop regions */
+    stratus_ray_clipping_options* clipping = &m->of[1].options.clipping;
+    clipping->crop = 1;
+    clipping->crop_regions = 0x5555555u;
+    memcpy(clipping->crop_bounds, (const double[6]){ 6, 14, 7, 15, 9, 17 }, sizeof clipping->crop_bounds);
   }
   if (seed % 4 == 2) {
     grid_case_set(&m->of[0], grid, GRID_GEOMETRIC, 3, -10.0, 1.0, 20.0, &random);
@@ -227,7 +234,7 @@ static void a_device_keeps_what_the_host_keeps(void** state)
 }
 
 /* Meshes among volumes by samples and by cells, and without volumes; values of cells, a lattice, light, gradient opacity, two components;
- * opaque geometry, clip planes, jitter, walls. */
+ * opaque geometry, clip planes, crop regions, jitter, walls. */
 static void make_mesh_case(stratus_context* context, uint32_t seed, mixed_case* m, media_case* media, float* opaque)
 {
   static const int volumes[] = { 1, 2, 1, 1, 0, 1, 1 };
@@ -256,6 +263,11 @@ static void make_mesh_case(stratus_context* context, uint32_t seed, mixed_case* 
     mesh->transfer.gradient_count = 3;
     c->options.light.shade = 1;
     c->options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+  }
+  if (seed == 1 || seed == 3) { /* crop regions, without and with light */
+    mesh->options.crop = 1;
+    mesh->options.crop_regions = 0x5140145u;
+    memcpy(mesh->options.crop_bounds, (const double[6]){ 0.9, 2.1, 0.9, 2.1, 0.9, 2.1 }, sizeof mesh->options.crop_bounds);
   }
   if (seed == 6) { /* two components of the same values */
     static float values[2 * 64];

@@ -624,11 +624,6 @@ void Refusals()
     scene.OtherMapper->SetSamplingToCells();
     scene.Other->GetProperty()->SetGradientOpacity(steep);
   });
-  refuses("crop regions", [](Pair& scene) {
-    scene.OtherMapper->CroppingOn();
-    scene.OtherMapper->SetCroppingRegionPlanes(1, 2, 1, 2, 1, 2);
-    scene.OtherMapper->SetCroppingRegionFlagsToFence();
-  });
   refuses("mesh 1 of several has mode maximum", [](Pair& scene) {
     const Cells cells;
     cells.Mapper->SetBlendMode(vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND);

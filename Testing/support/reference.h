@@ -21,6 +21,7 @@ typedef struct reference_scene {
   const float* opaque_depth; /* window depths, as in stratus_image; may be NULL */
   int crop;                  /* as in stratus_ray_cast_options */
   double crop_bounds[6];
+  uint32_t crop_regions; /* as in stratus_ray_cast_options; 0: the inside. Several volumes only */
   int clip_plane_count;
   double clip_planes[STRATUS_CLIP_PLANES_MAX][4];
   const stratus_shading* shading;    /* NULL: unlit, unless materials say otherwise */

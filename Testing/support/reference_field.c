@@ -167,7 +167,7 @@ int reference_field_create(const reference_scene* scene, reference_field* f)
     f->shift[a] = v->cell_centered && !v->coordinates[a] ? -0.5 : 0.0;
     f->lo[a] = fmin(reference_axis_end(v, a, 0), reference_axis_end(v, a, 1));
     f->hi[a] = fmax(reference_axis_end(v, a, 0), reference_axis_end(v, a, 1));
-    if (scene->crop) {
+    if (scene->crop && (scene->crop_regions == 0 || scene->crop_regions == STRATUS_CROP_INSIDE)) {
       f->lo[a] = fmax(f->lo[a], reference_axis_crop(v, a, scene->crop_bounds[2 * a]));
       f->hi[a] = fmin(f->hi[a], reference_axis_crop(v, a, scene->crop_bounds[2 * a + 1]));
     }

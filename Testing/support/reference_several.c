@@ -8,6 +8,7 @@
 #include "reference_shading.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -101,6 +102,18 @@ static void meet(medium* m, const line* r)
   }
 }
 
+/* Whether crop regions show position p, in index coordinates. */
+static bool shows_region(const reference_scene* scene, const double p[3])
+{
+  int region = 0;
+  for (int a = 2; a >= 0; --a) {
+    const double low = reference_axis_crop(scene->volume, a, scene->crop_bounds[2 * a]),
+                 high = reference_axis_crop(scene->volume, a, scene->crop_bounds[2 * a + 1]);
+    region = 3 * region + (p[a] < low ? 0 : p[a] > high ? 2 : 1);
+  }
+  return !scene->crop || scene->crop_regions == 0 || (scene->crop_regions >> region & 1u);
+}
+
 /* Adds what one volume has at s: optical depth and light per length. */
 static void add_medium(medium* m, const line* r, double s, double* tau, double glow[3])
 {
@@ -113,6 +126,9 @@ static void add_medium(medium* m, const line* r, double s, double* tau, double g
     place.spot[a] = reference_axis_find(m->field.volume, a, p[a]);
     place.world[a] = r->origin[a] + s * r->direction[a];
     place.at[a] = p[a];
+  }
+  if (!shows_region(m->scene, p)) {
+    return;
   }
   for (int i = 0; i < reference_components(m->scene->volume); ++i) {
     values[i] = reference_field_sample(&m->parts[i], p, &m->cell[i]);

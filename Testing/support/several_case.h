@@ -143,6 +143,8 @@ static inline double several_psnr(const char* what, stratus_context* context, co
     scenes[n].opaque_depth = m->of[0].opaque_depth;
     scenes[n].shading = m->of[n].options.light.shade || m->of[n].options.light.materials ? &m->of[n].options.light.shading : NULL;
     scenes[n].materials = m->of[n].options.light.materials;
+    scenes[n].crop_regions = m->of[n].options.clipping.crop_regions;
+    scenes[n].gradient_distance = m->of[n].options.optics.gradient_distance;
     scenes[n].dependent = m->of[n].options.optics.dependent;
     scenes[n].mean_components = m->of[n].options.optics.mean_components;
     scenes[n].labels = m->of[n].options.mask.bytes;

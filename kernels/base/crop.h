@@ -4,9 +4,7 @@
 #define STRATUS_CROP_H
 
 #include "packet.h"
-
-/* Six planes cut a ray into at most seven parts. Neighbouring parts that are shown are one piece, so that there are at most four. */
-#define CROP_PIECES 4
+#include "picture_arguments.h"
 
 /* 1 if the ray of `lane` is in a shown region at s. */
 INLINE int crop_shows(int regions, const float crossing[3][2][STRATUS_WIDTH], const float d[3][STRATUS_WIDTH], int lane, float s)

@@ -33,7 +33,7 @@
 #endif
 
 #ifdef __clang__
-#pragma clang diagnostic ignored "-Wunused-function" /* a volume has no crop regions, and never marches without the others */
+#pragma clang diagnostic ignored "-Wunused-function" /* a volume never marches without the others */
 #endif
 
 #include "ray_packet.h"
@@ -120,8 +120,8 @@ PACKET_KERNEL void ray_several(__constant stratus_ray_cast_arguments* a, __const
   __global uchar* rgba8, __global float* depth, __global uint* samples, __global uint* counts MESHES_ARGUMENTS)
 {
   const stratus_pixels to = { rgba, rgba8, depth, samples };
-  several_source from[SEVERAL_MOST];
-  several_volume volumes[SEVERAL_MOST];
+  several_source from[SEVERAL_PARTS];
+  several_volume volumes[SEVERAL_PARTS];
 #if SEVERAL_MESHES
   several_mesh meshes[SEVERAL_MOST];
 #endif
@@ -148,6 +148,7 @@ PACKET_KERNEL void ray_several(__constant stratus_ray_cast_arguments* a, __const
 #if SEVERAL_MOST > 7
   SOURCE(7)
 #endif
+  count = several_add_pieces(from, count);
 #if STRATUS_WIDTH == 1
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= a->picture.width || y >= a->picture.height) {

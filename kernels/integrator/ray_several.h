@@ -78,10 +78,10 @@ INLINE void several_advance(const several_source* from, several_volume* v, int i
 /* Gives every ray its number of the packet's first segment, and each volume where it is due. whole: of each volume, the number of the
  * segment in which a ray enters it. */
 INLINE void several_number(
-  const several_source* from, several_volume* volumes, int count, several_number_t whole[SEVERAL_MOST][STRATUS_WIDTH])
+  const several_source* from, several_volume* volumes, int count, several_number_t whole[SEVERAL_PARTS][STRATUS_WIDTH])
 {
   several_number_t least = (several_number_t)SEVERAL_FARTHEST;
-  int meets[SEVERAL_MOST][STRATUS_WIDTH];
+  int meets[SEVERAL_PARTS][STRATUS_WIDTH];
   for (int n = 0; n < count; ++n) {
     vi_store(meets[n], vi_select(volumes[n].k.live, vi_set(1), vi_set(0)));
     for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
@@ -110,7 +110,7 @@ INLINE void several_number(
 INLINE void several_load(
   const several_source* from, int count, GLOBAL const float* opaque_depth, int x, int y, several_volume* volumes, stratus_packet* k)
 {
-  several_number_t whole[SEVERAL_MOST][STRATUS_WIDTH];
+  several_number_t whole[SEVERAL_PARTS][STRATUS_WIDTH];
   packet_nothing(k);
   for (int n = 0; n < count; ++n) {
     CONSTANT stratus_ray_cast_arguments* a = from[n].a;
@@ -136,6 +136,12 @@ INLINE void several_load(
     }
     const vmask inside = packet_rays(a, opaque_depth, x, y, &rays);
     packet_begin(a, &rays, inside, &v->k);
+    if (RAY_RARE(RAY_REGIONS, a->crop.regions)) {
+      stratus_crop crop;
+      crop_begin(a, &rays, &v->k, &crop);
+      crop_enter(a, &crop, from[n].piece, 0, &v->k);
+      v->k.skipped = from[n].piece ? vi_set(0) : v->k.skipped; /* the whole ray's, which counts once */
+    }
     v->k.grid = from[n].grid;
     v->k.lights = from[n].lights;
     for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {

@@ -163,6 +163,10 @@ INLINE void several_mesh_load(const several_source* from, several_volume* v, int
   walk->found = (stratus_tetra_found){ 0, 0, 0, 0 };
   lanes_clear(lanes);
   lanes_take(walk, lanes, inside, ((py - vi_set(walk->y0)) << vi_set(TETRA_TILE_LOG2)) + (px - vi_set(walk->x0)));
+  if (from->piece) {
+    lanes->piece = vi_set(from->piece);
+    lanes_load(walk, lanes, inside);
+  }
   vfloat z;
   vmask meets = several_mesh_entry(v, inside, &z);
   z = v_max(z, lanes->ray.begin);

@@ -3,6 +3,7 @@
 #ifndef STRATUS_SEVERAL_STATE_H
 #define STRATUS_SEVERAL_STATE_H
 
+#include "crop.h"
 #include "lighting.h"
 #include "ray_several_arguments.h"
 /* 1: there is a mesh of tetrahedra. A device compiles the code for meshes only then, as for all that follows. */
@@ -40,6 +41,10 @@
 /* A device compiles a kernel for as many volumes as there are. */
 #ifndef SEVERAL_MOST
 #define SEVERAL_MOST 8
+#endif
+/* Volumes, and the further pieces of those that crop regions cut. Each piece marches as a volume of its own. */
+#ifndef SEVERAL_PARTS
+#define SEVERAL_PARTS (CROP_PIECES * SEVERAL_MOST)
 #endif
 #define SEVERAL_NEVER 0x7fffffff
 /* Where something has shown for so many segments, the structure is asked a segment later than it has to be. */
@@ -93,6 +98,7 @@ typedef struct several_source {
 #if SEVERAL_MESHES
   const several_mesh* mesh; /* 0: a volume */
 #endif
+  int piece;         /* of those that crop regions cut rays into */
   int stride;        /* segments of the lattice to a sample of this volume, at least 1 */
   int lit;           /* 1: it has light or gradient opacity, or is a mesh of several components */
   int cells;         /* SEVERAL_BY_SAMPLES, SEVERAL_BY_CELLS or SEVERAL_LOCAL */
@@ -156,6 +162,26 @@ INLINE int several_has_stretches(const several_source* from)
   }
 #endif
   return SEVERAL_CELLS && from->cells;
+}
+
+/* Adds the further pieces of volumes that crop regions cut, behind the volumes. Returns the number of all. */
+INLINE int several_add_pieces(several_source* from, int count)
+{
+  int parts = count;
+  for (int n = 0; n < count; ++n) {
+    int regions = RAY_RARE(RAY_REGIONS, from[n].a->crop.regions);
+#if SEVERAL_MESHES
+    if (from[n].mesh) {
+      regions = from[n].mesh->a->regions;
+    }
+#endif
+    from[n].piece = 0;
+    for (int piece = 1; regions && piece < CROP_PIECES && parts < SEVERAL_PARTS; ++piece) {
+      from[parts] = from[n];
+      from[parts++].piece = piece;
+    }
+  }
+  return parts;
 }
 
 /* The field, and its gradient, at x. */

@@ -369,8 +369,8 @@ static void what_does_not_mix_is_refused(void** state)
   m.of[1].options.mask.bytes = (const uint8_t*)"";
   REFUSED(STRATUS_UNSUPPORTED, "by cells of a volume with a mask");
   m.of[1].options.clipping.crop = 1;
-  m.of[1].options.clipping.crop_regions = 5;
-  REFUSED(STRATUS_UNSUPPORTED, "crop regions");
+  m.of[1].options.clipping.crop_regions = STRATUS_CROP_ALL + 1;
+  REFUSED(STRATUS_INVALID_ARGUMENT, "crop regions");
   m.of[1].options.sampling.tolerance = -1.0;
   REFUSED(STRATUS_INVALID_ARGUMENT, "tolerance");
   m.of[1].options.mask.label_count = 3;

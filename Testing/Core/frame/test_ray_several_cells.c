@@ -173,7 +173,6 @@ static void no_structure_changes_a_bit_of_rule_local(void** state)
     for (int n = 0; n < m.count; ++n) {
       if (n < 2) {
         case_create_local(*state, 70 + 3 * seed + (uint32_t)n, &m.of[n]);
-        m.of[n].options.clipping.crop_regions = STRATUS_CROP_INSIDE;
       } else {
         case_create(*state, &m.of[n], STRATUS_UINT16, 30, 26, 22, seed);
         sharpen(&m.of[n], (int)(seed / 2 % 3));

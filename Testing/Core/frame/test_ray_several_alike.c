@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Volumes and meshes among several show what they show alone: with another input that is empty, the picture is the ordinary one but for
+ * rounding. Where several overlap, the double reference says what they show. */
+#include "mixed_case.h"
+
+#include "testing.h"
+
+static picture drawn, other;
+static mixed_case m;
+
+static float largest_difference(const picture* a, const picture* b)
+{
+  float largest = 0.0f;
+  for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
+    largest = fmaxf(largest, fabsf(a->rgba[i] - b->rgba[i]));
+  }
+  return largest;
+}
+
+static void empty(picture_case* c)
+{
+  memset(c->opacity, 0, sizeof c->opacity);
+  c->transfer.opacity_count = 1;
+}
+
+/* Draws a volume beside an empty one, by samples that are as long as the ordinary picture's, and by each structure, which changes no bit.
+ * Returns by how much the picture differs from the ordinary one. */
+static float beside_nothing(void** state, several_case* pair, const stratus_transfer* transfers)
+{
+  picture_case* c = &pair->of[0];
+  float difference;
+  pair->count = 2;
+  pair->transfers[0] = transfers;
+  pair->transfers[1] = NULL;
+  case_create(*state, &pair->of[1], STRATUS_FLOAT32, 17, 20, 23, 6);
+  empty(&pair->of[1]);
+  pair->of[1].options.sampling.distance = 100.0;
+  const stratus_transfer own = c->transfer;
+  c->transfer = transfers ? *transfers : own;
+  case_render(*state, c, &other);
+  c->transfer = own;
+  several_draw(*state, pair, &drawn);
+  difference = largest_difference(&drawn, &other);
+  assert_true(case_lit(&drawn) > case_share(50));
+  for (int i = 0; i < CASE_PIXELS; ++i) {
+    assert_true(drawn.depth[i] == other.depth[i] || fabsf(drawn.depth[i] - other.depth[i]) < 1e-3f);
+  }
+  for (int structure = STRATUS_STRUCTURE_NONE; structure <= STRATUS_STRUCTURE_HYBRID; structure += few_run() ? 3 : 1) {
+    pair->of[0].options.skipping.structure = pair->of[1].options.skipping.structure = (stratus_structure)structure;
+    several_draw(*state, pair, &other);
+    assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
+    assert_memory_equal(drawn.depth, other.depth, sizeof drawn.depth);
+  }
+  case_destroy(&pair->of[1]);
+  return difference;
+}
+
+/* ---- crop regions */
+
+/* The sets that VTK has names for, and one that leaves four pieces of some rays. */
+static const uint32_t regions[] = { 0x5ffdfffu, 0x0417410u, 0x7ebfbefu, 0x2ebfebau, 0x5140145u, 0x5555555u };
+
+static void crop_between(int crops, stratus_ray_clipping_options* clipping, uint32_t shown, const int64_t dimensions[3])
+{
+  clipping->crop = crops;
+  clipping->crop_regions = shown;
+  for (int a = 0; a < 3; ++a) {
+    clipping->crop_bounds[2 * a] = 0.31 * (double)dimensions[a];
+    clipping->crop_bounds[2 * a + 1] = 0.63 * (double)dimensions[a];
+  }
+}
+
+static void crop_regions_of_volumes_are_as_alone(void** state)
+{
+  static const stratus_sampling rules[] = { STRATUS_SAMPLING_MIDPOINT, STRATUS_SAMPLING_PREINTEGRATED, STRATUS_SAMPLING_CELLS };
+  several_case pair;
+  for (int i = few_run() ? 4 : 0; i < 6; ++i) {
+    for (int rule = 0; rule < 3; ++rule) {
+      picture_case* c = &pair.of[0];
+      case_create(*state, c, STRATUS_FLOAT32, 23, 29, 21, 61u + (uint32_t)i);
+      crop_between(1, &c->options.clipping, regions[i], c->volume.dimensions);
+      c->opacity[1] = c->opacity[3] = 0.03; /* every value shows */
+      c->options.sampling.rule = rules[rule];
+      c->options.sampling.cell_error = 1e-5;
+      case_camera(*state, c, i + rule, i % 2);
+      const float difference = beside_nothing(state, &pair, NULL);
+      print_message("             regions 0x%07x, %s: %g\n", (unsigned)regions[i], stratus_sampling_name(rules[rule]), (double)difference);
+      assert_true(difference < 4e-6f);
+      case_destroy(c);
+    }
+  }
+}
+
+/* dB against the reference, of steps of a tenth where voxels are about a unit, as with planes that cut single volumes. */
+#define REGIONS_DB 70.0
+
+static void crop_regions_mix_as_the_reference_does(void** state)
+{
+  for (uint32_t seed = 0; seed < 4; seed += few_run() ? 2 : 1) {
+    several_case v;
+    char what[48];
+    several_create(*state, &v, 2 + (int)(seed % 2), 620 + seed);
+    for (int n = 0; n < v.count; ++n) {
+      v.of[n].options.sampling.distance = 0.05;
+      crop_between(n < 2, &v.of[n].options.clipping, regions[(seed + 3u * (uint32_t)n) % 6u], v.of[n].volume.dimensions);
+    }
+    v.of[1].options.sampling.distance = 0.11; /* a sample spans two segments */
+    snprintf(what, sizeof what, "regions, seed %u, %d volumes", seed, v.count);
+    assert_true(several_psnr(what, *state, &v, &drawn) >= REGIONS_DB);
+    assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
+    several_destroy(&v);
+  }
+}
+
+/* Eight volumes of four pieces each, and none of which a region shows. */
+static void many_pieces_and_none(void** state)
+{
+  several_case v;
+  several_create(*state, &v, 8, 640);
+  for (int n = 0; n < v.count; ++n) {
+    v.of[n].options.sampling.distance = 0.1;
+    crop_between(1, &v.of[n].options.clipping, 0x5555555u, v.of[n].volume.dimensions);
+  }
+  assert_true(several_psnr("eight volumes", *state, &v, &drawn) >= REGIONS_DB);
+  assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
+  for (int n = 0; n < v.count; ++n) {
+    v.of[n].options.clipping.crop_regions = 0;
+  }
+  several_draw(*state, &v, &drawn);
+  assert_int_equal(case_lit(&drawn), 0);
+  several_destroy(&v);
+}
+
+/* ---- meshes */
+
+/* Draws the first mesh beside an empty volume, and without volumes. Returns by how much the pictures differ from its own. */
+static float mesh_beside_nothing(void** state)
+{
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba, .depth = other.depth };
+  tetra_case* c = &m.meshes[0];
+  float most = 0.0f;
+  empty(&m.volumes.of[0]);
+  c->options.tolerance = 1e-5;
+  assert_int_equal(stratus_tetra_caster_render(m.tetra[0], &c->mesh, m.transfers[0] ? m.transfers[0] : &c->transfer,
+                     &m.volumes.of[0].camera, &c->options, &image, NULL),
+    STRATUS_OK);
+  for (int volumes = 1; volumes >= 0; --volumes) {
+    m.volumes.count = volumes;
+    const stratus_status status = mixed_draw(&m, &drawn);
+    if (status != STRATUS_OK) {
+      print_error("%s\n", stratus_context_message(*state));
+    }
+    assert_int_equal(status, STRATUS_OK);
+    most = fmaxf(most, largest_difference(&drawn, &other));
+    for (int i = 0; i < CASE_PIXELS; ++i) {
+      assert_true(drawn.depth[i] == other.depth[i] || fabsf(drawn.depth[i] - other.depth[i]) < 1e-3f);
+    }
+  }
+  m.volumes.count = 1;
+  assert_true(case_lit(&drawn) > case_share(50));
+  return most;
+}
+
+/* Both round values to the entries of one table, in different ways. */
+#define MESH_DIFFERENCE 1e-3f
+
+static void crop_mesh(tetra_case* c, uint32_t shown)
+{
+  c->options.crop = 1;
+  c->options.crop_regions = shown;
+  for (int a = 0; a < 3; ++a) {
+    c->options.crop_bounds[2 * a] = 0.9;
+    c->options.crop_bounds[2 * a + 1] = 2.1;
+  }
+}
+
+static void crop_regions_of_meshes_are_as_alone(void** state)
+{
+  for (int i = few_run() ? 4 : 0; i < 6; ++i) {
+    mixed_create(*state, &m, 1, 1, 650 + (uint32_t)i);
+    crop_mesh(&m.meshes[0], regions[i]);
+    m.meshes[0].options.shade = i % 2;
+    const float difference = mesh_beside_nothing(state);
+    print_message("             a mesh of regions 0x%07x: %g\n", (unsigned)regions[i], (double)difference);
+    assert_true(difference < MESH_DIFFERENCE);
+    m.meshes[0].options.crop_regions = 0;
+    assert_int_equal(mixed_draw(&m, &drawn), STRATUS_OK);
+    assert_int_equal(case_lit(&drawn), 0);
+    mixed_destroy(&m);
+  }
+}
+
+/* A volume and a mesh that do not overlap lie over each other. */
+static void cropped_inputs_apart_lie_over_each_other(void** state)
+{
+  static picture front;
+  mixed_create(*state, &m, 1, 1, 660);
+  picture_case* c = &m.volumes.of[0];
+  tetra_case* mesh = &m.meshes[0];
+  const double eye[3] = { 60, 2, 1 }, focal[3] = { 0, 0, 0 }, up[3] = { 0, 0.2, 1 };
+  assert_int_equal(stratus_camera_perspective(*state, eye, focal, up, 44.0, 1.2, &c->camera), STRATUS_OK);
+  crop_between(1, &c->options.clipping, 0x2ebfebau, c->volume.dimensions);
+  crop_mesh(mesh, regions[0]);
+  for (int i = 0; i < 12; ++i) {
+    mesh->mesh.matrix[i] *= i % 4 == 3 ? 1.0 : 1.8;
+  }
+  mesh->mesh.matrix[3] -= 70.0; /* behind the volume, through which it is seen */
+  c->transfer.unit_distance = 40.0;
+  mesh->options.tolerance = 1e-5;
+  assert_int_equal(mixed_draw(&m, &drawn), STRATUS_OK);
+  const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba, .depth = other.depth };
+  assert_int_equal(
+    stratus_tetra_caster_render(m.tetra[0], &mesh->mesh, &mesh->transfer, &c->camera, &mesh->options, &image, NULL), STRATUS_OK);
+  case_render(*state, c, &front);
+  int behind = 0;
+  assert_true(case_lit(&front) > case_share(100));
+  for (int i = 0; i < CASE_PIXELS; ++i) {
+    const float left = 1.0f - front.rgba[4 * i + 3];
+    for (int channel = 0; channel < 4; ++channel) {
+      other.rgba[4 * i + channel] = front.rgba[4 * i + channel] + left * other.rgba[4 * i + channel];
+    }
+    behind += left < 1.0f && other.rgba[4 * i + 3] > front.rgba[4 * i + 3];
+  }
+  print_message("             over each other: %g, %d pixels\n", (double)largest_difference(&drawn, &other), behind);
+  assert_true(behind > case_share(40));
+  assert_true(largest_difference(&drawn, &other) < MESH_DIFFERENCE);
+  mixed_destroy(&m);
+}
+
+int test_ray_several_alike(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(crop_regions_of_volumes_are_as_alone),
+    cmocka_unit_test(crop_regions_mix_as_the_reference_does),
+    cmocka_unit_test(many_pieces_and_none),
+    cmocka_unit_test(crop_regions_of_meshes_are_as_alone),
+    cmocka_unit_test(cropped_inputs_apart_lie_over_each_other),
+  };
+  return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
+}
