@@ -2,8 +2,6 @@
  * Refuses what one march through several volumes does not draw. */
 #include "ray_several_picture.h"
 
-#include "ray_shading_render.h"
-
 stratus_context* stratus_several_context(const stratus_ray_cast_input* input)
 {
   return input->caster ? input->caster->context : input->tetra ? input->tetra->context : NULL;
@@ -53,24 +51,11 @@ stratus_status stratus_several_check_volume(stratus_context* context, int n, con
   if (options->sampling.rule == STRATUS_SAMPLING_CELLS && options->light.shade) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several is lit and sampled by cells, must be the only volume", n);
   }
-  for (int i = 0; options->optics.gradient_distance > 0.0 && i < stratus_ray_shading_media(in->of->volume, options); ++i) {
-    if (in->transfer[i].gradient_count > 0) {
-      return stratus_fail(context, STRATUS_UNSUPPORTED,
-        "volume %d of several has a gradient opacity over a length of %g, must be of optical depths, 0", n,
-        options->optics.gradient_distance);
-    }
-  }
-  if (options->clipping.clip_gradients && options->clipping.clip_plane_count > 0) {
-    return stratus_fail(
-      context, STRATUS_UNSUPPORTED, "volume %d of several has gradients that clip planes change, must be the only volume", n);
-  }
   return STRATUS_OK;
 }
 
 stratus_status stratus_several_check_mesh(stratus_context* context, int n, const stratus_several_input* in)
 {
-  const stratus_mesh* mesh = in->of->mesh;
-  const stratus_transfer* transfer = in->of->transfer;
   const stratus_tetra_options* options = &in->tetra_options;
   if (options->mode != STRATUS_TETRA_COMPOSITE) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has mode %s, which does not mix with composite", n,
@@ -82,10 +67,6 @@ stratus_status stratus_several_check_mesh(stratus_context* context, int n, const
   }
   if (options->label_count > 0) {
     return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has labels, which only volumes have in one march", n);
-  }
-  if (mesh && mesh->components < 2 && transfer && transfer->gradient_count > 0 && options->gradient_distance != 0.0) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED,
-      "mesh %d of several has a gradient opacity over a length of %g, must be of optical depths, 0", n, options->gradient_distance);
   }
   return STRATUS_OK;
 }

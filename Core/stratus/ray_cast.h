@@ -406,9 +406,9 @@ typedef struct stratus_ray_cast_input {
  * their own input's range. Components are joined one after the other. In first-hit, isosurface and slice the surfaces of all inputs are
  * composited by depth, at equal depth in the order of the inputs. Rays are cast once more for each further surface that may be seen.
  *
- * Composite mode, whole volumes (no DUPLICATE ghosts). gradient_distance with a gradient opacity, and clip_gradients with clip planes, are
- * not drawn. Other input gives STRATUS_UNSUPPORTED. Components, labels, functions of two variables, light, gradient opacity, masks, crop
- * regions and clip planes are each volume's own. jitter, jitter_seed and audit are read from inputs[0].
+ * Composite mode, whole volumes (no DUPLICATE ghosts). Lit volumes are not sampled by cells. Other input gives STRATUS_UNSUPPORTED.
+ * Components, labels, functions of two variables, light, gradient opacity, masks, crop regions and clip planes are each volume's own.
+ * jitter, jitter_seed and audit are read from inputs[0].
  *
  * Sampling: errors of several volumes add up by their squares. Each volume therefore has the rule and the step that its own probe finds for
  * its tolerance divided by the square root of count, or the rule and step that its options set. Volumes that are sampled share one lattice.
@@ -416,9 +416,9 @@ typedef struct stratus_ray_cast_input {
  * whole segments as fit in its own step. Where a volume is sampled cell by cell, in all of it or in its rough blocks, light is composited
  * from one end of its cells' pieces to the next. A piece whose colour changes much is cut further, as with one volume.
  *
- * Meshes (mode composite, method auto or march, without labels; of one component, no gradient_distance with a gradient opacity) are drawn
- * cell by cell: within a segment of the lattice, light is composited from one face to the next. Components, light, gradient opacity, clip
- * planes and crop regions are each mesh's own. Where a mesh's cells overlap, one counts behind the other.
+ * Meshes (mode composite, method auto or march, without labels) are drawn cell by cell: within a segment of the lattice, light is
+ * composited from one face to the next. Components, light, gradient opacity, clip planes and crop regions are each mesh's own. Where a
+ * mesh's cells overlap, one counts behind the other.
  *
  * reports: NULL, or one for each input. Structures, choices and the expected error in a report concern its own volume. Rays, samples,
  * skipped segments, look-ups, differing pixels, window and cast_ms concern the whole image. The context's device draws; if an input exceeds

@@ -36,10 +36,16 @@ static void make_case(stratus_context* context, uint32_t seed, several_case* m, 
     c->options.light.shade = (seed + (uint32_t)n) % 4 == 0;
     c->transfer.gradient = gradient;
     c->transfer.gradient_count = (seed + (uint32_t)n) % 5 == 0 ? 2 : 0;
+    c->options.optics.gradient_distance = seed % 2 ? 0.0 : 1.5;
   }
   m->of[0].camera = camera;
   m->of[0].options.skipping.audit = 1;
   m->of[0].options.sampling.jitter = seed % 3 == 0;
+  if (seed % 4 == 0) { /* lit, with gradients that a clip plane changes */
+    stratus_ray_clipping_options* clipping = &m->of[0].options.clipping;
+    m->of[0].options.light.shade = clipping->clip_plane_count = clipping->clip_gradients = 1;
+    memcpy(clipping->clip_planes[0], (const double[4]){ 0.3, 0.8, -0.5, 2.0 }, sizeof clipping->clip_planes[0]);
+  }
   if (seed % 4 == 1) { /* a wall */
     picture_case* c = &m->of[1];
     const double base = case_type_values[c->volume.type].base, scale = case_type_values[c->volume.type].scale;
@@ -261,6 +267,7 @@ static void make_mesh_case(stratus_context* context, uint32_t seed, mixed_case* 
     mesh->options.shade = 1;
     mesh->transfer.gradient = thin;
     mesh->transfer.gradient_count = 3;
+    mesh->options.gradient_distance = 2.5;
     c->options.light.shade = 1;
     c->options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
   }

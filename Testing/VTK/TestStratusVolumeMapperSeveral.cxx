@@ -634,14 +634,6 @@ void Refusals()
     cells.Mapper->SetMethodToProject();
     scene.Multi->SetVolume(cells.Volume, 2);
   });
-  refuses("mesh 1 of several has a gradient opacity over a length of 0.5", [](Pair& scene) {
-    const Cells cells;
-    vtkNew<vtkPiecewiseFunction> gradient;
-    gradient->AddPoint(0.0, 0.5);
-    cells.Volume->GetProperty()->SetGradientOpacity(gradient);
-    cells.Mapper->SetGradientOpacityDistance(0.5);
-    scene.Multi->SetVolume(cells.Volume, 2);
-  });
   refuses("the volume at port 2: the input is a", [](Pair& scene) {
     const Cells cells;
     cells.Mapper->SetInputData(static_cast<vtkDataSet*>(scene.OtherImage));

@@ -109,7 +109,10 @@ OUTLINE void several_mesh_next(const several_source* from, several_volume* v, vm
   next->rate[0] = next->rate[1] = next->rate[2] = next->rate[3] = zero;
   next->stops = m_none();
 #if SEVERAL_LIT_MESHES
+  vmask walls = m_none();
   if (from->lit) {
+    walls = several_mesh_wall(&v->mesh, left, next);
+    left = m_andnot(left, walls);
     found = left & v_lt(v->mesh.piece, v->mesh.pieces);
     several_mesh_piece(from->mesh, &v->mesh, found, next);
     left = m_andnot(left, found);
@@ -136,6 +139,12 @@ OUTLINE void several_mesh_next(const several_source* from, several_volume* v, vm
   if (!from->mesh->a->media.components) {
     several_shade(from, v, found);
   }
+#if SEVERAL_LIT_MESHES
+  for (int c = 0; m_any(walls) && c < 4; ++c) {
+    next->rate[c] = v_select(walls, v->mesh.wall_rate[c], next->rate[c]);
+    next->entries = v_select(walls, zero, next->entries);
+  }
+#endif
   v->comes = -1; /* nothing is due of a mesh */
   several_take(v, mask);
 #if SEVERAL_LIT_MESHES

@@ -41,7 +41,6 @@ INLINE vmask several_mesh_mix(const several_mesh* m, several_mesh_rays* rays, co
   tetra_component_stretches(m->a, scene, r, passage, part->begin, part->end, mask, stretches);
   const stratus_tetra_mixture mixture = { &values, stretches, scene->media, scene->factors, (part->end - part->begin) * r->length };
   mask = tetra_media_pieces(m->a, &mixture, mask, pieces);
-  rays->length = v_select(mask, mixture.length, rays->length);
   for (int c = 0; c < m->a->media.components; ++c) {
     rays->values.from[c] = v_select(mask, values.from[c], rays->values.from[c]);
     rays->values.to[c] = v_select(mask, values.to[c], rays->values.to[c]);
@@ -61,6 +60,7 @@ INLINE vmask several_mesh_cut(
   if (!m_any(mask)) {
     return mask;
   }
+  rays->length = v_select(mask, (part->end - part->begin) * rays->lanes.ray.length, rays->length);
   if (m->a->media.components) {
     mask = several_mesh_mix(m, rays, passage, part, mask, &pieces);
   } else {
@@ -111,6 +111,7 @@ INLINE void several_mesh_piece(const several_mesh* m, several_mesh_rays* rays, v
   const vfloat length = rays->hi - rays->lo, rise = rays->back - rays->front, front = v_fma(begins, rise, rays->front);
   way->lo = v_select(mask, v_fma(begins, length, rays->lo), way->lo);
   way->hi = v_select(mask, v_select(more, v_fma(ends, length, rays->lo), rays->hi), way->hi);
+  rays->ends = v_select(mask, way->hi, rays->ends);
   way->front = v_select(mask, front, way->front);
   way->rise = v_select(mask, v_select(more, v_fma(ends, rise, rays->front), rays->back) - front, way->rise);
   rays->piece = v_select(mask, after, rays->piece);
@@ -119,8 +120,37 @@ INLINE void several_mesh_piece(const several_mesh* m, several_mesh_rays* rays, v
   }
 }
 
+/* Turns the walls of the mask that gradient opacity over a length has thinned to matter behind them, up to the end of the piece `way`.
+ * at: the walls' places on the rays' parts of their cells. */
+OUTLINE void several_mesh_thin_walls(const several_mesh* m, several_mesh_rays* rays, vfloat at, vmask mask, several_way* way)
+{
+  CONSTANT stratus_tetra_arguments* a = m->a;
+  const vfloat per_segment = v_reciprocal(v_max(rays->hi - rays->lo, v_set(1e-6f)));
+  stratus_tetra_lit lit;
+  tetra_light_at(a, m->view.scene.factors, 0, &rays->stretches[0], at, v_set(TETRA_WALL_WAY), mask, &lit);
+  mask = mask & v_lt(lit.factor, v_set(TETRA_WALL));
+  way->stops = m_andnot(way->stops, mask);
+  rays->wall_lo = v_select(mask, way->hi, rays->wall_lo);
+  rays->wall_hi = v_select(mask, rays->ends, rays->wall_hi);
+  rays->wall_rate[3] = v_select(mask, tetra_wall_depth(a, &lit, rays->length * per_segment), rays->wall_rate[3]);
+  for (int c = 0; c < 3; ++c) {
+    const vfloat color = v_fma(way->wall[c], lit.diffuse[c], lit.specular[c]);
+    rays->wall_rate[c] = v_select(mask, color * rays->wall_rate[3], rays->wall_rate[c]);
+  }
+}
+
+/* Sets `way` to the rest of a piece behind a thinned wall. Returns the rays of the mask that have one. */
+INLINE vmask several_mesh_wall(several_mesh_rays* rays, vmask mask, several_way* way)
+{
+  mask = mask & v_lt(rays->wall_lo, rays->wall_hi);
+  way->lo = v_select(mask, rays->wall_lo, way->lo);
+  way->hi = v_select(mask, rays->wall_hi, way->hi);
+  rays->wall_lo = v_select(mask, rays->wall_hi, rays->wall_lo);
+  return mask;
+}
+
 /* Lights the piece `way`: where it ends in a wall there. A wall is none where the gradient opacity is 0. */
-INLINE void several_mesh_light(const several_mesh* m, const several_mesh_rays* rays, vmask mask, several_way* way)
+INLINE void several_mesh_light(const several_mesh* m, several_mesh_rays* rays, vmask mask, several_way* way)
 {
   CONSTANT stratus_tetra_arguments* a = m->a;
   const stratus_tetra_scene* scene = &m->view.scene;
@@ -130,9 +160,16 @@ INLINE void several_mesh_light(const several_mesh* m, const several_mesh_rays* r
                             to = tetra_place(a, scene->sums, way->front + way->rise, mask);
   const vfloat tau = v_from_int(to.sum[3] - from.sum[3]);
   const vfloat middle = tetra_middle_of(scene->sums, (int)a->table.last + 1, from.entry, to.entry, tau, mask);
+  vfloat over = v_set(0.0f);
   stratus_tetra_lit lit;
-  tetra_light_at(
-    a, scene->factors, 0, &rays->stretches[0], v_select(way->stops, end, v_fma(middle, end - begin, begin)), v_set(0.0f), mask, &lit);
+  if (a->thins && a->factor_way > 0.0f) {
+    const vmask stops = mask & way->stops;
+    if (m_any(stops)) {
+      several_mesh_thin_walls(m, rays, end, stops, way);
+    }
+    over = v_select(way->stops, v_set(TETRA_WALL_WAY), tetra_way(a, scene->sums, &rays->stretches[0], from.entry, to.entry, tau, mask));
+  }
+  tetra_light_at(a, scene->factors, 0, &rays->stretches[0], v_select(way->stops, end, v_fma(middle, end - begin, begin)), over, mask, &lit);
   way->lighting.factor = lit.factor;
   way->stops = way->stops & v_lt(v_set(0.0f), lit.factor);
   for (int c = 0; c < 3; ++c) {
@@ -158,7 +195,8 @@ INLINE void several_mesh_light_load(several_volume* v)
 {
   const vfloat zero = v_set(0.0f);
   several_mesh_rays* rays = &v->mesh;
-  rays->lo = rays->hi = rays->front = rays->back = rays->length = rays->piece = rays->pieces = zero;
+  rays->lo = rays->hi = rays->front = rays->back = rays->length = rays->piece = rays->pieces = rays->ends = zero;
+  rays->wall_lo = rays->wall_hi = rays->wall_rate[0] = rays->wall_rate[1] = rays->wall_rate[2] = rays->wall_rate[3] = zero;
   for (int c = 0; c < TETRA_COMPONENTS; ++c) {
     stratus_tetra_stretch* s = &rays->stretches[c];
     s->us = s->uw = s->vs = s->vw = s->begin = s->rise = s->length = s->tau_scale = s->factor_scale = zero;

@@ -80,8 +80,12 @@ typedef struct several_mesh_rays {
    * component values are from front to back */
   stratus_tetra_stretch stretches[TETRA_COMPONENTS];
   stratus_tetra_values values;
-  vfloat lo, hi, front, back, length; /* length: in the world, of several components */
+  vfloat lo, hi, front, back, length; /* length: in the world */
   vfloat piece, pieces;               /* the next of its pieces, and their number */
+  vfloat ends;                        /* where the present piece ends */
+  /* the rest of a piece from wall_lo to wall_hi behind a wall that gradient opacity over a length has thinned, and its rate; none where
+   * wall_lo is not below wall_hi */
+  vfloat wall_lo, wall_hi, wall_rate[4];
 #endif
 } several_mesh_rays;
 #endif

@@ -53,7 +53,7 @@ INLINE vmask several_stop(
 }
 
 /* Compute how light and gradient opacity change the path, by the gradient in its middle. */
-OUTLINE void several_light(const several_source* from, const several_volume* v, vmask mask, several_way* way)
+OUTLINE void several_light(const several_source* from, several_volume* v, vmask mask, several_way* way)
 {
   CONSTANT stratus_ray_cast_arguments* a = from->a;
   const stratus_packet* k = &v->k;
@@ -72,6 +72,9 @@ OUTLINE void several_light(const several_source* from, const several_volume* v, 
   way->lighting.factor = v_set(1.0f);
   if (a->media.factor_first[0] >= 0) {
     way->lighting.factor = gradient_opacity(a, from->besides, vi_set(a->media.factor_first[0]), v_set(a->media.factor_scale[0]), g, mask);
+    if (a->media.factor_reach > 0.0f) { /* samples are not pre-integrated, and the path's rate is known */
+      way->lighting.factor = factor_of_way(way->lighting.factor, way->rate[3] * v_set(a->media.factor_reach / from->segment));
+    }
   }
   for (int c = 0; c < 3; ++c) {
     way->lighting.diffuse[c] = v_set(1.0f);

@@ -8,7 +8,6 @@
 
 #define TETRA_COMPONENTS 4
 #define OPAQUE_DEPTH 1e4f /* of a piece that meets an entry of opacity 1 */
-#define OPAQUE_WAY 80.0f  /* the optical depth of opacity 1 over factor_way */
 
 /* Places of a stretch's values in the tables of all components, at its start and at its end. */
 typedef struct stratus_tetra_values {
@@ -103,7 +102,7 @@ INLINE void light_component(CONSTANT stratus_tetra_arguments* a, const stratus_t
   const vfloat zero = v_set(0.0f), one = v_set(1.0f);
   vfloat way = v_min(medium->tau * v_set(a->media.way_scale[c]), v_set(1e20f));
   stratus_tetra_lit lit;
-  way = v_select(medium->opaque, v_set(OPAQUE_WAY), way);
+  way = v_select(medium->opaque, v_set(TETRA_WALL_WAY), way);
   tetra_light_at(a, m->factors, c, m->gradients + c, v_fma(medium->middle, part, at), way, mask, &lit);
   for (int i = 0; i < 3; ++i) {
     medium->color[i] = v_fma(medium->color[i], lit.diffuse[i], lit.specular[i]);
@@ -112,8 +111,8 @@ INLINE void light_component(CONSTANT stratus_tetra_arguments* a, const stratus_t
     const vfloat thinned = medium->depth * lit.factor;
     vfloat opaque = v_select(v_lt(zero, lit.factor), medium->depth, zero);
     if (a->factor_way > 0.0f) { /* optical depth of an opaque path over the rest of the piece */
-      const vfloat rest = (one - medium->middle) * part * m->length * v_set(OPAQUE_WAY * a->media.weight[c] / a->factor_way);
-      opaque = v_select(v_lt(lit.factor, v_set(0.98f)), v_min(lit.factor * rest, v_set(OPAQUE_DEPTH)), medium->depth);
+      const vfloat rest = (one - medium->middle) * part * m->length * v_set(TETRA_WALL_WAY * a->media.weight[c] / a->factor_way);
+      opaque = v_select(v_lt(lit.factor, v_set(TETRA_WALL)), v_min(lit.factor * rest, v_set(OPAQUE_DEPTH)), medium->depth);
     }
     medium->depth = v_select(medium->opaque, opaque, thinned);
   }

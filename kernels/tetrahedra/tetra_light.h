@@ -14,6 +14,9 @@
 #define TETRA_PIECES_THINNED 256.0f
 /* The same of one that meets entries of opacity 1, which thin to none where the gradient opacity is 0. */
 #define TETRA_PIECES_OPAQUE 16.0f
+/* The optical depth of opacity 1 over factor_way, and the least gradient opacity that leaves it opaque. */
+#define TETRA_WALL_WAY 80.0f
+#define TETRA_WALL 0.98f
 #define TETRA_MOMENTS 10 /* ints for each entry before the moments' ints, see stratus_tetra_sums() */
 
 typedef struct stratus_tetra_stretch {
@@ -142,6 +145,27 @@ typedef struct stratus_tetra_piece {
   vfloat at, part;
 } stratus_tetra_piece;
 
+/* The mean optical depth over factor_way of a piece between two entries. tau: the rise of the sums of optical depth. */
+INLINE vfloat tetra_way(
+  CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, const stratus_tetra_stretch* s, vint from, vint to, vfloat tau, vmask mask)
+{
+  const vint rise = to - from;
+  const vmask level = mask & vi_zero(rise);
+  vfloat mean = v_abs(tau) * v_reciprocal(v_max(v_abs(v_from_int(rise)), v_set(1.0f)));
+  if (m_any(level)) {
+    vint own[4];
+    gather_four_ints(sums, to + vi_set((int)a->table.last + 1), level, own);
+    mean = v_select(level, v_from_int(own[3]), mean);
+  }
+  return v_min(mean * s->tau_scale * v_set(a->factor_way), v_set(1e20f));
+}
+
+/* The optical depth of a wall, which opacity 1 thinned over factor_way leaves of a length behind it in the world. */
+INLINE vfloat tetra_wall_depth(CONSTANT stratus_tetra_arguments* a, const stratus_tetra_lit* lit, vfloat rest)
+{
+  return v_max(lit->factor * v_set(TETRA_WALL_WAY) * rest * v_set(1.0f / a->factor_way), v_set(0.0f));
+}
+
 /* Composites what opacity 1 hides. */
 INLINE void tetra_light_end(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, GLOBAL const float* factors,
   const stratus_tetra_stretch* s, const stratus_tetra_piece* p, stratus_tetra_light* light, vmask mask, vint entry, vfloat near)
@@ -150,12 +174,11 @@ INLINE void tetra_light_end(CONSTANT stratus_tetra_arguments* a, GLOBAL const in
   const vfloat steps = v_abs(v_from_int(entry - p->from.entry)), whole = v_abs(v_from_int(p->to.entry - p->from.entry));
   const vfloat part = v_clamp(steps * v_reciprocal(v_max(whole, one)), 0.0f, 1.0f);
   stratus_tetra_lit lit;
-  tetra_light_at(a, factors, 0, s, v_fma(part, p->part, p->at), v_set(80.0f), mask, &lit);
+  tetra_light_at(a, factors, 0, s, v_fma(part, p->part, p->at), v_set(TETRA_WALL_WAY), mask, &lit);
   vfloat alpha = one;
-  if (a->thins && a->factor_way > 0.0f) { /* what 80, an opaque way, has become over the rest of the piece */
+  if (a->thins && a->factor_way > 0.0f) { /* what an opaque way has become over the rest of the piece */
     const vfloat rest = v_select(v_lt(zero, whole), one - part, one) * p->part * s->length;
-    const vfloat depth = lit.factor * v_set(80.0f) * rest * v_set(1.0f / a->factor_way);
-    alpha = v_select(v_lt(lit.factor, v_set(0.98f)), v_absorbed(v_max(depth, zero)), one);
+    alpha = v_select(v_lt(lit.factor, v_set(TETRA_WALL)), v_absorbed(tetra_wall_depth(a, &lit, rest)), one);
   } else if (a->thins) {
     alpha = v_select(v_lt(zero, lit.factor), one, zero);
   }
@@ -186,15 +209,7 @@ INLINE void tetra_light_piece(CONSTANT stratus_tetra_arguments* a, GLOBAL const 
     vfloat way = v_set(0.0f);
     stratus_tetra_lit lit;
     if (a->factor_way > 0.0f) {
-      const vint rise = end.entry - p->from.entry;
-      const vmask level = mask & vi_zero(rise);
-      vfloat mean = v_abs(tau) * v_reciprocal(v_max(v_abs(v_from_int(rise)), v_set(1.0f)));
-      if (m_any(level)) {
-        vint own[4];
-        gather_four_ints(sums, end.entry + vi_set((int)a->table.last + 1), level, own);
-        mean = v_select(level, v_from_int(own[3]), mean);
-      }
-      way = v_min(mean * s->tau_scale * v_set(a->factor_way), v_set(1e20f));
+      way = tetra_way(a, sums, s, p->from.entry, end.entry, tau, mask);
     }
     tetra_light_at(a, factors, 0, s, at, way, mask, &lit);
     tetra_composite(a, sums, light, mask, &p->from, &end, weight, near, &lit);
