@@ -85,7 +85,7 @@ double BuildSphere(const vtkStratusCFGrid& grid, size_t step, double factor, vtk
   vtkDoubleArray* places = vtkDoubleArray::SafeDownCast(at);
   vtkStratusSphere::PlacePoles(lattice, levels, grid.GetDegrees(), places);
   factor = factor > 0.0 ? factor : vtkStratusSphere::FactorOf(places, hidden);
-  vtkStratusSphere::Place(places, grid.GetDegrees(), factor);
+  vtkStratusSphere::Place(places, lattice.Columns.size() * lattice.GetRows(), grid.GetDegrees(), factor);
   vtkNew<vtkPoints> points;
   points->SetData(places);
   output->SetDimensions(static_cast<int>(lattice.Columns.size()), static_cast<int>(lattice.GetRows()), static_cast<int>(levels));

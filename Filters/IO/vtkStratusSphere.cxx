@@ -236,18 +236,28 @@ double vtkStratusSphere::FactorOf(vtkDoubleArray* points, const std::vector<char
   return high > low ? 0.1 * EarthRadius / (high - low) : 1.0;
 }
 
-void vtkStratusSphere::Place(vtkDoubleArray* points, const std::array<double, 2>& degrees, double factor)
+void vtkStratusSphere::Place(vtkDoubleArray* points, size_t level, const std::array<double, 2>& degrees, double factor)
 {
+  struct Known {
+    double X, Y;
+    Point Unit;
+  };
+  const size_t count = static_cast<size_t>(points->GetNumberOfTuples());
+  std::vector<Known> known(
+    std::min(level, count), { std::nan(""), 0.0, {} }); // of the level before: sines and cosines take most of the time
   double* at = points->GetPointer(0);
-  for (vtkIdType i = 0; i < points->GetNumberOfTuples(); ++i, at += 3) {
+  for (size_t i = 0; i < count; ++i, at += 3) {
     const double radius = EarthRadius + factor * at[2];
     if (!(radius > 0.0)) {
       throw vtkStratusReadError{ "a height of " + vtkStratusNumberText(at[2]) + " m times " + vtkStratusNumberText(factor) +
         " is below the middle of the Earth: the factor of heights must be less than " + vtkStratusNumberText(-EarthRadius / at[2]) };
     }
-    const Point unit = OnSphere(at[0] * degrees[0], at[1] * degrees[1]);
-    for (int axis = 0; axis < 3; ++axis) {
-      at[axis] = radius * unit[static_cast<size_t>(axis)];
+    Known& below = known[i % level];
+    if (!(below.X == at[0] && below.Y == at[1])) {
+      below = { at[0], at[1], OnSphere(at[0] * degrees[0], at[1] * degrees[1]) };
+    }
+    for (size_t axis = 0; axis < 3; ++axis) {
+      at[axis] = radius * below.Unit[axis];
     }
   }
 }

@@ -39,8 +39,9 @@ vtkSmartPointer<vtkDataArray> Spread(const Lattice& lattice, size_t levels, vtkD
 std::vector<char> Spread(const Lattice& lattice, size_t levels, const std::vector<char>& hidden);
 
 // Takes points of longitude and latitude, which are x and y times `degrees`, and height to the sphere: x towards longitude 0 on the
-// equator, z to the north pole. Heights are multiplied by `factor`. Throws vtkStratusReadError where a point is not outside of the middle.
-void Place(vtkDoubleArray* points, const std::array<double, 2>& degrees, double factor);
+// equator, z to the north pole. Heights are multiplied by `factor`. level: the number of points after which longitudes and latitudes are
+// likely to come again, > 0. Throws vtkStratusReadError where a point is not outside of the middle.
+void Place(vtkDoubleArray* points, size_t level, const std::array<double, 2>& degrees, double factor);
 // Puts the points of rows at poles there.
 void PlacePoles(const Lattice& lattice, size_t levels, const std::array<double, 2>& degrees, vtkDoubleArray* points);
 // The factor by which the heights of points, of which `hidden` do not count, reach over a tenth of the radius; 1 if there is one height.

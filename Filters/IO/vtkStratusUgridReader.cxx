@@ -200,7 +200,7 @@ void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFFile& file, size_t s
   grid->SetPoints(MakePoints(mesh, z));
   if (vtkDoubleArray* places = this->Coordinates == SPHERE ? vtkDoubleArray::SafeDownCast(grid->GetPoints()->GetData()) : nullptr) {
     this->UsedHeightFactor = this->HeightFactor > 0.0 ? this->HeightFactor : vtkStratusSphere::FactorOf(places, {});
-    vtkStratusSphere::Place(places, { { 1.0 / mesh.GetFactor(0), 1.0 / mesh.GetFactor(1) } }, this->UsedHeightFactor);
+    vtkStratusSphere::Place(places, mesh.GetNodes(), { { 1.0 / mesh.GetFactor(0), 1.0 / mesh.GetFactor(1) } }, this->UsedHeightFactor);
   }
   AddCells(mesh, z, dry, grid);
   const Variable& chosen = *file.Find(this->ChosenName());
