@@ -16,11 +16,13 @@ static bool thins_opacity(const stratus_ray_caster* caster, const stratus_ray_ca
 }
 
 /* Whether rays by cells can be lit: they take light at places of their own, after they have composited (lit_places.h). Light must be
- * smooth along a ray, which it is not where clip planes change gradients. */
+ * smooth along a ray, which it is not where clip planes change gradients. Among several volumes each piece has a place of its own, which
+ * costs more than samples do: that is done only by hand. */
 static bool can_light_places(const stratus_ray_caster* caster, const stratus_ray_cast_options* options)
 {
-  return options->light.shade && caster->optics.transfers[0].gradient_count == 0 && !caster->together &&
-    !stratus_ray_clips_gradients(options) && options->sampling.interpolation != STRATUS_INTERPOLATION_NEAREST;
+  return options->light.shade && caster->optics.transfers[0].gradient_count == 0 &&
+    (!caster->together || options->sampling.rule == STRATUS_SAMPLING_CELLS) && !stratus_ray_clips_gradients(options) &&
+    options->sampling.interpolation != STRATUS_INTERPOLATION_NEAREST;
 }
 
 /* Rule cells uses only a value's colour and opacity, and light. The rules that pre-integrate treat the field as linear between two values

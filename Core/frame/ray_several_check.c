@@ -48,9 +48,6 @@ stratus_status stratus_several_check_volume(stratus_context* context, int n, con
     return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several has mode %s, which does not mix with composite", n,
       stratus_mode_name(options->mode));
   }
-  if (options->sampling.rule == STRATUS_SAMPLING_CELLS && options->light.shade) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "volume %d of several is lit and sampled by cells, must be the only volume", n);
-  }
   return STRATUS_OK;
 }
 

@@ -406,9 +406,9 @@ typedef struct stratus_ray_cast_input {
  * their own input's range. Components are joined one after the other. In first-hit, isosurface and slice the surfaces of all inputs are
  * composited by depth, at equal depth in the order of the inputs. Rays are cast once more for each further surface that may be seen.
  *
- * Composite mode, whole volumes (no DUPLICATE ghosts). Lit volumes are not sampled by cells. Other input gives STRATUS_UNSUPPORTED.
- * Components, labels, functions of two variables, light, gradient opacity, masks, crop regions and clip planes are each volume's own.
- * jitter, jitter_seed and audit are read from inputs[0].
+ * Composite mode, whole volumes (no DUPLICATE ghosts); other input gives STRATUS_UNSUPPORTED. Components, labels, functions of two
+ * variables, light, gradient opacity, masks, crop regions and clip planes are each volume's own. jitter, jitter_seed and audit are read
+ * from inputs[0].
  *
  * Sampling: errors of several volumes add up by their squares. Each volume therefore has the rule and the step that its own probe finds for
  * its tolerance divided by the square root of count, or the rule and step that its options set. Volumes that are sampled share one lattice.

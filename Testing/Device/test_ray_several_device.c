@@ -63,7 +63,7 @@ static void make_case(stratus_context* context, uint32_t seed, several_case* m, 
   }
 }
 
-/* Sharp functions by cells (seed below 3), clouds of haze with a rough box by rule local, and nearest values by boxes, together with a
+/* Sharp functions by cells (seed below 3; 0: lit), clouds of haze with a rough box by rule local, and nearest values by boxes, together with a
  * volume by samples. */
 static void make_sharp_case(stratus_context* context, uint32_t seed, several_case* m)
 {
@@ -79,6 +79,7 @@ static void make_sharp_case(stratus_context* context, uint32_t seed, several_cas
   }
   c->options.sampling.rule = STRATUS_SAMPLING_CELLS;
   c->options.sampling.cell_error = 0.001;
+  c->options.light.shade = seed == 0;
   if (seed == 3) {
     case_destroy(c);
     case_create_local(context, 43, c);

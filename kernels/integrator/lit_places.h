@@ -14,9 +14,6 @@
 #ifndef STRATUS_LIT_PLACES_H
 #define STRATUS_LIT_PLACES_H
 
-/* Pieces of a cell are cut for their light only if they are longer than this part of the ray's path through it. */
-#define LIT_PIECE_LEAST (1.0f / 64.0f)
-
 /* A ray before a stretch. */
 typedef struct lit_before {
   vfloat transparency, red, green, blue, depth;
@@ -35,8 +32,8 @@ typedef struct lit_stretch {
 } lit_stretch;
 
 /* Extinction counts as even along a stretch. Of the optical depth t and the opacity o the mean place is then 1 / t - (1 - o) / o of its
- * length, and the variance 1 / t^2 - (1 - o) / o^2, which these series in o follow to 0.003 at o = 1/2 and to 0.03 at 0.9. Stretches of
- * more opacity are cut, unless they are short. */
+ * length, which this series in o follows to 0.003 at o = 1/2 and to 0.03 at 0.9. Stretches of more opacity are cut, unless they are short.
+ */
 INLINE lit_stretch lit_stretch_of(const lit_before* before, const stratus_packet* k, vfloat begin, vfloat length)
 {
   lit_stretch s;
@@ -48,24 +45,21 @@ INLINE lit_stretch lit_stretch_of(const lit_before* before, const stratus_packet
   mean = v_fma(o, mean, v_set(-1.0f / 12.0f));
   mean = v_fma(o, mean, v_set(0.5f));
   s.place = v_fma(mean, length, begin);
-  const vfloat variance = v_fma(o * o, v_fma(o, v_set(-1.0f / 240.0f), v_set(-1.0f / 240.0f)), v_set(1.0f / 12.0f));
-  s.spread = s.weight * variance * (length * length);
+  s.spread = s.weight * light_variance(o) * (length * length);
   s.begin = begin;
   s.end = begin + length;
   return s;
 }
 
 /* Takes back the stretches of the mask that spread too far to be lit at one place, and returns their lanes. parts: in how many they are to
- * be cut; of n parts each spreads 1 / n^3 as far. */
+ * be cut. */
 INLINE vmask lit_take_back(stratus_packet* k, const lit_before* before, vmask mask, const lit_stretch* s, vfloat* parts)
 {
   const vfloat limit = k->places.limit;
   mask = mask & v_lt(limit, s->spread);
   *parts = v_set(1.0f);
   if (m_any(mask)) {
-    const vfloat n = v_select(
-      v_lt(limit * v_set(64.0f), s->spread), v_set(8.0f), v_select(v_lt(limit * v_set(8.0f), s->spread), v_set(4.0f), v_set(2.0f)));
-    *parts = v_select(mask, n, *parts);
+    *parts = v_select(mask, light_parts(limit, s->spread), *parts);
     k->transparency = v_select(mask, before->transparency, k->transparency);
     k->red = v_select(mask, before->red, k->red);
     k->green = v_select(mask, before->green, k->green);

@@ -146,7 +146,7 @@ INLINE vmask RAY_NAME(cell_composite)(CONSTANT stratus_ray_cast_arguments* a, va
 #if RAY_LIT
   vfloat parts;
   const lit_stretch stretch = lit_stretch_of(&before, k, begin, part);
-  const vmask again = lit_take_back(k, &before, mask & v_lt(v_set(LIT_PIECE_LEAST), way->share), &stretch, &parts);
+  const vmask again = lit_take_back(k, &before, mask & v_lt(v_set(LIGHT_PIECE_LEAST), way->share), &stretch, &parts);
   way->share = v_select(again, way->share * v_reciprocal(parts), way->share);
   way->left = v_select(again, way->left * parts, way->left);
   mask = m_andnot(mask, again);

@@ -96,6 +96,30 @@ INLINE void several_cells_visit(const several_source* from, several_volume* v, v
   several_cells_leave(from, v, m_andnot(mask, c->waiting));
 }
 
+/* Cuts the next pieces of the rays of the mask, which are lit, until each is so short or so faint that one place lights it. */
+OUTLINE void several_cells_cut(const several_source* from, several_volume* v, vmask mask)
+{
+  CONSTANT stratus_ray_cast_arguments* a = from->a;
+  GLOBAL const int* sums = (GLOBAL const int*)from->table;
+  const stratus_packet* k = &v->k;
+  const cell_walk* w = &v->cells.walk;
+  cell_way* way = &v->cells.way;
+  const vfloat limit = v_set(a->lattice.light_spread) * v_reciprocal(v_max(v_dot3(k->d, k->d), v_set(1e-30f)));
+  do {
+    cell_piece piece;
+    cell_next_piece(way, &piece);
+    const vint first = table_entry(&a->table, sums, piece.front), last = table_entry(&a->table, sums, piece.back);
+    const vint low = vi_min(first, last), beyond = vi_max(first, last) + vi_set(1);
+    const vfloat width = v_max(width_between(&a->table, sums, low, beyond, mask), v_set(1.0f)), length = (w->leave - w->s) * way->share;
+    const vfloat depth = tau_between(sums, low, beyond, mask) * (length * v_set(a->table.tau_scale)) * v_reciprocal(width);
+    const vfloat opacity = v_absorbed(v_select(mask, depth, v_set(0.0f))), spread = opacity * light_variance(opacity) * (length * length);
+    mask = mask & v_lt(limit, spread) & v_lt(v_set(LIGHT_PIECE_LEAST), way->share);
+    const vfloat parts = light_parts(limit, spread);
+    way->share = v_select(mask, way->share * v_reciprocal(parts), way->share);
+    way->left = v_select(mask, way->left * parts, way->left);
+  } while (m_any(mask));
+}
+
 /* Set `next` to the next piece of the cell paths of the rays of the mask. */
 INLINE vmask several_cells_piece(const several_source* from, several_volume* v, vmask mask, several_way* next)
 {
@@ -200,6 +224,9 @@ OUTLINE vmask several_cells_next(const several_source* from, several_volume* v, 
     vmask found = m_none();
     const vmask pieces = left & c->waiting, samples = m_andnot(left & v->k.live, c->rough | c->waiting);
     if (m_any(pieces)) {
+      if (from->lit) {
+        several_cells_cut(from, v, pieces);
+      }
       found = several_cells_piece(from, v, pieces, next);
     }
     if (m_any(samples)) {
@@ -209,6 +236,9 @@ OUTLINE vmask several_cells_next(const several_source* from, several_volume* v, 
       several_shade(from, v, found);
       found = found & (v_lt(zero, next->rate[3]) | next->stops);
       several_take(v, found);
+      if (from->lit) {
+        several_take_light(v, found);
+      }
       left = m_andnot(left, found);
     }
     const vmask ended = m_andnot(left, c->waiting | v->k.live);

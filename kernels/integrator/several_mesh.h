@@ -149,7 +149,7 @@ OUTLINE void several_mesh_next(const several_source* from, several_volume* v, vm
   several_take(v, mask);
 #if SEVERAL_LIT_MESHES
   if (from->lit) {
-    several_mesh_take_light(v, mask);
+    several_take_light(v, mask);
   }
 #endif
 }

@@ -178,18 +178,6 @@ INLINE void several_mesh_light(const several_mesh* m, several_mesh_rays* rays, v
   }
 }
 
-/* Moves the light of the rays of the mask from the coming path to the present one. */
-INLINE void several_mesh_take_light(several_volume* v, vmask mask)
-{
-  stratus_lit_sample* to = &v->ways[v->now].lighting;
-  const stratus_lit_sample* from = &v->ways[1 - v->now].lighting;
-  to->factor = v_select(mask, from->factor, to->factor);
-  for (int c = 0; c < 3; ++c) {
-    to->diffuse[c] = v_select(mask, from->diffuse[c], to->diffuse[c]);
-    to->specular[c] = v_select(mask, from->specular[c], to->specular[c]);
-  }
-}
-
 /* Makes the rays ready, which have no piece. */
 INLINE void several_mesh_light_load(several_volume* v)
 {

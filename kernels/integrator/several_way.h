@@ -63,7 +63,12 @@ OUTLINE void several_light(const several_source* from, several_volume* v, vmask 
     return;
   }
 #endif
-  const vfloat s = v_set(0.5f) * (way->lo + way->hi);
+  vfloat s = v_set(0.5f) * (way->lo + way->hi);
+#if SEVERAL_CELLS
+  if (from->cells) {
+    s = v_select(way->stops, way->hi, s);
+  }
+#endif
   const vfloat x[3] = { v_fma(s, k->d[0], k->p[0]), v_fma(s, k->d[1], k->p[1]), v_fma(s, k->d[2], k->p[2]) };
   vfloat g[3] = { v_set(0.0f), v_set(0.0f), v_set(0.0f) };
   if (light_reflects(&a->light) || a->media.factor_first[0] >= 0) {
@@ -189,6 +194,18 @@ INLINE void several_take(several_volume* v, vmask mask)
     way->wall[c] = v_select(mask, next->wall[c], way->wall[c]);
   }
   way->stops = m_andnot(way->stops, mask) | (next->stops & mask);
+}
+
+/* Moves the light of the rays of the mask from the coming path to the present one. */
+INLINE void several_take_light(several_volume* v, vmask mask)
+{
+  stratus_lit_sample* to = &v->ways[v->now].lighting;
+  const stratus_lit_sample* from = &v->ways[1 - v->now].lighting;
+  to->factor = v_select(mask, from->factor, to->factor);
+  for (int c = 0; c < 3; ++c) {
+    to->diffuse[c] = v_select(mask, from->diffuse[c], to->diffuse[c]);
+    to->specular[c] = v_select(mask, from->specular[c], to->specular[c]);
+  }
 }
 
 /* Make the coming path from the field's values at its ends, in the lanes of the mask. */

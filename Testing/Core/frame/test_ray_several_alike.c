@@ -246,6 +246,62 @@ static void gradients_mix_as_the_reference_does(void** state)
   }
 }
 
+/* ---- light by cells */
+
+/* dB at the spread of light that the default tolerance asks for: the ordinary picture shares places of light between pieces. Measured: 82
+ * to 118. */
+#define LIT_CELLS_DB 75.0
+
+static void set_lit_cells(picture_case* c)
+{
+  c->options.sampling.rule = STRATUS_SAMPLING_CELLS;
+  c->options.sampling.cell_error = 1e-4;
+  c->options.light.shade = 1;
+  c->options.light.shading.specular = 0.3;
+}
+
+static void light_by_cells_is_as_alone(void** state)
+{
+  several_case pair;
+  for (int i = few_run() ? 2 : 0; i < 4; ++i) {
+    picture_case* c = &pair.of[0];
+    case_create(*state, c, i % 2 ? STRATUS_FLOAT32 : STRATUS_UINT8, 23, 29, 21, 91u + (uint32_t)i);
+    set_lit_cells(c);
+    if (i == 3) {
+      wall(c);
+    }
+    c->options.sampling.light_spread = 1e-6; /* each piece has its own place, then, as among several */
+    const float difference = beside_nothing(state, &pair, NULL);
+    assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_CELLS);
+    several_draw(*state, &pair, &drawn);
+    case_render(*state, c, &other);
+    const double db = reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS);
+    print_message("             lit by cells: %g, %.1f dB\n", (double)difference, db);
+    assert_true(db >= LIT_CELLS_DB);
+    case_destroy(c);
+  }
+}
+
+/* Together with a volume that is lit by samples, or by cells, too. */
+static void light_by_cells_mixes_as_the_reference_does(void** state)
+{
+  for (uint32_t seed = 0; seed < 4; seed += few_run() ? 3 : 1) {
+    several_case v;
+    char what[48];
+    several_create(*state, &v, 2, 690 + seed);
+    set_lit_cells(&v.of[0]);
+    v.of[1].options.light.shade = 1;
+    v.of[1].options.sampling.distance = 0.05;
+    if (seed > 1) {
+      set_lit_cells(&v.of[1]);
+    }
+    snprintf(what, sizeof what, "lit by cells, seed %u", seed);
+    assert_true(several_psnr(what, *state, &v, &drawn) >= LIT_CELLS_DB);
+    assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
+    several_destroy(&v);
+  }
+}
+
 /* ---- meshes */
 
 /* Draws the first mesh beside an empty volume, and without volumes. Returns by how much the pictures differ from its own. */
@@ -380,6 +436,8 @@ int test_ray_several_alike(void)
     cmocka_unit_test(gradient_opacity_over_a_length_is_as_alone),
     cmocka_unit_test(gradients_that_clip_planes_change_are_as_alone),
     cmocka_unit_test(gradients_mix_as_the_reference_does),
+    cmocka_unit_test(light_by_cells_is_as_alone),
+    cmocka_unit_test(light_by_cells_mixes_as_the_reference_does),
     cmocka_unit_test(crop_regions_of_meshes_are_as_alone),
     cmocka_unit_test(gradient_opacity_of_meshes_over_a_length_is_as_alone),
     cmocka_unit_test(cropped_inputs_apart_lie_over_each_other),
