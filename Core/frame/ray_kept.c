@@ -244,7 +244,8 @@ stratus_status stratus_kept_join(stratus_kept* kept, int n, const stratus_image*
 /* Whether an input's components are one medium. */
 static bool is_dependent(const stratus_ray_cast_input* input)
 {
-  return !input->tetra && input->options && input->options->optics.dependent && stratus_volume_components(input->volume) > 1;
+  return input->tetra ? input->tetra_options && stratus_tetra_draws_last(input->mesh, input->tetra_options)
+                      : input->options && input->options->optics.dependent && stratus_volume_components(input->volume) > 1;
 }
 
 static void color_best(const stratus_kept* kept, stratus_kept_pixel* pixel, float rgba[4])

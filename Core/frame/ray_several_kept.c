@@ -15,9 +15,9 @@
 /* The components that are drawn by themselves. */
 static int components_of(const stratus_ray_cast_input* input, stratus_mode mode)
 {
-  return !input->tetra                                          ? stratus_ray_parts(input->volume, input->options)
-    : !stratus_kept_is(mode) || mode == STRATUS_MODE_QUANTITIES ? 1
-                                                                : stratus_tetra_component_count(input->mesh);
+  const bool together = !stratus_kept_is(mode) || mode == STRATUS_MODE_QUANTITIES ||
+    (input->tetra && input->tetra_options && stratus_tetra_draws_last(input->mesh, input->tetra_options));
+  return !input->tetra ? stratus_ray_parts(input->volume, input->options) : together ? 1 : stratus_tetra_component_count(input->mesh);
 }
 
 static bool asks_for_shadows(const stratus_ray_cast_input* inputs, int count)

@@ -539,13 +539,10 @@ stratus_status stratus_tetra_caster_render_kept(stratus_tetra_caster* caster, co
   const stratus_mesh* drawn = NULL;
   marched.method = STRATUS_TETRA_METHOD_MARCH;
   const stratus_tetra_subject of = { mesh, transfer, &marched };
-  if (mesh && mesh->components > 1 && marched.dependent) {
-    return stratus_fail(caster->context, STRATUS_UNSUPPORTED,
-      "mesh of %d dependent components among several is not supported, only of one or of independent ones", mesh->components);
-  }
   TRY(take(caster, &of, camera, image, &drawn, report));
   caster->keeps = keeps;
-  const stratus_status status = draw_component(caster, component, drawn, transfer + component, camera, &marched, image, report, bias);
+  const int of_values = stratus_tetra_draws_last(drawn, &marched) ? drawn->components - 1 : component;
+  const stratus_status status = draw_component(caster, of_values, drawn, transfer + component, camera, &marched, image, report, bias);
   caster->keeps = 0;
   fill_report(caster, report);
   return status;

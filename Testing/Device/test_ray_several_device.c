@@ -63,8 +63,8 @@ static void make_case(stratus_context* context, uint32_t seed, several_case* m, 
   }
 }
 
-/* Sharp functions by cells (seed below 3; 0: lit), clouds of haze with a rough box by rule local, and nearest values by boxes, together with a
- * volume by samples. */
+/* Sharp functions by cells (seed below 3; 0: lit), clouds of haze with a rough box by rule local, and nearest values by boxes, together
+ * with a volume by samples. */
 static void make_sharp_case(stratus_context* context, uint32_t seed, several_case* m)
 {
   several_create(context, m, 2, 720 + seed);
@@ -244,7 +244,7 @@ static void a_device_keeps_what_the_host_keeps(void** state)
  * opaque geometry, clip planes, crop regions, jitter, walls. */
 static void make_mesh_case(stratus_context* context, uint32_t seed, mixed_case* m, media_case* media, float* opaque)
 {
-  static const int volumes[] = { 1, 2, 1, 1, 0, 1, 1 };
+  static const int volumes[] = { 1, 2, 1, 1, 0, 1, 1, 0 };
   mixed_create(context, m, volumes[seed], seed % 2 ? 2 : 1, 520 + seed);
   picture_case* c = &m->volumes.of[0];
   tetra_case* mesh = &m->meshes[m->mesh_count - 1];
@@ -277,8 +277,8 @@ static void make_mesh_case(stratus_context* context, uint32_t seed, mixed_case* 
     mesh->options.crop_regions = 0x5140145u;
     memcpy(mesh->options.crop_bounds, (const double[6]){ 0.9, 2.1, 0.9, 2.1, 0.9, 2.1 }, sizeof mesh->options.crop_bounds);
   }
-  if (seed == 6) { /* two components of the same values */
-    static float values[2 * 64];
+  if (seed >= 6) { /* two components of the same values; 7: dependent ones, whose largest value counts */
+    static float values[2 * 125];
     for (int64_t i = 0; i < 2 * mesh->mesh.point_count; ++i) {
       values[i] = mesh->values[i / 2];
     }
@@ -288,9 +288,11 @@ static void make_mesh_case(stratus_context* context, uint32_t seed, mixed_case* 
     }
     mesh->mesh.values = values;
     mesh->mesh.value_stride = mesh->mesh.components = 2;
-    mesh->options.shade = 1;
-    mesh->options.mean_components = 1;
-    m->transfers[0] = media->transfers;
+    mesh->options.shade = seed == 6;
+    mesh->options.mean_components = seed == 6;
+    mesh->options.dependent = seed == 7;
+    m->meshes[0].options.mode = mesh->options.mode = seed == 7 ? STRATUS_TETRA_MAXIMUM : STRATUS_TETRA_COMPOSITE;
+    m->transfers[m->mesh_count - 1] = media->transfers;
   }
   if (seed == 5) {
     for (int i = 0; i < CASE_PIXELS; ++i) {
@@ -338,7 +340,7 @@ static void compare_meshes(bool one_ray)
   stratus_context* device = case_context("0", 2);
   assert_true(stratus_context_on_device(device));
   device->device->is_cpu = !one_ray;
-  for (uint32_t seed = few_run() ? 3 : 0; seed < 7; seed += few_run() ? 7 : one_ray ? 3 : 1) { /* a kernel each */
+  for (uint32_t seed = few_run() ? 3 : 0; seed < 8; seed += few_run() ? 8 : one_ray ? 3 : 1) { /* a kernel each */
     mixed_case m;
     make_mesh_case(host, seed, &m, &media, opaque);
     if (seed == 0 || seed == 3) {

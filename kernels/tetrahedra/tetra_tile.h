@@ -271,6 +271,11 @@ INLINE void lanes_store(stratus_tetra_walk* t, const stratus_tetra_lanes* k, vma
       const int found = largest[lane] > -LARGEST_FLOAT;
       rgba[0] = found ? a->sign * largest[lane] : 0.0f;
       rgba[3] = found ? 1.0f : 0.0f;
+      if (TETRA_LIT && found) { /* the colour of dependent components, as ray_modes.h stores it */
+        rgba[1] = channel[0][lane];
+        rgba[2] = channel[1][lane];
+        rgba[3] = 1.0f + channel[2][lane];
+      }
     }
     int taken = segments[lane];
     if (a->mode == TETRA_QUANTITIES) {

@@ -390,6 +390,57 @@ static void gradient_opacity_of_meshes_over_a_length_is_as_alone(void** state)
   }
 }
 
+/* ---- dependent components of meshes in all modes */
+
+/* A mesh by itself, in pictures of several: as its own caster draws it. */
+static void dependent_components_of_meshes_are_as_alone(void** state)
+{
+  static const stratus_tetra_mode modes[] = { STRATUS_TETRA_MAXIMUM, STRATUS_TETRA_MINIMUM, STRATUS_TETRA_AVERAGE, STRATUS_TETRA_ADDITIVE,
+    STRATUS_TETRA_ISOSURFACE, STRATUS_TETRA_SLICE, STRATUS_TETRA_FIRST_HIT };
+  static float values[4 * 64];
+  for (int i = 0; i < 14; i += few_run() ? 3 : 1) {
+    const int components = i < 7 ? 2 : 4, mode = i % 7;
+    const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = other.rgba, .depth = other.depth };
+    mixed_create(*state, &m, 0, 1, 700 + (uint32_t)i);
+    tetra_case* c = &m.meshes[0];
+    for (int64_t v = 0; v < c->mesh.point_count; ++v) {
+      for (int of = 0; of + 1 < components; ++of) {
+        const double wave = 0.5 + 0.4 * sin(1.3 * (double)v + of);
+        values[components * v + of] = (float)(components == 4 ? 255.0 * wave : wave);
+      }
+      values[components * v + components - 1] = c->values[v];
+    }
+    c->mesh.values = values;
+    c->mesh.value_stride = c->mesh.components = components;
+    c->options.dependent = 1;
+    c->options.mode = modes[mode];
+    c->options.contour_count = 2;
+    c->options.contours[0] = 0.4;
+    c->options.contours[1] = 0.7;
+    c->options.slice = (stratus_slice){ .square = { 1, 1, 1 }, .constant = -40.0 };
+    c->transfer.unit_distance = 40.0;
+    c->options.average_range[0] = components == 4 ? 60.0 : 0.2;
+    if (modes[mode] == STRATUS_TETRA_FIRST_HIT) {
+      const double opacity[8] = { 0.0, 0.0, 0.5, 0.0, 0.5, 1.0, 1.0, 1.0 };
+      memcpy(c->opacity, opacity, sizeof opacity);
+    }
+    assert_int_equal(
+      stratus_tetra_caster_render(m.tetra[0], &c->mesh, &c->transfer, &m.volumes.of[0].camera, &c->options, &image, NULL), STRATUS_OK);
+    const stratus_status status = mixed_draw(&m, &drawn);
+    if (status != STRATUS_OK) {
+      print_error("%s\n", stratus_context_message(*state));
+    }
+    assert_int_equal(status, STRATUS_OK);
+    print_message("             %s of %d dependent components: %g, %d pixels\n", stratus_tetra_mode_name(modes[mode]), components,
+      (double)largest_difference(&drawn, &other), case_lit(&drawn));
+    assert_true(case_lit(&drawn) > case_share(50));
+    assert_true(largest_difference(&drawn, &other) < MESH_DIFFERENCE);
+    mixed_destroy(&m);
+  }
+}
+
+/* ---- both */
+
 /* A volume and a mesh that do not overlap lie over each other. */
 static void cropped_inputs_apart_lie_over_each_other(void** state)
 {
@@ -440,6 +491,7 @@ int test_ray_several_alike(void)
     cmocka_unit_test(light_by_cells_mixes_as_the_reference_does),
     cmocka_unit_test(crop_regions_of_meshes_are_as_alone),
     cmocka_unit_test(gradient_opacity_of_meshes_over_a_length_is_as_alone),
+    cmocka_unit_test(dependent_components_of_meshes_are_as_alone),
     cmocka_unit_test(cropped_inputs_apart_lie_over_each_other),
   };
   return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
