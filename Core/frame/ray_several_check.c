@@ -62,8 +62,5 @@ stratus_status stratus_several_check_mesh(stratus_context* context, int n, const
     return stratus_fail(
       context, STRATUS_UNSUPPORTED, "mesh %d of several is to be projected, which draws whole pictures: its rays can only be marched", n);
   }
-  if (options->label_count > 0) {
-    return stratus_fail(context, STRATUS_UNSUPPORTED, "mesh %d of several has labels, which only volumes have in one march", n);
-  }
   return STRATUS_OK;
 }

@@ -416,9 +416,9 @@ typedef struct stratus_ray_cast_input {
  * whole segments as fit in its own step. Where a volume is sampled cell by cell, in all of it or in its rough blocks, light is composited
  * from one end of its cells' pieces to the next. A piece whose colour changes much is cut further, as with one volume.
  *
- * Meshes (mode composite, method auto or march, without labels) are drawn cell by cell: within a segment of the lattice, light is
- * composited from one face to the next. Components, light, gradient opacity, clip planes and crop regions are each mesh's own. Where a
- * mesh's cells overlap, one counts behind the other.
+ * Meshes (mode composite, method auto or march) are drawn cell by cell: within a segment of the lattice, light is composited from one face
+ * to the next. Components, labels, light, gradient opacity, clip planes and crop regions are each mesh's own. Where a mesh's cells overlap,
+ * one counts behind the other.
  *
  * reports: NULL, or one for each input. Structures, choices and the expected error in a report concern its own volume. Rays, samples,
  * skipped segments, look-ups, differing pixels, window and cast_ms concern the whole image. The context's device draws; if an input exceeds

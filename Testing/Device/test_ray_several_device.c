@@ -241,7 +241,8 @@ static void a_device_keeps_what_the_host_keeps(void** state)
 }
 
 /* Meshes among volumes by samples and by cells, and without volumes; values of cells, a lattice, light, gradient opacity, two components;
- * opaque geometry, clip planes, crop regions, jitter, walls. */
+ * labels, opaque geometry, clip planes, crop regions, jitter,
+ * walls. */
 static void make_mesh_case(stratus_context* context, uint32_t seed, mixed_case* m, media_case* media, float* opaque)
 {
   static const int volumes[] = { 1, 2, 1, 1, 0, 1, 1, 0 };
@@ -276,6 +277,22 @@ static void make_mesh_case(stratus_context* context, uint32_t seed, mixed_case* 
     mesh->options.crop = 1;
     mesh->options.crop_regions = 0x5140145u;
     memcpy(mesh->options.crop_bounds, (const double[6]){ 0.9, 2.1, 0.9, 2.1, 0.9, 2.1 }, sizeof mesh->options.crop_bounds);
+  }
+  if (seed == 4) { /* lit labels, one of which has a wall */
+    static const double wall[6] = { 0.3, 0.0, 0.6, 1.0, 1.0, 1.0 };
+    for (int64_t cell = 0; cell < mesh->mesh.cell_count; ++cell) {
+      media->labels[cell] = (uint8_t)(cell / 5 % 3);
+    }
+    for (int n = 0; n < 3; ++n) {
+      media->transfers[n] = mesh->transfer;
+      media->transfers[n].unit_distance = 2.0 + n;
+    }
+    media->transfers[1].opacity = wall;
+    media->transfers[1].opacity_count = 3;
+    mesh->mesh.labels = media->labels;
+    mesh->options.label_count = 2;
+    mesh->options.shade = 1;
+    m->transfers[0] = media->transfers;
   }
   if (seed >= 6) { /* two components of the same values; 7: dependent ones, whose largest value counts */
     static float values[2 * 125];

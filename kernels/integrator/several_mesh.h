@@ -78,7 +78,7 @@ INLINE vmask several_mesh_cell(const several_source* from, several_volume* v, vm
   lo = lo + behind;
   hi = hi + behind;
   vmask shown = seen & v_lt(lo, hi);
-  if (!m->a->media.components) {
+  if (!several_mesh_is_mixed(m)) {
     shown = shown & v_lt(v_min(place, last_place), v_set(t->shown_beyond)) & v_le(v_set(t->shown_first), v_max(place, last_place));
   }
 #if SEVERAL_LIT_MESHES
@@ -136,7 +136,7 @@ OUTLINE void several_mesh_next(const several_source* from, several_volume* v, vm
     found = found | shown;
     left = m_andnot(left, shown);
   }
-  if (!from->mesh->a->media.components) {
+  if (!several_mesh_is_mixed(from->mesh)) {
     several_shade(from, v, found);
   }
 #if SEVERAL_LIT_MESHES

@@ -81,6 +81,7 @@ typedef struct several_mesh_rays {
   stratus_tetra_stretch stretches[TETRA_COMPONENTS];
   stratus_tetra_values values;
   vfloat lo, hi, front, back, length; /* length: in the world */
+  vint label;                         /* the cell's, of a mesh of labels */
   vfloat piece, pieces;               /* the next of its pieces, and their number */
   vfloat ends;                        /* where the present piece ends */
   /* the rest of a piece from wall_lo to wall_hi behind a wall that gradient opacity over a length has thinned, and its rate; none where

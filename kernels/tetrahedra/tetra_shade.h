@@ -84,24 +84,33 @@ INLINE vfloat v_absorbed_share(vfloat x, vmask mask)
   return share;
 }
 
-/* Composites the light between two places of the table. weight: length times the optical depth of one unit of the sums. lit: NULL where
- * nothing is lit or thinned. */
-INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
-  const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat weight, vfloat near, const stratus_tetra_lit* lit)
+/* The rise of the sums between two places of the table, which has the sign of the entries' rise: running sums never fall. A stretch within
+ * one entry uses that entry, so that a transparent entry stays transparent next to a visible one; returns the lanes of such stretches. */
+INLINE vmask tetra_span(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, const stratus_tetra_place* from,
+  const stratus_tetra_place* to, vmask mask, vint span[4])
 {
-  const vint rise = to->entry - from->entry, one = vi_set(1);
-  const vmask level = mask & vi_zero(rise);
-  vint span[4]; /* running sums never fall, so that these have the sign of `rise` */
+  const vmask level = mask & vi_zero(to->entry - from->entry);
   for (int c = 0; c < 4; ++c) {
     span[c] = to->sum[c] - from->sum[c];
   }
-  if (m_any(level)) { /* a stretch within one entry uses that entry, so that a transparent entry stays transparent next to a visible one */
+  if (m_any(level)) {
     vint own[4];
     gather_four_ints(sums, to->entry + vi_set((int)a->table.last + 1), level, own);
     for (int c = 0; c < 4; ++c) {
       span[c] = vi_select(level, own[c], span[c]);
     }
   }
+  return level;
+}
+
+/* Composites the light between two places of the table. weight: length times the optical depth of one unit of the sums. lit: NULL where
+ * nothing is lit or thinned. */
+INLINE void tetra_composite(CONSTANT stratus_tetra_arguments* a, GLOBAL const int* sums, stratus_tetra_light* light, vmask mask,
+  const stratus_tetra_place* from, const stratus_tetra_place* to, vfloat weight, vfloat near, const stratus_tetra_lit* lit)
+{
+  const vint rise = to->entry - from->entry, one = vi_set(1);
+  vint span[4];
+  const vmask level = tetra_span(a, sums, from, to, mask, span);
   const vfloat tau = v_abs(v_from_int(span[3]));
   mask = mask & v_lt(v_set(0.0f), tau);
   if (!m_any(mask)) {

@@ -273,7 +273,6 @@ static void light_by_cells_is_as_alone(void** state)
     c->options.sampling.light_spread = 1e-6; /* each piece has its own place, then, as among several */
     const float difference = beside_nothing(state, &pair, NULL);
     assert_int_equal(drawn.report.sampling, STRATUS_SAMPLING_CELLS);
-    several_draw(*state, &pair, &drawn);
     case_render(*state, c, &other);
     const double db = reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS);
     print_message("             lit by cells: %g, %.1f dB\n", (double)difference, db);
@@ -324,9 +323,9 @@ static float mesh_beside_nothing(void** state)
     assert_int_equal(status, STRATUS_OK);
     most = fmaxf(most, largest_difference(&drawn, &other));
     for (int i = 0; i < CASE_PIXELS; ++i) {
-      /* a piece of a cell that gradient opacity hides begins no depth; the mesh's own caster takes the cell's beginning */
+      /* a piece of a cell that shows nothing begins no depth; the mesh's own caster takes the cell's beginning */
       assert_true(drawn.depth[i] == other.depth[i] || fabsf(drawn.depth[i] - other.depth[i]) < 1e-3f ||
-        (c->transfer.gradient_count > 0 && drawn.depth[i] > other.depth[i]));
+        ((c->transfer.gradient_count > 0 || c->options.label_count > 0) && drawn.depth[i] > other.depth[i]));
     }
   }
   m.volumes.count = 1;
@@ -386,6 +385,97 @@ static void gradient_opacity_of_meshes_over_a_length_is_as_alone(void** state)
     c->options.gradient_distance = 0.0;
     assert_int_equal(mixed_draw(&m, &other), STRATUS_OK);
     assert_true(largest_difference(&drawn, &other) > 0.01f);
+    mixed_destroy(&m);
+  }
+}
+
+/* Functions of labels 0, 1 and 2 with peaks, opacity 1, and little of all. Cells have labels up to 3. */
+typedef struct labels {
+  stratus_transfer transfers[3];
+  uint8_t of[6 * 4 * 4 * 4];
+} labels;
+
+static void label_mesh(tetra_case* c, labels* l)
+{
+  static const double opacity[3][6] = { { 0.2, 0.0, 0.5, 0.3, 1.0, 0.4 }, { 0.3, 0.0, 0.6, 1.0, 1.0, 1.0 },
+    { 0.0, 0.2, 0.6, 0.0, 1.0, 0.5 } };
+  static const double colors[3][8] = { { 0.0, 1.0, 0.2, 0.1, 1.0, 0.9, 0.9, 0.1 }, { 0.0, 0.1, 0.3, 1.0, 1.0, 0.2, 1.0, 0.4 },
+    { 0.2, 0.9, 0.1, 0.8, 0.7, 0.3, 0.3, 0.3 } };
+  uint32_t random = 11u;
+  for (int f = 0; f < 3; ++f) {
+    l->transfers[f] = c->transfer;
+    l->transfers[f].opacity = opacity[f];
+    l->transfers[f].opacity_count = 3;
+    l->transfers[f].color = colors[f];
+    l->transfers[f].color_count = 2;
+  }
+  for (int64_t cell = 0; cell < c->mesh.cell_count; ++cell) {
+    l->of[cell] = (uint8_t)tetra_uniform(&random, 0.0, 3.999);
+  }
+  c->mesh.labels = l->of;
+  c->options.label_count = 2;
+}
+
+static void labels_of_meshes_are_as_alone(void** state)
+{
+  static const double thin_points[2][6] = { { 0.1, 0.0, 0.5, 0.6, 1.2, 1.0 }, { 0.0, 1.0, 0.2, 0.3, 5.0, 0.9 } };
+  static labels l;
+  for (uint32_t i = few_run() ? 2 : 0; i < 8; i += few_run() ? 3 : 1) {
+    mixed_create(*state, &m, 1, 1, 720 + i);
+    tetra_case* c = &m.meshes[0];
+    label_mesh(c, &l);
+    m.transfers[0] = l.transfers;
+    c->options.shade = i % 3 == 1;
+    c->mesh.cell_values = i == 3;
+    for (int n = 0; n < 2 && i > 3; ++n) { /* label 2 has the gradient opacity of label 0 */
+      l.transfers[n].gradient = thin_points[n];
+      l.transfers[n].gradient_count = 3;
+      c->options.gradient_distance = i > 5 ? 2.5 : 0.0;
+    }
+    const float difference = mesh_beside_nothing(state);
+    const double db = reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS);
+    print_message("             labels %u: %g, %.1f dB\n", i, (double)difference, db);
+    assert_true(difference < MESH_DIFFERENCE);
+    mixed_destroy(&m);
+  }
+}
+
+/* A mesh of labels is as many meshes, each of which shows the cells of one label, together with a volume that overlaps them. */
+static void labels_are_meshes_of_their_cells(void** state)
+{
+  static labels l;
+  for (uint32_t i = 0; i < 3; i += few_run() ? 2 : 1) {
+    mixed_create(*state, &m, 1, 1, 730 + i);
+    label_mesh(&m.meshes[0], &l);
+    m.transfers[0] = l.transfers;
+    m.meshes[0].options.tolerance = 1e-5;
+    const stratus_status status = mixed_draw(&m, &drawn);
+    if (status != STRATUS_OK) {
+      print_error("%s\n", stratus_context_message(*state));
+    }
+    assert_int_equal(status, STRATUS_OK);
+    mixed_destroy(&m);
+    mixed_create(*state, &m, 1, 3, 730 + i);
+    for (int n = 0; n < 3; ++n) {
+      tetra_case* c = &m.meshes[n];
+      tetra_destroy(c);
+      tetra_create(c, 3, 0.2, 0.1, 730 + i);
+      place_mesh(c, 3, (730 + i) % 5u);
+      label_mesh(c, &l);
+      for (int64_t cell = 0; cell < c->mesh.cell_count; ++cell) {
+        c->hidden[cell] = (l.of[cell] < 3 ? l.of[cell] : 0) != n;
+      }
+      c->mesh.hidden = c->hidden;
+      c->mesh.labels = NULL;
+      c->options.label_count = 0;
+      c->options.tolerance = 1e-5;
+      m.transfers[n] = l.transfers + n;
+    }
+    assert_int_equal(mixed_draw(&m, &other), STRATUS_OK);
+    const double db = reference_psnr(drawn.rgba, other.rgba, CASE_PIXELS);
+    print_message("             three meshes: %g, %.1f dB\n", (double)largest_difference(&drawn, &other), db);
+    assert_true(case_lit(&drawn) > case_share(500));
+    assert_true(largest_difference(&drawn, &other) < MESH_DIFFERENCE);
     mixed_destroy(&m);
   }
 }
@@ -491,6 +581,8 @@ int test_ray_several_alike(void)
     cmocka_unit_test(light_by_cells_mixes_as_the_reference_does),
     cmocka_unit_test(crop_regions_of_meshes_are_as_alone),
     cmocka_unit_test(gradient_opacity_of_meshes_over_a_length_is_as_alone),
+    cmocka_unit_test(labels_of_meshes_are_as_alone),
+    cmocka_unit_test(labels_are_meshes_of_their_cells),
     cmocka_unit_test(dependent_components_of_meshes_are_as_alone),
     cmocka_unit_test(cropped_inputs_apart_lie_over_each_other),
   };

@@ -436,7 +436,7 @@ static void what_does_not_mix_is_refused(void** state)
   m.meshes[0].options.method = STRATUS_TETRA_METHOD_PROJECT;
   REFUSED(STRATUS_UNSUPPORTED, "projected");
   m.meshes[0].options.label_count = 1;
-  REFUSED(STRATUS_UNSUPPORTED, "mesh 1 of several has labels");
+  REFUSED(STRATUS_INVALID_ARGUMENT, "label_count 1 of a mesh without labels");
   m.meshes[0].options.tolerance = -1.0;
   REFUSED(STRATUS_INVALID_ARGUMENT, "tolerance");
   m.meshes[0].mesh.point_count = -1;
