@@ -13,17 +13,17 @@
  * to the renderer, not those volumes. A volume that is not visible (SetVisibility) is left out.
  *
  * A volume may have a vtkStratusTetrahedraMapper instead: unstructured and structured grids, and blocks of such, mix with the others cell
- * by cell, of blend mode composite, by method auto or march. Components, light and gradient opacity (of one component with
- * GradientOpacityDistance 0) are each mesh's own. At least one volume must have a vtkStratusVolumeMapper.
+ * by cell, of blend mode composite, by method auto or march. Components, label maps, light, gradient opacity, clipping planes and crop
+ * regions are each mesh's own. At least one volume must have a vtkStratusVolumeMapper.
  *
  * In all other modes, which all volumes must then have, each volume is drawn by itself. In maximum, minimum, average and additive intensity
  * the picture shows the best of the values that show, the mean over the lengths in all volumes, or the sum. First hits, isosurfaces and
  * slices are composited by depth, and surfaces at equal depth in the order of the ports.
  *
  * In composite mode volumes support one to four components, point and cell data, functions of two variables (TF_2D), light, gradient
- * opacity, binary masks and label maps, crop boxes (the inside region, or all) and up to six clipping planes a volume. The prop supports
- * opaque geometry, translucent surfaces peeled with volumes, and hardware picking. Everything else is refused by an error, and nothing is
- * drawn. A single volume is drawn as by its mapper.
+ * opacity, binary masks and label maps, all crop regions and up to six clipping planes a volume. The prop supports opaque geometry,
+ * translucent surfaces peeled with volumes, and hardware picking. Everything else is refused by an error, and nothing is drawn. A single
+ * volume is drawn as by its mapper.
  *
  * The vtkStratusVolumeMapper at the lowest port sets Device, FinalColorWindow, FinalColorLevel, ImageSampleDistance,
  * MaximumImageSampleDistance, AutoAdjustSampleDistances, InteractiveUpdateRate, UseJittering, JitterSeed, NumberOfThreads, Audit and

@@ -22,7 +22,10 @@ meaning in a mode is left out with one warning: [What is drawn](matrix.md). `Tes
 KINDS = [
     ("Too large", "Numbers that rays and arrays cannot hold.",
      r"too large|need more than|table entries|at most %(d|zu) numbers|longer than|along an axis: at most|at most %d$|coordinates along"),
-    ("Several volumes in one march", "Each of these is drawn if it is the only volume, or as the message says.", r"of several|among several|mesh %d|volume %d"),
+    ("Several volumes in one march",
+     "Each of these is drawn if it is the only input. Rays of other modes gather no light that could mix, projected cells have no rays, and the\n"
+     "picture of a piece with DUPLICATE ghosts is put in front of or behind its neighbours', which leaves no place for a volume within both.",
+     r"of several|among several|mesh %d|volume %d"),
     ("Projected tetrahedra", "Marched, the same is drawn; `auto` marches it.", r"cannot be projected"),
     ("Paths of scattered light", "The reference of scattered light is of one medium on one grid.", r"^paths "),
     ("Other requests", "Combinations without a meaning, and some that nobody has needed yet.", r""),
