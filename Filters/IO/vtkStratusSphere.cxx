@@ -109,7 +109,8 @@ vtkStratusSphere::Lattice vtkStratusSphere::FindLattice(
   for (size_t i = 0; i < kept; ++i) {
     lattice.Columns.push_back(i);
   }
-  if (!closed && InAllRows(columns, rows, at, [&](size_t j, double step) { return at.Apart(last, j, 0, j) < 1.5 * step; })) {
+  // two columns are always next to each other
+  if (!closed && columns > 2 && InAllRows(columns, rows, at, [&](size_t j, double step) { return at.Apart(last, j, 0, j) < 1.5 * step; })) {
     closed = true;
     lattice.Columns.push_back(0);
     lattice.Description += ", closed from the last column to the first";

@@ -100,6 +100,13 @@ check(region.shape == (3, 81, 61), f"a region stays as it is: {region.shape}")
 part = 30 / 360 * (numpy.sin(numpy.radians(50)) - numpy.sin(numpy.radians(10))) / 2
 check_shell(region, "region", 0, 10000, 1e-3, part)
 
+for name, longitudes, latitudes in (("two columns", numpy.array([10.0, 12.0]), numpy.linspace(10, 50, 5)),
+                                    ("two rows", numpy.linspace(10, 50, 5), numpy.array([10.0, 12.0]))):
+    small = on_sphere(axes(name, longitudes, latitudes)[0], 1)
+    check(small.shape == (3, len(latitudes), len(longitudes)), f"{name}: {small.error or small.shape}")
+ring = on_sphere(axes("three columns all around", numpy.array([0.0, 120.0, 240.0]), numpy.array([-30.0, 0.0, 30.0]))[0], 1)
+check(ring.shape == (3, 3, 4), f"three columns go round: {ring.error or ring.shape}")
+
 # depths are below the radius
 sea = on_sphere(axes("sea", east, north, levels=numpy.array([0.0, 2000, 5000]), up="down")[0], 100)
 check(near(numpy.linalg.norm(sea.points[0], axis=-1), radius - 100 * 5000, 1e-9), "depths are below")

@@ -127,10 +127,19 @@ static void surfaces_change_alone(void** state)
     stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &again, &report), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "triangle 0 of the surfaces has the coordinate nan"));
   assert_memory_equal(kept.rgba, other.rgba, sizeof drawn.rgba);
+  points[0] = 15.0;
+  surfaces.revision = 2;
+  c.options.light.shading.light_count = 0; /* nothing to hide */
+  assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &again, &report), STRATUS_OK);
+  c.options.light.shading.light_count = 1;
+  c.options.light.shading.surfaces = NULL;
+  assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &again, &report), STRATUS_OK);
+  const uint64_t builds = report.light_builds;
+  c.options.light.shading.surfaces = &surfaces;
   surfaces.triangle_count = 0;
   assert_int_equal(stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &again, &report), STRATUS_OK);
   assert_memory_equal(drawn.rgba, other.rgba, sizeof drawn.rgba);
-  assert_int_equal(report.light_builds, 1);
+  assert_int_equal(report.light_builds, builds);
   assert_int_equal(report.light_bytes, bytes);
   stratus_ray_caster_destroy(caster);
   case_destroy(&c);
