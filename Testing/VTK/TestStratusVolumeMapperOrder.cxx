@@ -386,6 +386,23 @@ void Meshes()
     stage.Warnings->Text.c_str());
 }
 
+// All crop regions are mixed.
+void Fence()
+{
+  Cube red(1, 0.1, 0.1), blue(0.1, 0.1, 1);
+  blue.Volume->SetPosition(0.7, 0.3, 0.2);
+  blue.Mapper->CroppingOn();
+  blue.Mapper->SetCroppingRegionPlanes(-0.5, 0.5, -0.5, 0.5, -0.5, 0.5);
+  Stage stage;
+  stage.Watch(red.Mapper);
+  stage.Watch(blue.Mapper);
+  stage.Look(60, 10);
+  const Bytes box = stage.DrawInAllOrders("cropped to a box", { red.Volume, blue.Volume });
+  blue.Mapper->SetCroppingRegionFlagsToFence();
+  CHECK(stage.DrawInAllOrders("cropped to a fence", { red.Volume, blue.Volume }) != box, "a fence is not a box");
+  CHECK(stage.Warnings->Count == 0 && stage.Errors->Count == 0, "%s %s", stage.Warnings->Text.c_str(), stage.Errors->Text.c_str());
+}
+
 // Volumes that can't be mixed are drawn in an order that does not depend on the renderer's, with one warning.
 void Unmixed()
 {
@@ -405,11 +422,7 @@ void Unmixed()
   };
   warns("are not mixed, all volumes need the same", [](Cube& red, Cube&) { red.Mapper->SetBlendModeToMaximumIntensity(); });
   warns("share a mapper", [](Cube& red, Cube& blue) { blue.Volume->SetMapper(red.Mapper); });
-  warns("crop regions", [](Cube&, Cube& blue) {
-    blue.Mapper->CroppingOn();
-    blue.Mapper->SetCroppingRegionPlanes(-0.5, 0.5, -0.5, 0.5, -0.5, 0.5);
-    blue.Mapper->SetCroppingRegionFlagsToFence();
-  });
+  warns("paths go through one grid alone", [](Cube& red, Cube&) { red.Mapper->SetRenderModeToPath(); });
   vtkNew<vtkStratusMultiBlockVolumeMapper> blocks;
   warns("a vtkStratusMultiBlockVolumeMapper is not mixed", [&](Cube& red, Cube&) {
     blocks->SetInputDataObject(red.Image);
@@ -606,6 +619,7 @@ int main()
   Ring();
   Surfaces();
   Meshes();
+  Fence();
   Unmixed();
   Others();
   Props();
