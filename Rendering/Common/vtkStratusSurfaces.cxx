@@ -13,6 +13,7 @@
 #include "vtkMatrix4x4.h"
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkPolygon.h"
@@ -138,6 +139,7 @@ void AddTriangles(const Surface& surface, std::vector<double>& points)
   const vtkIdType* cell;
   vtkNew<vtkIdList> triangles;
   vtkNew<vtkPolygon> polygon;
+  vtkNew<vtkPoints> corners;
   const auto polys = vtk::TakeSmartPointer(surface.Data->GetPolys()->NewIterator());
   for (polys->GoToFirstCell(); !polys->IsDoneWithTraversal(); polys->GoToNextCell()) {
     polys->GetCurrentCell(count, cell);
@@ -148,9 +150,9 @@ void AddTriangles(const Surface& surface, std::vector<double>& points)
       continue;
     }
     polygon->Initialize(static_cast<int>(count), cell, surface.Data->GetPoints());
-    polygon->Triangulate(triangles);
+    polygon->Triangulate(0, triangles, corners);
     for (vtkIdType i = 0; i + 2 < triangles->GetNumberOfIds(); i += 3) {
-      add(cell[triangles->GetId(i)], cell[triangles->GetId(i + 1)], cell[triangles->GetId(i + 2)]);
+      add(triangles->GetId(i), triangles->GetId(i + 1), triangles->GetId(i + 2));
     }
   }
   const auto strips = vtk::TakeSmartPointer(surface.Data->GetStrips()->NewIterator());
