@@ -141,6 +141,7 @@ static void release_surfaces(stratus_context* context, const sources* s)
 static stratus_status find_surfaces(stratus_context* context, const double bounds[6], sources* s)
 {
   static const int size[2] = { NODES_MOST, NODES_MOST };
+  TRY(stratus_surfaces_check(context, s->shading->surfaces));
   for (int i = 0; i < s->count; ++i) {
     double sides[3];
     stratus_light_frame_place(&s->lights[i], bounds, &s->frame[i], sides);

@@ -127,6 +127,16 @@ static void surfaces_change_alone(void** state)
     stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &again, &report), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(context), "triangle 0 of the surfaces has the coordinate nan"));
   assert_memory_equal(kept.rgba, other.rgba, sizeof drawn.rgba);
+  for (int multiple = 0; multiple < 2; ++multiple) { /* light that is scattered again meets surfaces before all other light does */
+    const stratus_surfaces missing = { .triangle_count = 1 };
+    c.options.light.shading.multiple = multiple;
+    c.options.light.shading.surfaces = &missing;
+    assert_int_equal(
+      stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &again, &report), STRATUS_INVALID_ARGUMENT);
+    assert_non_null(strstr(stratus_context_message(context), "surfaces of 1 triangles have no points"));
+  }
+  c.options.light.shading.multiple = 0;
+  c.options.light.shading.surfaces = &surfaces;
   points[0] = 15.0;
   surfaces.revision = 2;
   c.options.light.shading.light_count = 0; /* nothing to hide */
