@@ -196,6 +196,9 @@ static float passes_within_reach(const drawing* d, size_t node, float depth, dou
   if (from <= 0.0) {
     return expf(-depth);
   }
+  if (from >= layers) { /* a reach that rounding loses hides nothing */
+    return 1.0f;
+  }
   const size_t layer = (size_t)from;
   const float *before = d->depths + layer * nodes + node, part = (float)(from - (double)layer);
   /* in the layer that is being drawn, only the middle is known */

@@ -70,6 +70,12 @@ static void matter_shadows_itself_as_the_reference_says(void** state)
   s->shadow_length = 1e6;
   compare("shadows longer than the volume", context, &c, 46.0);
   assert_true(reference_psnr(kept.rgba, drawn.rgba, CASE_PIXELS) < 30.0);
+  s->shadow_length = 1e-300; /* no place is so near to another */
+  case_render(context, &c, &drawn);
+  s->shadows = 0;
+  case_render(context, &c, &kept);
+  assert_true(reference_psnr(kept.rgba, drawn.rgba, CASE_PIXELS) > 80.0);
+  s->shadows = 1;
   s->shadow_length = 0.0;
   s->anisotropy = 0.7;
   if (!few_run()) {
