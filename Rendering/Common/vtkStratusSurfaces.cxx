@@ -6,11 +6,15 @@
 #include "vtkAssemblyPath.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
+#include "vtkCompositeDataDisplayAttributes.h"
+#include "vtkCompositePolyDataMapper.h"
 #include "vtkDataSetMapper.h"
+#include "vtkDataSetSurfaceFilter.h"
 #include "vtkIdList.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
 #include "vtkPlane.h"
 #include "vtkPlaneCollection.h"
 #include "vtkPoints.h"
@@ -20,19 +24,30 @@
 #include "vtkPropCollection.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
+#include "vtkVersionMacros.h"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <vector>
+
+// The mapper whose attributes hide blocks.
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+using BlockMapper = vtkCompositePolyDataMapper;
+#else
+#include "vtkCompositePolyDataMapper2.h"
+using BlockMapper = vtkCompositePolyDataMapper2;
+#endif
 
 namespace {
 
 // A part of an actor, as it is in the world.
 struct Surface {
-  vtkPolyData* Data;
+  vtkDataSet* Data;
   vtkMTimeType Time;
   std::array<double, 16> Matrix;
   std::vector<std::array<double, 4>> Planes; // in the world: normal and constant, at least 0 where the surface is seen
@@ -56,6 +71,34 @@ std::vector<std::array<double, 4>> PlanesOf(vtkMapper* mapper)
   return planes;
 }
 
+// Calls `add` with the blocks that the mapper draws as opaque. A block without attributes has its parent's. attributes: nullptr: no block
+// has.
+void VisitBlocks(vtkDataObject* data, vtkCompositeDataDisplayAttributes* attributes, bool shown, bool opaque,
+  const std::function<void(vtkDataObject*)>& add)
+{
+  if (attributes && data && attributes->HasBlockVisibility(data)) {
+    shown = attributes->GetBlockVisibility(data);
+  }
+  if (attributes && data && attributes->HasBlockOpacity(data)) {
+    opaque = attributes->GetBlockOpacity(data) >= 1.0;
+  }
+  if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(data)) {
+    for (unsigned int i = 0; i < blocks->GetNumberOfBlocks(); ++i) {
+      VisitBlocks(blocks->GetBlock(i), attributes, shown, opaque, add);
+    }
+  } else if (auto* sets = vtkPartitionedDataSetCollection::SafeDownCast(data)) {
+    for (unsigned int i = 0; i < sets->GetNumberOfPartitionedDataSets(); ++i) {
+      VisitBlocks(sets->GetPartitionedDataSet(i), attributes, shown, opaque, add);
+    }
+  } else if (auto* parts = vtkPartitionedDataSet::SafeDownCast(data)) {
+    for (unsigned int i = 0; i < parts->GetNumberOfPartitions(); ++i) {
+      VisitBlocks(parts->GetPartitionAsDataObject(i), attributes, shown, opaque, add);
+    }
+  } else if (shown && opaque) {
+    add(data);
+  }
+}
+
 void AddActor(vtkActor* actor, vtkMatrix4x4* matrix, std::vector<Surface>& surfaces)
 {
   vtkMapper* mapper = actor->GetMapper();
@@ -64,32 +107,25 @@ void AddActor(vtkActor* actor, vtkMatrix4x4* matrix, std::vector<Surface>& surfa
     !actor->HasOpaqueGeometry()) {
     return;
   }
-  if (vtkDataSetMapper* wrapper = vtkDataSetMapper::SafeDownCast(mapper)) {
-    mapper = wrapper->GetPolyDataMapper(); // which draws the surface that was found
-  }
-  if (!vtkPolyDataMapper::SafeDownCast(mapper) || mapper->GetNumberOfInputConnections(0) < 1) {
+  const bool grids = vtkDataSetMapper::SafeDownCast(mapper) != nullptr;
+  if ((!grids && !vtkPolyDataMapper::SafeDownCast(mapper) && !vtkCompositePolyDataMapper::SafeDownCast(mapper)) ||
+    mapper->GetNumberOfInputConnections(0) < 1) {
     return; // glyphs, and lines and texts of annotations
   }
   Surface surface;
   std::copy_n(matrix->GetData(), 16, surface.Matrix.begin());
-  surface.Planes = PlanesOf(actor->GetMapper());
-  const auto add = [&](vtkDataObject* data) {
-    surface.Data = vtkPolyData::SafeDownCast(data);
-    if (surface.Data && surface.Data->GetNumberOfPolys() + surface.Data->GetNumberOfStrips() > 0) {
-      surface.Time = surface.Data->GetMTime();
-      surfaces.push_back(surface);
-    }
-  };
-  vtkDataObject* input = mapper->GetInputDataObject(0, 0);
-  if (vtkCompositeDataSet* composite = vtkCompositeDataSet::SafeDownCast(input)) {
-    vtkSmartPointer<vtkCompositeDataIterator> blocks;
-    blocks.TakeReference(composite->NewIterator());
-    for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem()) {
-      add(blocks->GetCurrentDataObject());
-    }
-  } else {
-    add(input);
-  }
+  surface.Planes = PlanesOf(mapper);
+  BlockMapper* blocks = BlockMapper::SafeDownCast(mapper);
+  VisitBlocks(
+    mapper->GetInputDataObject(0, 0), blocks ? blocks->GetCompositeDataDisplayAttributes() : nullptr, true, true, [&](vtkDataObject* data) {
+      vtkPolyData* polygons = vtkPolyData::SafeDownCast(data);
+      surface.Data = polygons || grids ? vtkDataSet::SafeDownCast(data) : nullptr;
+      if (surface.Data &&
+        (polygons ? polygons->GetNumberOfPolys() + polygons->GetNumberOfStrips() : surface.Data->GetNumberOfCells()) > 0) {
+        surface.Time = surface.Data->GetMTime();
+        surfaces.push_back(surface);
+      }
+    });
 }
 
 // Adds the part of a triangle that is in front of all planes.
@@ -119,12 +155,37 @@ void AddTriangle(const Surface& surface, const std::array<double, 3> corners[3],
   }
 }
 
+bool IsFinite(const std::array<double, 3>& place)
+{
+  return std::all_of(place.begin(), place.end(), [](double x) { return std::isfinite(x); });
+}
+
+// Returns the surface that a vtkDataSetMapper draws of the data. VTK does not draw an actor that is out of view: then the mapper's own
+// surface is missing, or is of older data.
+vtkSmartPointer<vtkPolyData> PolygonsOf(vtkDataSet* data)
+{
+  if (vtkPolyData* polygons = vtkPolyData::SafeDownCast(data)) {
+    return polygons;
+  }
+  vtkNew<vtkDataSetSurfaceFilter> filter;
+  filter->SetInputData(data);
+  filter->Update();
+  return filter->GetOutput();
+}
+
+// Adds the triangles of a surface. A cell hides no light if one of its points is missing or not finite: VTK does not draw it, either.
 void AddTriangles(const Surface& surface, std::vector<double>& points)
 {
-  const auto place = [&surface](vtkIdType point) {
+  const vtkSmartPointer<vtkPolyData> data = PolygonsOf(surface.Data);
+  vtkPoints* given = data->GetPoints();
+  const vtkIdType beyond = given ? given->GetNumberOfPoints() : 0;
+  const auto exist = [beyond](const vtkIdType* cell, vtkIdType count) {
+    return std::all_of(cell, cell + count, [beyond](vtkIdType point) { return point >= 0 && point < beyond; });
+  };
+  const auto place = [&surface, given](vtkIdType point) {
     double from[3];
     std::array<double, 3> to;
-    surface.Data->GetPoint(point, from);
+    given->GetPoint(point, from);
     for (size_t row = 0; row < 3; ++row) {
       const double* m = surface.Matrix.data() + 4 * row;
       to[row] = m[0] * from[0] + m[1] * from[1] + m[2] * from[2] + m[3];
@@ -133,32 +194,36 @@ void AddTriangles(const Surface& surface, std::vector<double>& points)
   };
   const auto add = [&](vtkIdType a, vtkIdType b, vtkIdType c) {
     const std::array<double, 3> corners[3] = { place(a), place(b), place(c) };
-    AddTriangle(surface, corners, points);
+    if (std::all_of(corners, corners + 3, IsFinite)) {
+      AddTriangle(surface, corners, points);
+    }
   };
   vtkIdType count;
   const vtkIdType* cell;
   vtkNew<vtkIdList> triangles;
   vtkNew<vtkPolygon> polygon;
   vtkNew<vtkPoints> corners;
-  const auto polys = vtk::TakeSmartPointer(surface.Data->GetPolys()->NewIterator());
+  const auto polys = vtk::TakeSmartPointer(data->GetPolys()->NewIterator());
   for (polys->GoToFirstCell(); !polys->IsDoneWithTraversal(); polys->GoToNextCell()) {
     polys->GetCurrentCell(count, cell);
-    if (count <= 3) {
-      if (count == 3) {
-        add(cell[0], cell[1], cell[2]);
-      }
+    if (count < 3 || !exist(cell, count)) {
       continue;
     }
-    polygon->Initialize(static_cast<int>(count), cell, surface.Data->GetPoints());
+    if (count == 3) {
+      add(cell[0], cell[1], cell[2]);
+      continue;
+    }
+    polygon->Initialize(static_cast<int>(count), cell, given);
     polygon->Triangulate(0, triangles, corners);
     for (vtkIdType i = 0; i + 2 < triangles->GetNumberOfIds(); i += 3) {
       add(triangles->GetId(i), triangles->GetId(i + 1), triangles->GetId(i + 2));
     }
   }
-  const auto strips = vtk::TakeSmartPointer(surface.Data->GetStrips()->NewIterator());
+  const auto strips = vtk::TakeSmartPointer(data->GetStrips()->NewIterator());
   for (strips->GoToFirstCell(); !strips->IsDoneWithTraversal(); strips->GoToNextCell()) {
     strips->GetCurrentCell(count, cell);
-    for (vtkIdType i = 0; i + 2 < count; ++i) {
+    const bool exists = exist(cell, count);
+    for (vtkIdType i = 0; exists && i + 2 < count; ++i) {
       add(cell[i], cell[i + 1], cell[i + 2]);
     }
   }

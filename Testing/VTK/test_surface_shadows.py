@@ -88,6 +88,9 @@ class Scene:
         self.props = props
         for prop in props:
             self.renderer.AddVolume(prop)
+        self.errors = []
+        for prop in props:
+            prop.GetMapper().AddObserver("ErrorEvent", lambda *_: self.errors.append(1))
         sun = vtk.vtkLight()
         sun.SetLightTypeToSceneLight()
         sun.SetPosition(*(100 * SUN))
@@ -186,6 +189,7 @@ def check_plate():
     blocks.SetBlock(0, surface(corners, [(0, 1, 2)]))
     blocks.SetBlock(1, surface(corners, [(0, 2, 3)]))
     shapes["blocks"] = actor(blocks, vtk.vtkCompositePolyDataMapper2())
+    shapes["blocks with mappers of their own"] = actor(blocks, vtk.vtkCompositePolyDataMapper())
     grid = vtk.vtkImageData()
     grid.SetDimensions(2, 2, 1)
     grid.SetSpacing(140, 140, 1)
@@ -225,6 +229,9 @@ def check_plate():
         check(numpy.abs(lit - open_sky).max() < 0.01 if name != "translucent" else lit.max() > 0.1, f"a plate that is {name} hides no sun")
         back()
         check(scene.draw().max() == 0, f"the plate after it was {name}")
+    check_blocks(scene, open_sky)
+    check_beside(scene, open_sky)
+    check_broken(scene)
     plane.SetOrigin(BOX[0] / 2 + 0.5 * (30 - BOX[2] / 2), 0, 0)  # half of the plate is left: the sun's way to the box's middle crosses its edge
     mapper.AddClippingPlane(plane)
     half = scene.draw()
@@ -234,6 +241,79 @@ def check_plate():
         prop.GetMapper().SetShadows(False)
         prop.GetProperty().ShadeOff()
     check(scene.draw().max() > 0.3, "without light there are no shadows")
+
+
+def check_blocks(scene, open_sky):
+    """Blocks that their mapper hides or makes translucent hide no light. A block may say otherwise than its parent."""
+    plate = scene.renderer.GetActors().GetLastActor()
+    plate.VisibilityOff()
+    pieces = [surface(square(-60, 80, 30), [(0, 1, 2)]), surface(square(-60, 80, 30), [(0, 2, 3)])]
+    inner, outer = vtk.vtkMultiBlockDataSet(), vtk.vtkMultiBlockDataSet()
+    inner.SetBlock(0, pieces[0])
+    inner.SetBlock(1, pieces[1])
+    outer.SetBlock(0, inner)
+    parts, collection = vtk.vtkPartitionedDataSet(), vtk.vtkPartitionedDataSetCollection()
+    parts.SetPartition(0, pieces[0])
+    parts.SetPartition(1, pieces[1])
+    collection.SetPartitionedDataSet(0, parts)
+    for tree, node in ((outer, inner), (collection, parts)):
+        shown = actor(tree, vtk.vtkCompositePolyDataMapper2())
+        said = vtk.vtkCompositeDataDisplayAttributes()
+        shown.GetMapper().SetCompositeDataDisplayAttributes(said)
+        scene.renderer.AddActor(shown)
+        check(scene.draw().max() == 0, f"all blocks of a {tree.GetClassName()} hide the sun")
+        said.SetBlockVisibility(node, False)
+        check(numpy.abs(scene.draw() - open_sky).max() < 0.01, f"hidden blocks of a {tree.GetClassName()} hide no sun")
+        said.SetBlockVisibility(pieces[0], True)
+        some = scene.draw().sum()
+        check(0.01 * open_sky.sum() < some < 0.9 * open_sky.sum(), f"one block of a {tree.GetClassName()} hides a part: {some}")
+        said.SetBlockVisibility(node, True)
+        said.SetBlockOpacity(pieces[0], 0.3)
+        lit = scene.draw().max()
+        check(lit > 0.1, f"a translucent block of a {tree.GetClassName()} hides no sun")
+        scene.renderer.RemoveActor(shown)
+    plate.VisibilityOn()
+
+
+def check_beside(scene, open_sky):
+    """A grid that is beside the view, where VTK does not draw it, takes the sun in each frame, as its present data are."""
+    plate = scene.renderer.GetActors().GetLastActor()
+    plate.VisibilityOff()
+    sun = scene.renderer.GetLights().GetItemAsObject(0)
+    place = sun.GetPosition()
+    sun.SetPosition(400, 20, 15)
+    lit = scene.draw()
+    grid = vtk.vtkImageData()
+    grid.SetDimensions(1, 3, 3)
+    grid.SetSpacing(1, 11, 8)
+    grid.SetOrigin(60, -2, -2)
+    wall = actor(grid, vtk.vtkDataSetMapper())
+    scene.renderer.AddActor(wall)
+    check(lit.max() > 0.1 and scene.draw().max() == 0, "a grid beside the view hides the sun")
+    grid.SetOrigin(60, 60, 60)
+    grid.Modified()
+    check(numpy.abs(scene.draw() - lit).max() < 0.01, "a grid that has moved away hides it no longer")
+    scene.renderer.RemoveActor(wall)
+    sun.SetPosition(*place)
+    check(numpy.abs(scene.draw() - open_sky).max() < 0.01, "the sun is back")
+    plate.VisibilityOn()
+
+
+def check_broken(scene):
+    """Cells whose points are missing or not finite hide nothing, and end neither the process nor the picture."""
+    nan = float("nan")
+    corners = square(-60, 80, 30)
+    no_points = surface([], [(0, 1, 2), (0, 1, 2, 3)])
+    no_points.SetPoints(None)
+    for name, data in {
+        "a point that is not finite": surface(corners + [(nan, 0, 30)], [(0, 1, 4), (1, 2, 3, 4)]),
+        "no points": no_points,
+    }.items():
+        broken = actor(data)
+        scene.renderer.AddActor(broken)
+        check(scene.draw().max() == 0, f"the plate beside cells of {name}")
+        scene.renderer.RemoveActor(broken)
+    check(not scene.errors, f"errors: {scene.errors}")
 
 
 for name in ("image", "tetrahedra", "blocks", "two volumes"):
