@@ -361,12 +361,12 @@ bool vtkStratusTetrahedraMapper::Internals::Cast(
       this->Mesh.DropLeaves();
     }
   }
-  if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
-    error = stratus_context_message(this->Context.Get());
-  }
   const stratus_ray_cast_input input = this->InputOf(this->Options);
   if (status == STRATUS_OK && this->Picture.TakesShadows) {
-    stratus_ray_caster_shade_surfaces(&input, 1, &this->Picture.Camera, &image);
+    status = stratus_ray_caster_shade_surfaces(&input, 1, &this->Picture.Camera, &image);
+  }
+  if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
+    error = stratus_context_message(this->Context.Get());
   }
   const bool drawn =
     status == STRATUS_OK && this->Quantities.Compute(this->Context.Get(), &input, 1, false, this->Picture.Camera, image, error);

@@ -59,14 +59,12 @@ bool vtkStratusJointPicture::Begin(
   return true;
 }
 
-void vtkStratusJointPicture::Scene::Finish(
+stratus_status vtkStratusJointPicture::Scene::Finish(
   const stratus_ray_cast_input* inputs, int count, const stratus_camera& camera, const stratus_image& image, const int window[4])
 {
   const int all[4] = { 0, image.width, 0, image.height };
-  if (this->TakesShadows) {
-    stratus_ray_caster_shade_surfaces(inputs, count, &camera, &image);
-  }
   std::copy_n(this->TakesShadows ? all : window, 4, this->Window);
+  return this->TakesShadows ? stratus_ray_caster_shade_surfaces(inputs, count, &camera, &image) : STRATUS_OK;
 }
 
 bool vtkStratusJointPicture::Render(Scene& scene, std::string& error)

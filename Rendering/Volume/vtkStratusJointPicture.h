@@ -45,7 +45,7 @@ public:
     int Window[4] = { 0, 0, 0, 0 };
 
     // Adds shadows to surfaces, and sets the window, after the whole picture was cast.
-    void Finish(
+    stratus_status Finish(
       const stratus_ray_cast_input* inputs, int count, const stratus_camera& camera, const stratus_image& image, const int window[4]);
   };
 

@@ -407,22 +407,21 @@ bool vtkStratusMultiBlockVolumeMapper::Internals::Cast(
   const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error)
 {
   std::vector<stratus_ray_cast_report> reports(this->Inputs.size());
-  const stratus_status status =
-    stratus_ray_caster_render_blocks(this->Inputs.data(), static_cast<int>(this->Inputs.size()), &camera, &image, reports.data());
+  const int count = static_cast<int>(this->Inputs.size());
+  stratus_status status = stratus_ray_caster_render_blocks(this->Inputs.data(), count, &camera, &image, reports.data());
+  if (status == STRATUS_OK && whole) {
+    stratus_ray_cast_report all = stratus_ray_cast_report();
+    for (size_t i = 0; i < reports.size(); ++i) {
+      this->Mappers[i]->Internal->Report = reports[i];
+      stratus_ray_cast_report_add(&all, &reports[i]);
+    }
+    this->Scene.Milliseconds = all.cast_ms;
+    status = this->Scene.Finish(this->Inputs.data(), count, camera, image, all.window);
+  }
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
   }
-  if (status != STRATUS_OK || !whole) {
-    return status == STRATUS_OK;
-  }
-  stratus_ray_cast_report all = stratus_ray_cast_report();
-  for (size_t i = 0; i < reports.size(); ++i) {
-    this->Mappers[i]->Internal->Report = reports[i];
-    stratus_ray_cast_report_add(&all, &reports[i]);
-  }
-  this->Scene.Milliseconds = all.cast_ms;
-  this->Scene.Finish(this->Inputs.data(), static_cast<int>(this->Inputs.size()), camera, image, all.window);
-  return true;
+  return status == STRATUS_OK;
 }
 
 bool vtkStratusMultiBlockVolumeMapper::Internals::Measure(vtkRenderer* renderer, vtkVolume* volume, double choice[4])

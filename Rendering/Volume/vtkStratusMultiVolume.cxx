@@ -191,21 +191,18 @@ bool vtkStratusMultiVolume::Internals::Describe(vtkRenderer* renderer, std::stri
 bool vtkStratusMultiVolume::Internals::Cast(const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error)
 {
   stratus_ray_cast_report reports[STRATUS_SEVERAL_MAX];
-  const stratus_status status = stratus_ray_caster_render_several(this->Inputs, this->Count, &camera, &image, reports);
+  stratus_status status = stratus_ray_caster_render_several(this->Inputs, this->Count, &camera, &image, reports);
+  if (whole) {
+    std::fill(std::begin(this->Reports), std::end(this->Reports), stratus_ray_cast_report());
+    this->Whole = status == STRATUS_OK ? reports[0] : stratus_ray_cast_report();
+    for (int n = 0; status == STRATUS_OK && n < this->Count; ++n) {
+      this->Reports[this->Ports[n]] = reports[n];
+    }
+    this->Scene.Milliseconds = this->Whole.cast_ms;
+    status = status == STRATUS_OK ? this->Scene.Finish(this->Inputs, this->Count, camera, image, this->Whole.window) : status;
+  }
   if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
     error = stratus_context_message(this->Context.Get());
-  }
-  if (!whole) {
-    return status == STRATUS_OK;
-  }
-  std::fill(std::begin(this->Reports), std::end(this->Reports), stratus_ray_cast_report());
-  this->Whole = status == STRATUS_OK ? reports[0] : stratus_ray_cast_report();
-  for (int n = 0; status == STRATUS_OK && n < this->Count; ++n) {
-    this->Reports[this->Ports[n]] = reports[n];
-  }
-  this->Scene.Milliseconds = this->Whole.cast_ms;
-  if (status == STRATUS_OK) {
-    this->Scene.Finish(this->Inputs, this->Count, camera, image, this->Whole.window);
   }
   return status == STRATUS_OK;
 }

@@ -103,17 +103,17 @@ bool vtkStratusVolumeMapper::Internals::Cast(
     this->Rgba, this->Depth, opaqueDepth, this->HasSamples ? &this->Samples : nullptr, bytes ? &this->Bytes : nullptr);
   this->Renderer = renderer;
   stratus_context_start_build_report(this->Context.Get());
-  const stratus_status status = this->IsPath() ? this->CastPaths(options, image)
-                                               : stratus_ray_caster_render(this->Caster, &this->Image.GetVolume(), this->Functions.data(),
-                                                   &this->Picture.Camera, &options, &image, &this->Report);
-  if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
-    error = stratus_context_message(this->Context.Get());
-  }
+  stratus_status status = this->IsPath() ? this->CastPaths(options, image)
+                                         : stratus_ray_caster_render(this->Caster, &this->Image.GetVolume(), this->Functions.data(),
+                                             &this->Picture.Camera, &options, &image, &this->Report);
   const stratus_ray_cast_input input = this->InputOf(options);
   if (status == STRATUS_OK && this->Picture.TakesShadows) {
-    stratus_ray_caster_shade_surfaces(&input, 1, &this->Picture.Camera, &image);
+    status = stratus_ray_caster_shade_surfaces(&input, 1, &this->Picture.Camera, &image);
     const int all[4] = { 0, image.width, 0, image.height };
     std::copy_n(all, 4, this->Report.window);
+  }
+  if (status != STRATUS_OK && status != STRATUS_CANCELLED) {
+    error = stratus_context_message(this->Context.Get());
   }
   const bool drawn =
     status == STRATUS_OK && this->Quantities.Compute(this->Context.Get(), &input, 1, false, this->Picture.Camera, image, error);

@@ -316,7 +316,35 @@ def check_broken(scene):
     check(not scene.errors, f"errors: {scene.errors}")
 
 
+def check_abort(kind):
+    """A picture that is aborted while surfaces take their shadows is not shown."""
+    props = volume(kind)
+    scene = Scene(props)
+    scene.renderer.AddActor(actor(surface(square(-60, 80, FLOOR), [(0, 1, 2, 3)])))
+    mapper = props[0].GetMapper()
+    mapper.SetNumberOfThreads(1)
+    counts, stop = [], [0]
+
+    def look(*_):
+        counts.append(1)
+        if len(counts) == stop[0]:
+            scene.window.SetAbortRender(1)
+
+    scene.draw()  # which makes all that is kept from picture to picture
+    scene.draw()
+    observer = mapper.AddObserver("VolumeMapperRenderProgressEvent", look)
+    scene.draw()
+    check(mapper.GetLastImage() is not None and len(counts) > 10, f"{kind}: {len(counts)} checks for an abort")
+    stop[0] = len(counts)
+    counts.clear()
+    scene.draw()
+    check(mapper.GetLastImage() is None, f"{kind}: an aborted picture is none")
+    mapper.RemoveObserver(observer)
+
+
 for name in ("image", "tetrahedra", "blocks", "two volumes"):
     check_floor(name)
 check_plate()
+for name in ("image", "tetrahedra"):
+    check_abort(name)
 done()
