@@ -315,7 +315,7 @@ public:
   /**
    * Set/Get whether scattered light is scattered again, any number of times, and the light of a sky with it. Then shadows are on. The
    * first scattering is computed at each sample, all others on a grid of at most 64 cells along each side. Default off: light is scattered
-   * once. Not used if VolumetricScatteringBlending is 0.
+   * once. Not used if VolumetricScatteringBlending is 0, but in PATH_MODE.
    */
   vtkSetMacro(MultipleScattering, vtkTypeBool);
   vtkGetMacro(MultipleScattering, vtkTypeBool);

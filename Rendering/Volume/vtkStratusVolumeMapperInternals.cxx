@@ -247,6 +247,10 @@ bool vtkStratusVolumeMapper::Internals::PrepareInput(vtkVolume* prop, std::strin
   this->Vectors.Sweep();
   const float* gradients = this->FindGradients(array, component, magnitude);
   array = magnitude ? this->Vectors.Get(array, vtkStratusVectors::Magnitude, image->GetMTime()) : array;
+  if (this->IsPath() && HasTransfer2D(prop->GetProperty())) {
+    error = "TransferFunctionMode is TF_2D, which is not supported in paths, only TF_1D is";
+    return false;
+  }
   if (HasTransfer2D(prop->GetProperty())) {
     return this->PrepareTransfer2D(prop, image, array, cells, component, gradients, error);
   }

@@ -6,19 +6,19 @@
 #include <cmath>
 
 namespace {
-stratus_path_options PathsOf(const stratus_ray_cast_options& options)
+stratus_path_options PathsOf(const stratus_ray_cast_options& options, bool multiple)
 {
   const stratus_shading& shading = options.light.shading;
   stratus_path_options paths = stratus_path_options_default();
   paths.seed = options.sampling.jitter_seed;
-  paths.bounces = shading.multiple ? 0 : 1;
+  paths.bounces = multiple ? 0 : 1;
   paths.albedo = std::min(shading.diffuse, 1.0);
   paths.anisotropy = shading.anisotropy;
   paths.light_count = shading.light_count;
   std::copy_n(shading.lights, STRATUS_LIGHTS_MAX, paths.lights);
   for (int a = 0; a < 3; ++a) {
-    paths.sky_zenith[a] = shading.multiple ? shading.sky_zenith[a] : 0.0;
-    paths.sky_horizon[a] = shading.multiple ? shading.sky_horizon[a] : 0.0;
+    paths.sky_zenith[a] = multiple ? shading.sky_zenith[a] : 0.0;
+    paths.sky_horizon[a] = multiple ? shading.sky_horizon[a] : 0.0;
     paths.up[a] = shading.up[a];
   }
   paths.interpolation = options.sampling.interpolation;
@@ -30,7 +30,7 @@ stratus_path_options PathsOf(const stratus_ray_cast_options& options)
 
 stratus_status vtkStratusVolumeMapper::Internals::CastPaths(const stratus_ray_cast_options& options, const stratus_image& image)
 {
-  stratus_path_options paths = PathsOf(options);
+  stratus_path_options paths = PathsOf(options, this->Mapper->MultipleScattering != 0);
   stratus_status status = this->Tracer ? STRATUS_OK : stratus_path_tracer_create(this->Context.Get(), &this->Tracer);
   double seconds = 0.0;
   this->Report = stratus_ray_cast_report();

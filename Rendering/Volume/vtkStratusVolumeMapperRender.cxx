@@ -61,7 +61,8 @@ vtkStratusVolumeMapper::Internals::Coarseness vtkStratusVolumeMapper::Internals:
   const double available = std::max(allotted - this->DrawMilliseconds, 0.1 * allotted);
   const double excess = available > 0.0 ? this->FullMilliseconds / available : std::numeric_limits<double>::max();
   if (excess > 1.0) {
-    const bool steps = !this->IsFirstHit() && mapper->BlendMode < vtkVolumeMapper::ISOSURFACE_BLEND && // nor have slices steps
+    const bool steps = !this->IsFirstHit() && !this->IsPath() &&
+      mapper->BlendMode < vtkVolumeMapper::ISOSURFACE_BLEND &&              // nor have slices steps
       !this->FullFollows && this->FullSampling != STRATUS_SAMPLING_CELLS && // nor have rays that follow the voxels one step for all
       this->FullSampling != STRATUS_SAMPLING_LOCAL;                         // cells have no step, local is not for asking
     coarseness.Step = !steps ? 1.0 : std::min(excess, mapper->MaximumSampleDistanceFactor);
@@ -81,7 +82,10 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
   const double rays = static_cast<double>(this->Picture.Size[0]) * this->Picture.Size[1];
   const double base = this->Mapper->ImageSampleDistance;
   const double all = static_cast<double>(this->Picture.Rectangle[2]) * this->Picture.Rectangle[3] / (base * base);
-  this->FullMilliseconds = this->Report.cast_ms * coarseness.Step * std::max(1.0, all / rays);
+  // Paths fill PathSeconds however coarse a picture is; it needs only two of them.
+  const double needed =
+    this->IsPath() ? 2e3 * this->PathReport.seconds / std::max(1.0, static_cast<double>(this->PathReport.samples)) : this->Report.cast_ms;
+  this->FullMilliseconds = needed * coarseness.Step * std::max(1.0, all / rays);
 }
 
 // ---------------------------------------------------------------- a picture
