@@ -52,7 +52,9 @@ stratus_status stratus_light_state_build(stratus_context* context, const stratus
 void stratus_light_state_drop(stratus_light_state* state);
 /* A key that follows from another and from bytes. The first is 0. */
 uint64_t stratus_light_key(uint64_t key, const void* bytes, size_t count);
-/* The same of transfer functions, their points included. */
+/* The key of surfaces by their address, count and revision. 0: there are none. */
+uint64_t stratus_light_key_of_surfaces(const stratus_surfaces* surfaces);
+/* A key that follows from another and from transfer functions, their points included. */
 uint64_t stratus_light_key_of_transfers(uint64_t key, const stratus_transfer* transfers, int count);
 /* The same of the shadows' length; of lights and the sky, if light is scattered more than once; and of the albedo of matter but for the
  * shading's diffuse number. materials: of `components`; NULL: none of their own. */
