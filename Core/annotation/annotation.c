@@ -42,11 +42,12 @@ static stratus_status check_coast(stratus_context* context, const stratus_annota
   if (!(a->globe >= 0.0) || !isfinite(a->globe)) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "a globe of radius %g, must be 0 or more and finite", a->globe);
   }
-  if (a->globe > 0.0) {
+  if (a->globe > 0.0 || a->coast_place) {
     return STRATUS_OK;
   }
   if (stratus_coast_face(a) < 0) {
-    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "coastlines need an axis of longitudes and one of latitudes");
+    return stratus_fail(
+      context, STRATUS_INVALID_ARGUMENT, "coastlines need an axis of longitudes and one of latitudes, or the places of a projection");
   }
   for (int side = 0; side < 6; ++side) {
     const stratus_axis* const axis = &a->axis[side / 2];

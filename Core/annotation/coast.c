@@ -5,11 +5,13 @@
 #include "coast_lines.h"
 
 #define DEGREE 0.017453292519943295
+#define PIECE 0.5 /* degrees: projections bend lines that are longer */
+#define BENT 0.25 /* of the length of a piece: its middle is at most this far from the middle of its ends, otherwise it is torn */
 
 int stratus_coast_face(const stratus_annotation* annotation)
 {
-  int longitude = -1, latitude = -1;
-  for (int a = 0; a < 3; ++a) {
+  int longitude = annotation->coast_place ? 0 : -1, latitude = annotation->coast_place ? 1 : -1;
+  for (int a = 0; a < 3 && !annotation->coast_place; ++a) {
     longitude = annotation->axis[a].kind == STRATUS_AXIS_LONGITUDE ? a : longitude;
     latitude = annotation->axis[a].kind == STRATUS_AXIS_LATITUDE ? a : latitude;
   }
@@ -20,7 +22,7 @@ int stratus_coast_face(const stratus_annotation* annotation)
   return 2 * third + (annotation->axis[third].kind != STRATUS_AXIS_LEVELS && annotation->axis[third].scale < 0.0 ? 1 : 0);
 }
 
-/* Cuts a line to a box, by Liang and Barsky. Returns false if nothing is left. */
+/* Cuts a line to a box of x and y, by Liang and Barsky. Returns false if nothing is left. */
 static bool clip(const double bounds[4], double from[2], double to[2])
 {
   const double d[2] = { to[0] - from[0], to[1] - from[1] }, start[2] = { from[0], from[1] };
@@ -66,6 +68,51 @@ void stratus_coast_within(const double bounds[4], stratus_coast_visit* visit, vo
   }
 }
 
+/* Coastlines on the plane of a projection. */
+typedef struct projected {
+  stratus_sheet* sheet;
+  const stratus_annotation* annotation;
+  int face;
+} projected;
+
+static bool place_on_plane(const projected* p, const double from[2], const double to[2], double part, double place[2])
+{
+  const double degrees[2] = { from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1]) };
+  return p->annotation->coast_place(p->annotation->coast_data, degrees, place) && isfinite(place[0]) && isfinite(place[1]);
+}
+
+static double length_of(double x, double y)
+{
+  return sqrt(x * x + y * y);
+}
+
+static void draw_projected(void* data, const double from[2], const double to[2])
+{
+  const projected* const p = data;
+  const double longest = fmax(fabs(to[0] - from[0]), fabs(to[1] - from[1]));
+  const int count = (int)ceil(longest / PIECE);
+  double a[3], b[3], middle[2], next[2];
+  bool known = place_on_plane(p, from, to, 0.0, next);
+  for (int i = 0; i < count; ++i) {
+    const bool begins = known;
+    a[0] = next[0];
+    a[1] = next[1];
+    known = place_on_plane(p, from, to, (i + 1.0) / count, next);
+    if (!begins || !known || !place_on_plane(p, from, to, (i + 0.5) / count, middle)) {
+      continue;
+    }
+    const double aside = length_of(middle[0] - 0.5 * (a[0] + next[0]), middle[1] - 0.5 * (a[1] + next[1]));
+    b[0] = next[0];
+    b[1] = next[1];
+    if (aside <= BENT * length_of(b[0] - a[0], b[1] - a[1]) && clip(p->annotation->bounds, a, b)) {
+      a[2] = b[2] = p->annotation->bounds[p->face];
+      stratus_sheet_line_in_world(p->sheet, a, b);
+    }
+  }
+}
+
+static const double all_of_earth[4] = { -180.0, 180.0, -90.0, 90.0 };
+
 typedef struct plane {
   stratus_sheet* sheet;
   const stratus_annotation* annotation;
@@ -87,6 +134,11 @@ static void draw_piece(void* data, const double from[2], const double to[2])
 void stratus_coast_draw(stratus_sheet* sheet, const stratus_annotation* annotation)
 {
   plane p = { sheet, annotation, stratus_coast_face(annotation), { 0, 0 } };
+  if (annotation->coast_place) {
+    projected on = { sheet, annotation, p.face };
+    stratus_coast_within(all_of_earth, draw_projected, &on);
+    return;
+  }
   double bounds[4];
   for (int a = 0; a < 3; ++a) {
     const stratus_axis* const axis = &annotation->axis[a];
@@ -132,7 +184,6 @@ static void draw_on_globe(void* data, const double from[2], const double to[2])
 
 void stratus_coast_draw_globe(stratus_sheet* sheet, double radius)
 {
-  static const double all[4] = { -180.0, 180.0, -90.0, 90.0 };
   globe g = { sheet, radius };
-  stratus_coast_within(all, draw_on_globe, &g);
+  stratus_coast_within(all_of_earth, draw_on_globe, &g);
 }

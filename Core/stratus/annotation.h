@@ -53,17 +53,25 @@ typedef struct stratus_axis_tick {
 STRATUS_API stratus_status stratus_axis_find_ticks(
   stratus_context* context, const stratus_axis* axis, int kilo, double low, double high, int most, stratus_axis_tick* ticks, int* count);
 
+/* Finds x and y in the world of a longitude and latitude in degrees, on the plane of a map projection. Returns 0 if there is no such place,
+ * otherwise another number. data: coast_data of the annotation. */
+typedef int (*stratus_coast_place)(void* data, const double degrees[2], double place[2]);
+
 /* What is drawn around a picture. Strings and arrays are borrowed. */
 typedef struct stratus_annotation {
   int axes;             /* 1: a box around `bounds`, with numbers and titles. Default 0. */
   double bounds[6];     /* of the volume in the world: xmin, xmax, ymin, ymax, zmin, zmax */
   stratus_axis axis[3]; /* x, y, z */
   /* 1: coastlines within `bounds`, on the face where the axis that is neither longitude nor latitude begins; of depths, scale < 0, where it
-   * ends. Needs a LONGITUDE, within 3600 degrees, and a LATITUDE. Default 0. */
+   * ends. Needs a LONGITUDE, within 3600 degrees, and a LATITUDE, or coast_place. Default 0. */
   int coast;
   /* Above 0 and finite: coastlines are on a sphere of this radius about 0 in the world, longitude 0 towards x and north towards z, on the
    * side that faces the eye; bounds and axes do not count for them. 0 (default): as above. */
   double globe;
+  /* Not NULL: coastlines are at these places of x and y, whatever the axes are, on the face where z begins; of depths where it ends. Pieces
+   * that the projection tears apart are left out. Not used on a globe. Default NULL. */
+  stratus_coast_place coast_place;
+  void* coast_data; /* borrowed */
   /* Of the colour bar: quadruples of value, red, green and blue in 0..1, by ascending value, `color_count` of them. Default 0: no bar. */
   const double* color;
   size_t color_count;

@@ -498,6 +498,104 @@ static void coast_is_on_the_side_of_the_globe_that_faces_the_eye(void** state)
   }
 }
 
+/* The stereographic projection of a sphere from the south pole, north of 20 degrees. Rotated by the double that data points to. */
+static int place_polar(void* data, const double degrees[2], double place[2])
+{
+  const double turn = *(const double*)data, distance = 2.0 * tan(0.5 * (90.0 - degrees[1]) * RADIANS);
+  place[0] = distance * sin((degrees[0] - turn) * RADIANS);
+  place[1] = -distance * cos((degrees[0] - turn) * RADIANS);
+  return degrees[1] >= 20.0;
+}
+
+/* Longitudes from the double that data points to, on the way round. */
+static int place_turned(void* data, const double degrees[2], double place[2])
+{
+  const double first = *(const double*)data;
+  place[0] = degrees[0] - 360.0 * floor((degrees[0] - first) / 360.0);
+  place[1] = degrees[1];
+  return 1;
+}
+
+static void coast_on_a_plane_is_where_the_projection_has_it(void** state)
+{
+  (void)state;
+  const int size = 480;
+  double turn = -45.0;
+  stratus_annotation a = stratus_annotation_default();
+  const double bounds[6] = { -0.9, 0.7, -0.8, 0.8, 0.0, 0.1 };
+  memcpy(a.bounds, bounds, sizeof bounds);
+  a.coast = 1;
+  a.coast_place = place_polar;
+  a.coast_data = &turn;
+  const stratus_camera camera = fitted(&a, size, size, -90.0, 89.0, true);
+  float* const rgba = draw(&a, &camera, size, size, NULL, 0, NULL);
+  found_lines found = { 0.0, { -180.0, 180.0, -90.0, 90.0 }, INFINITY, { 0.0, 0.0 }, 0, NULL };
+  found.list = calloc(20000, sizeof *found.list);
+  stratus_coast_within(found.bounds, keep, &found);
+  size_t seen = 0, inked = 0;
+  for (size_t i = 0; i < found.count; ++i) {
+    double place[3] = { 0.0, 0.0, 0.0 }, at[2];
+    if (place_polar(&turn, found.list[i], place) && place[0] > bounds[0] && place[0] < bounds[1] && place[1] > bounds[2] &&
+      place[1] < bounds[3]) {
+      assert_true(project(&camera, place, size, size, at));
+      assert_true(rgba[4 * ((size_t)lround(at[1]) * (size_t)size + (size_t)lround(at[0])) + 3] > 0.15f);
+      ++seen;
+    }
+  }
+  /* no line leaves the box */
+  const double corner[3] = { bounds[0], bounds[2], 0.0 }, other[3] = { bounds[1], bounds[3], 0.0 };
+  double low[2], high[2];
+  assert_true(project(&camera, corner, size, size, low) && project(&camera, other, size, size, high));
+  for (int i = 0; i < size * size; ++i) {
+    const int x = i % size, y = i / size;
+    inked += rgba[4 * i + 3] > 0.0f ? 1 : 0;
+    assert_true(rgba[4 * i + 3] == 0.0f || (x > low[0] - 3.0 && x < high[0] + 3.0 && y > low[1] - 3.0 && y < high[1] + 3.0));
+  }
+  assert_in_range(seen, 500, 5000);
+  assert_in_range(inked, 1000, 30000);
+  free(found.list);
+  free(rgba);
+}
+
+/* Around a plane of longitudes: as lines of longitudes are, without lines across the map where the projection tears them. */
+static void coast_is_not_drawn_across_a_seam(void** state)
+{
+  (void)state;
+  const int width = 640, height = 400, size = width * height;
+  double first = 30.0;
+  stratus_annotation a = stratus_annotation_default();
+  const double bounds[6] = { first, first + 360.0, -80.0, 80.0, 0.0, 10.0 };
+  memcpy(a.bounds, bounds, sizeof bounds);
+  a.coast = 1;
+  a.axis[0].kind = STRATUS_AXIS_LONGITUDE;
+  a.axis[1].kind = STRATUS_AXIS_LATITUDE;
+  const stratus_camera camera = fitted(&a, width, height, -90.0, 89.0, true);
+  float* const plain = draw(&a, &camera, width, height, NULL, 0, NULL);
+  a.coast_place = place_turned;
+  a.coast_data = &first;
+  a.axis[0].kind = a.axis[1].kind = STRATUS_AXIS_NUMBER; /* which are not used */
+  float* const turned = draw(&a, &camera, width, height, NULL, 0, NULL);
+  size_t missing = 0, added = 0, inked = 0;
+  for (int i = 0; i < size; ++i) {
+    bool near_plain = false, near_turned = false;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const int at = i + dy * width + dx;
+        near_plain = near_plain || (at >= 0 && at < size && plain[4 * at + 3] > 0.0f);
+        near_turned = near_turned || (at >= 0 && at < size && turned[4 * at + 3] > 0.0f);
+      }
+    }
+    missing += plain[4 * i + 3] > 0.0f && !near_turned ? 1 : 0;
+    added += turned[4 * i + 3] > 0.0f && !near_plain ? 1 : 0;
+    inked += plain[4 * i + 3] > 0.0f ? 1 : 0;
+  }
+  assert_int_equal(added, 0);
+  assert_true(missing < 20); /* the torn pieces, of at most half a degree: a pixel has .7 degrees */
+  assert_true(inked > 3000);
+  free(plain);
+  free(turned);
+}
+
 int test_coast(void)
 {
   const struct CMUnitTest tests[] = {
@@ -505,6 +603,8 @@ int test_coast(void)
     cmocka_unit_test(coast_is_as_long_from_every_meridian),
     cmocka_unit_test(coast_is_drawn_where_the_camera_has_it),
     cmocka_unit_test(coast_is_on_the_side_of_the_globe_that_faces_the_eye),
+    cmocka_unit_test(coast_on_a_plane_is_where_the_projection_has_it),
+    cmocka_unit_test(coast_is_not_drawn_across_a_seam),
   };
   return cmocka_run_group_tests(tests, make, destroy);
 }
