@@ -38,6 +38,7 @@
 #include "stratus/color_map.h"
 #include "stratus/look.h"
 #include "stratus/annotation.h"
+#include "stratus/globe.h"
 #include "stratus/scenes.h"
 
 #endif

@@ -398,6 +398,50 @@ static void annotations(const small_scene* scene)
   REFUSES(stratus_annotation_draw(context, &annotation, &camera, &image, NULL, 1, NULL));
 }
 
+static void globes(const small_scene* scene)
+{
+  const double degrees[8] = { 0, 0, 1, 0, 0, 1, 1, 1 }, heights[4] = { 0 };
+  const stratus_globe earth = stratus_globe_default();
+  double points[12];
+  stratus_globe_lattice lattice;
+  stratus_globe_points from = { .count = 4, .levels = 1, .degrees = degrees, .heights = heights, .height_stride = 1, .factor = 1 };
+  stratus_camera camera = scene->camera;
+  float rgba[4] = { 0 }, depth = 0, light = 0;
+  stratus_image image = { .width = 1, .height = 1, .rgba = rgba };
+  int64_t first, stride;
+  char text[8];
+  IS_SILENT(stratus_globe_find_lattice(NULL, 2, 2, degrees, &lattice));
+  REFUSES(stratus_globe_find_lattice(context, 2, 2, NULL, &lattice));
+  REFUSES(stratus_globe_find_lattice(context, 2, 2, degrees, NULL));
+  assert_int_equal(stratus_globe_find_lattice(context, 2, 2, degrees, &lattice), STRATUS_OK);
+  GIVES(0, stratus_globe_columns(NULL));
+  GIVES(0, stratus_globe_rows(NULL));
+  GIVES(0, stratus_globe_source(NULL, 0, 0, &first, &stride));
+  GIVES(0, stratus_globe_source(&lattice, 0, 0, NULL, &stride));
+  GIVES(0, stratus_globe_source(&lattice, 0, 0, &first, NULL));
+  TAKES(stratus_globe_describe(NULL, text, sizeof text));
+  TAKES(stratus_globe_describe(&lattice, NULL, 8));
+  TAKES(stratus_globe_height_factor(0, 1)); /* which has no pointer */
+  IS_SILENT(stratus_globe_place(NULL, &from, points));
+  REFUSES(stratus_globe_place(context, NULL, points));
+  REFUSES(stratus_globe_place(context, &from, NULL));
+  from.degrees = NULL;
+  REFUSES(stratus_globe_place(context, &from, points));
+  from.degrees = degrees;
+  from.heights = NULL;
+  REFUSES(stratus_globe_place(context, &from, points));
+  IS_SILENT(stratus_globe_end_rays(NULL, &earth, 1, 1, &camera, &depth, &light));
+  REFUSES(stratus_globe_end_rays(context, NULL, 1, 1, &camera, &depth, &light));
+  REFUSES(stratus_globe_end_rays(context, &earth, 1, 1, NULL, &depth, &light));
+  REFUSES(stratus_globe_end_rays(context, &earth, 1, 1, &camera, NULL, &light));
+  REFUSES(stratus_globe_end_rays(context, &earth, 1, 1, &camera, &depth, NULL));
+  IS_SILENT(stratus_globe_draw(NULL, &earth, &camera, &light, &image));
+  REFUSES(stratus_globe_draw(context, NULL, &camera, &light, &image));
+  REFUSES(stratus_globe_draw(context, &earth, NULL, &light, &image));
+  REFUSES(stratus_globe_draw(context, &earth, &camera, NULL, &image));
+  REFUSES(stratus_globe_draw(context, &earth, &camera, &light, NULL));
+}
+
 static void color_maps(void)
 {
   static double points[4 * STRATUS_COLOR_MAP_COLORS];
@@ -726,6 +770,7 @@ static void no_public_function_falls_over_null(void** state)
   clouds();
   color_maps();
   annotations(&scene);
+  globes(&scene);
   looks(&scene);
   path_tracers(&scene);
   frustums(&scene);

@@ -7,6 +7,7 @@
 #include "text.h"
 
 #include "stratus/annotation.h"
+#include "stratus/globe.h"
 
 #include <stdio.h>
 
@@ -403,6 +404,25 @@ static void wrong_annotations_are_refused(void** state)
   refused(stratus_camera_in_room(context, &camera, 64, 64, none, &flat), "a room of 5..5 x 0..9 pixels");
 }
 
+static void wrong_globes_are_refused(void** state)
+{
+  (void)state;
+  float depth[4], light[4] = { 0 }, rgba[16] = { 0 };
+  stratus_camera camera = { .eye = { 9.0, 0.0, 0.0 }, .forward = { -1.0, 0.0, 0.0 }, .right = { 0.0, 1.0, 0.0 }, .up = { 0.0, 0.0, 1.0 } };
+  stratus_image image = { .width = 2, .height = 2, .rgba = rgba };
+  stratus_globe globe = stratus_globe_default();
+  refused(stratus_globe_end_rays(context, &globe, 0, 2, &camera, depth, light), "0x2 pixels, each side must be 1..65536");
+  globe.ink = 2.0;
+  globe.coast = 1;
+  refused(stratus_globe_draw(context, &globe, &camera, light, &image), "ink 2, must be 0..1");
+  globe.innermost = 0.0;
+  refused(stratus_globe_end_rays(context, &globe, 2, 2, &camera, depth, light), "points at 0 from its middle, must be above 0");
+  refused(stratus_globe_draw(context, &globe, &camera, light, &image), "points at 0 from its middle, must be above 0");
+  globe = stratus_globe_default();
+  camera.forward[0] = 0.0;
+  refused(stratus_globe_end_rays(context, &globe, 2, 2, &camera, depth, light), "a forward vector of length 0");
+}
+
 static void every_allocation_may_fail(void** state)
 {
   (void)state;
@@ -451,6 +471,7 @@ int test_annotation(void)
     cmocka_unit_test(pictures_without_room_leave_text_out),
     cmocka_unit_test(camera_of_the_whole_picture_sees_the_part_as_before),
     cmocka_unit_test(wrong_annotations_are_refused),
+    cmocka_unit_test(wrong_globes_are_refused),
     cmocka_unit_test(every_allocation_may_fail),
   };
   return cmocka_run_group_tests(tests, make, destroy);
@@ -496,6 +517,58 @@ static void coast_is_on_the_side_of_the_globe_that_faces_the_eye(void** state)
     free(found.list);
     free(rgba);
   }
+}
+
+/* The Earth's disk is as large as the camera has it, and it is behind the picture. Its depths are on the sphere. */
+static void earth_is_a_sphere_behind_the_picture(void** state)
+{
+  (void)state;
+  enum { SIZE = 200 };
+  const double innermost = 6400000.0, radius = 0.9997 * innermost;
+  float* const depth = calloc(SIZE * SIZE, sizeof(float));
+  float* const light = calloc(SIZE * SIZE, sizeof(float));
+  float* const rgba = calloc(4 * SIZE * SIZE, sizeof(float));
+  for (int parallel = 0; parallel < 2; ++parallel) {
+    const double eye[3] = { 3.0 * radius, 0.0, 0.0 }, focal[3] = { 0.0, 0.0, 0.0 }, up[3] = { 0.0, 0.0, 1.0 };
+    stratus_camera camera;
+    assert_int_equal(parallel ? stratus_camera_parallel(context, eye, focal, up, 1.5 * radius, 1.0, &camera)
+                              : stratus_camera_perspective(context, eye, focal, up, 60.0, 1.0, &camera),
+      STRATUS_OK);
+    stratus_globe globe = stratus_globe_default();
+    globe.innermost = innermost;
+    assert_int_equal(stratus_globe_end_rays(context, &globe, SIZE, SIZE, &camera, depth, light), STRATUS_OK);
+    const double across = 0.5 * SIZE * (parallel ? 1.0 / 1.5 : tan(asin(1.0 / 3.0)) / tan(30.0 * RADIANS));
+    for (int i = 0; i < SIZE * SIZE; ++i) {
+      const double u = (2.0 * (i % SIZE) + 1.0) / SIZE - 1.0, v = (2.0 * (double)(i / SIZE) + 1.0) / SIZE - 1.0,
+                   away = 0.5 * SIZE * hypot(u, v);
+      assert_true(fabs(away - across) < 1e-6 || (light[i] > 0.0f) == (away < across));
+      assert_true((depth[i] < 1.0f) == (light[i] > 0.0f));
+      rgba[4 * i] = rgba[4 * i + 3] = i % 2 ? 0.5f : 0.0f;
+      rgba[4 * i + 1] = rgba[4 * i + 2] = 0.0f;
+      if (light[i] > 0.0f) {
+        const double range = camera.far_k - camera.near_k,
+                     k = parallel ? camera.near_k + (double)depth[i] * range
+                                  : camera.near_k / (1.0 - (double)depth[i] * range / camera.far_k);
+        double square = 0.0;
+        for (int a = 0; a < 3; ++a) {
+          const double aside = u * camera.right[a] + v * camera.up[a],
+                       x = camera.eye[a] + k * camera.forward[a] + (parallel ? 1.0 : k) * aside;
+          square += x * x;
+        }
+        assert_true(fabs(sqrt(square) / radius - 1.0) < 2e-3); /* 24 bits of depth, from a thousandth of the range on */
+      }
+    }
+    const stratus_image image = { .width = SIZE, .height = SIZE, .rgba = rgba };
+    assert_int_equal(stratus_globe_draw(context, &globe, &camera, light, &image), STRATUS_OK);
+    for (int i = 0; i < SIZE * SIZE; ++i) {
+      const float own = i % 2 ? 0.5f : 0.0f, shown = 0.36f * (0.3f + 0.7f * light[i]);
+      assert_true(
+        light[i] > 0.0f ? rgba[4 * i + 3] == 1.0f && fabsf(rgba[4 * i + 2] - (1.0f - own) * shown) < 1e-6f : rgba[4 * i + 3] == own);
+    }
+  }
+  free(depth);
+  free(light);
+  free(rgba);
 }
 
 /* The stereographic projection of a sphere from the south pole, north of 20 degrees. Rotated by the double that data points to. */
@@ -603,6 +676,7 @@ int test_coast(void)
     cmocka_unit_test(coast_is_as_long_from_every_meridian),
     cmocka_unit_test(coast_is_drawn_where_the_camera_has_it),
     cmocka_unit_test(coast_is_on_the_side_of_the_globe_that_faces_the_eye),
+    cmocka_unit_test(earth_is_a_sphere_behind_the_picture),
     cmocka_unit_test(coast_on_a_plane_is_where_the_projection_has_it),
     cmocka_unit_test(coast_is_not_drawn_across_a_seam),
   };
