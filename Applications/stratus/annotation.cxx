@@ -14,6 +14,17 @@ struct annotation::lent {
   stratus_annotation view = stratus_annotation_default();
   std::array<std::vector<double>, 3> levels;
   std::string title, caption;
+  const data_about* about = nullptr;
+  double scale[2] = { 1.0, 1.0 };
+
+  static int place(void* data, const double degrees[2], double at[2])
+  {
+    const lent* const all = static_cast<const lent*>(data);
+    const bool found = all->about->place(degrees, at);
+    at[0] *= all->scale[0];
+    at[1] *= all->scale[1];
+    return found ? 1 : 0;
+  }
 };
 
 annotation::annotation(const options& o) : Options(o), Caption(o.caption + (o.caption.empty() || o.heights.empty() ? "" : ", ") + o.heights)
@@ -26,6 +37,12 @@ void annotation::lend(const scene_frame& frame, const transfer& look, lent& to) 
   stratus_annotation& view = to.view;
   view.axes = o.axes ? 1 : 0;
   view.coast = o.coast && !o.globe ? 1 : 0; // on a globe they are part of the Earth
+  if (o.about.place) {
+    to.about = &o.about;
+    std::copy_n(frame.scale, 2, to.scale);
+    view.coast_place = lent::place;
+    view.coast_data = &to;
+  }
   std::copy_n(frame.bounds, 6, view.bounds);
   for (size_t axis = 0; axis < 3; ++axis) {
     const axis_about& about = o.about.axes[axis];

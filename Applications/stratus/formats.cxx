@@ -401,6 +401,22 @@ void place_on_globe(vtkAlgorithm* reader, double factor)
   throw usage("--globe: only a netCDF file has longitudes and latitudes");
 }
 
+std::function<bool(const double degrees[2], double at[2])> place_on_plane(vtkAlgorithm* reader, std::string& why_not)
+{
+#ifdef STRATUS_NETCDF
+  if (vtkStratusNetCDFReader* const plane = vtkStratusNetCDFReader::SafeDownCast(reader)) {
+    why_not = plane->GetReasonWithoutPlaces();
+    if (plane->HasPlaces()) {
+      const vtkSmartPointer<vtkStratusNetCDFReader> kept = plane;
+      return [kept](const double degrees[2], double at[2]) { return kept->FindPlace(degrees[0], degrees[1], at); };
+    }
+  }
+#endif
+  (void)reader;
+  (void)why_not;
+  return nullptr;
+}
+
 double height_factor_of(vtkAlgorithm* reader)
 {
 #ifdef STRATUS_NETCDF

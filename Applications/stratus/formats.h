@@ -7,6 +7,7 @@
 #include <vtkAlgorithm.h>
 #include <vtkSmartPointer.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,9 @@ void select_indices(vtkAlgorithm* reader, const std::string& select);
 // Places a reader's longitudes and latitudes on a sphere, with heights times `factor`, or 0: automatic. Throws usage for a file that is not
 // netCDF.
 void place_on_globe(vtkAlgorithm* reader, double factor);
+// How a reader's grid on the plane of a projection places longitudes and latitudes, in degrees: x and y, or false. Empty for other grids;
+// `why_not` is the reason, "" for grids without a projection.
+std::function<bool(const double degrees[2], double at[2])> place_on_plane(vtkAlgorithm* reader, std::string& why_not);
 double height_factor_of(vtkAlgorithm* reader); // that was used on a sphere; 0: there is none
 
 // The parts of a step of a .pvd: all files of one time.

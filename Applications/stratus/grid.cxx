@@ -146,13 +146,13 @@ void grid_drawing::draw(const stratus_image& image)
   stratus_image to = image;
   std::unique_ptr<cli::globe> earth;
   if (this->Options.globe) {
-    earth = std::make_unique<cli::globe>(this->Mesh.view());
-    earth->end_rays(camera, to);
+    const cli::background behind = cli::parse_background(this->Options.background);
+    earth = std::make_unique<cli::globe>(this->Mesh.view(), this->Options.coast, behind.transparent ? 0.5 : 0.85);
+    earth->end_rays(this->Core, camera, to);
   }
   this->Core.check(stratus_tetra_caster_render(this->Caster, &this->Mesh.view(), &view, &camera, &how, &to, &this->Report), "render");
   if (earth) {
-    const cli::background behind = cli::parse_background(this->Options.background);
-    earth->draw(this->Core, camera, this->Options.coast, behind.transparent ? 0.5 : 0.85, image);
+    earth->draw(this->Core, camera, image);
   }
 }
 

@@ -20,7 +20,7 @@ static void set_globe(options& o, double factor, vtkDataSet* grid)
     middle[axis] = 0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]);
   }
   const double across = std::hypot(middle[0], middle[1]), from_middle = std::hypot(across, middle[2]);
-  if (from_middle > 0.3 * (bounds[1] - bounds[0] + bounds[3] - bounds[2] + bounds[5] - bounds[4]) / 3.0) {
+  if (from_middle > 0.1 * (bounds[1] - bounds[0] + bounds[3] - bounds[2] + bounds[5] - bounds[4]) / 3.0) {
     const double degree = std::acos(-1.0) / 180.0;
     o.azimuth = o.has_azimuth ? o.azimuth : std::atan2(middle[1], middle[0]) / degree;
     o.elevation = o.has_elevation ? o.elevation : std::max(-75.0, std::min(75.0, std::atan2(middle[2], across) / degree));

@@ -89,11 +89,12 @@ Data and appearance
   --unit-distance D       world length to which alpha applies (default: a voxel's edge)
   --exaggerate F          multiply heights (along the upward axis) by F (default 1; of a flat netCDF file on the Earth as much as makes its
                           height a fifth of its width, which the picture says)
-  --globe                 show longitudes and latitudes of a netCDF file on a sphere of 6371 km, with heights times F of --exaggerate
-                          (default: as much as makes them reach over a tenth of its radius)
+  --globe                 show longitudes and latitudes of a netCDF file, its own or by its map projection, on a sphere of 6371 km, with
+                          heights times F of --exaggerate (default: as much as makes them reach over a tenth of its radius)
   --log                   map colours, and a guessed opacity, to the logarithm of the value, over at most four decades
   --axes                  draw a box around the data, with the file's coordinates: degrees, m or km, depths, pressures
-  --coast                 draw coastlines at the bottom of data with longitudes and latitudes, of depths at the top, or on the globe
+  --coast                 draw coastlines at the bottom of data with longitudes and latitudes or a map projection, of depths at the top,
+                          or on the globe
   --color-bar             draw the colours of values, with the variable's name and unit
   --caption TEXT          draw a line of text at the top; {time} is the step's time
   --nearest               nearest instead of linear interpolation

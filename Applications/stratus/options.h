@@ -6,6 +6,7 @@
 #include "stratus.h"
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct data_about {
   bool earth = false; // a netCDF file whose coordinates are lengths or degrees
   std::string name, standard_name, units = {};
   std::array<axis_about, 3> axes = {};
+  // x and y of a longitude and latitude in degrees, of a grid on the plane of a projection; empty: none, and why not
+  std::function<bool(const double degrees[2], double at[2])> place = {};
+  std::string why_no_place = {};
 };
 
 struct options {

@@ -43,8 +43,11 @@ std::string set_by_data(
     water->set_function(o, grid);
   }
   cli::set_heights(o, in, grid);
-  if (o.coast && !o.globe && (o.about.axes[0].kind != STRATUS_AXIS_LONGITUDE || o.about.axes[1].kind != STRATUS_AXIS_LATITUDE)) {
-    throw cli::usage("--coast: '" + o.source + "' has no longitudes and latitudes along x and y, as netCDF files may have");
+  const bool is_map = o.about.axes[0].kind == STRATUS_AXIS_LONGITUDE && o.about.axes[1].kind == STRATUS_AXIS_LATITUDE;
+  if (o.coast && !o.globe && !is_map && !o.about.place) {
+    throw cli::usage("--coast: '" + o.source +
+      "' has no longitudes and latitudes along x and y, and no grid mapping, as netCDF files may have" +
+      (o.about.why_no_place.empty() ? "" : "; " + o.about.why_no_place));
   }
   return cli::set_sun(o, given, in, grid, step);
 }

@@ -325,6 +325,9 @@ data_about series::about() const
     result.earth = result.earth && this->axis_units(axis) == "m";
     result.axes[static_cast<size_t>(axis)] = this->Reader ? axis_about_of(this->Reader, axis) : axis_about();
   }
+  if (this->Reader) {
+    result.place = place_on_plane(this->Reader, result.why_no_place);
+  }
   for (const variable_name& one : this->names()) {
     if (result.name.empty() && (this->Variable.empty() || one.name == this->Variable)) {
       result.name = one.name;

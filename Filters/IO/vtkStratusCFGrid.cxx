@@ -43,9 +43,9 @@ bool vtkStratusCFGrid::IsVolume(const vtkStratusNetCDFFile& file, const Variable
   return variable.Type != NC_CHAR && variable.Type < NC_STRING && vtkStratusNetCDFLayout(file, variable, [](int) { return -1; }).IsVolume();
 }
 
-vtkStratusCFGrid::vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable)
-    : File(file), Of(variable), Layout(file, variable, [this](int dimension) { return this->AxisOfDimension(dimension); }),
-      Dimensions(Layout.GetAxes())
+vtkStratusCFGrid::vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable, bool on_earth)
+    : File(file), Of(variable), OnEarth(on_earth), Mapping(vtkStratusProjection::FindMapping(file, variable)),
+      Layout(file, variable, [this](int dimension) { return this->AxisOfDimension(dimension); }), Dimensions(Layout.GetAxes())
 {
   if (!this->Layout.IsVolume()) {
     file.Fail("variable '" + variable.Name + "' has " + std::to_string(this->Layout.GetCount()) +
@@ -71,10 +71,12 @@ int vtkStratusCFGrid::AxisOf(const Variable& coordinate) const
   if (axis == "x" || axis == "y" || axis == "z") {
     return axis[0] - 'x';
   }
-  if (IsOneOf(name, { "longitude", "projection_x_coordinate", "grid_longitude" }) || vtkStratusIsEast(units)) {
+  if (IsOneOf(name, { "longitude", "projection_x_coordinate", "projection_x_angular_coordinate", "grid_longitude" }) ||
+    vtkStratusIsEast(units)) {
     return 0;
   }
-  if (IsOneOf(name, { "latitude", "projection_y_coordinate", "grid_latitude" }) || vtkStratusIsNorth(units)) {
+  if (IsOneOf(name, { "latitude", "projection_y_coordinate", "projection_y_angular_coordinate", "grid_latitude" }) ||
+    vtkStratusIsNorth(units)) {
     return 1;
   }
   const bool vertical = IsOneOf(name, { "altitude", "height", "depth", "air_pressure", "height_above_reference_ellipsoid" }) ||
@@ -96,13 +98,30 @@ bool vtkStratusCFGrid::Has(const Variable& variable, int axis) const
   return std::find(variable.Dimensions.begin(), variable.Dimensions.end(), this->GetDimension(axis)) != variable.Dimensions.end();
 }
 
-// A longitude or latitude that has no unit is in degrees.
+// A longitude or latitude that has no unit is in degrees. An angle of an instrument is a length on the plane that it sees, or a number.
 vtkStratusUnit vtkStratusCFGrid::UnitOf(const Variable& coordinate) const
 {
   vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(coordinate, "units"));
-  const bool angle = IsOneOf(this->File.Text(coordinate, "standard_name"), { "longitude", "latitude", "grid_longitude", "grid_latitude" });
+  const std::string name = this->File.Text(coordinate, "standard_name");
+  const bool angle = IsOneOf(name, { "longitude", "latitude", "grid_longitude", "grid_latitude" });
   unit.Quantity = angle && unit.Quantity == vtkStratusQuantity::None ? vtkStratusQuantity::Angle : unit.Quantity;
+  if (unit.IsAngle() && name.compare(0, 11, "projection_") == 0) {
+    const double metres = this->Mapping ? vtkStratusProjection::MetresPerRadian(this->File, *this->Mapping) : 0.0;
+    unit.Quantity = metres > 0.0 ? vtkStratusQuantity::Length : vtkStratusQuantity::None;
+    unit.Scale = metres > 0.0 ? unit.Scale * std::acos(-1.0) / 180.0 * metres : 1.0;
+  }
   return unit;
+}
+
+// Whether a coordinate is a longitude or latitude of the Earth, instead of one about another pole or on a plane.
+bool vtkStratusCFGrid::IsOfEarth(const Variable& coordinate) const
+{
+  return this->UnitOf(coordinate).IsAngle() && this->File.Text(coordinate, "standard_name").compare(0, 5, "grid_") != 0;
+}
+
+bool vtkStratusCFGrid::IsOfPlane(const Variable& coordinate) const
+{
+  return this->UnitOf(coordinate).IsLength() || (this->UnitOf(coordinate).IsAngle() && !this->IsOfEarth(coordinate));
 }
 
 void vtkStratusCFGrid::FindCoordinates()
@@ -128,15 +147,82 @@ void vtkStratusCFGrid::FindCoordinates()
   for (int a = 0; a < 3; ++a) {
     this->ReadAxis(a);
   }
+  if (this->OnEarth && !this->Horizontal[0]) {
+    this->FindPlaces();
+  }
 }
 
-// Two-dimensional coordinates are used if one-dimensional ones are missing or plain numbers. WRF's are also known by their names.
+// The projection of x and y, null if they are no coordinates of a plane that the file describes.
+std::shared_ptr<vtkStratusProjection> vtkStratusCFGrid::MakeProjection() const
+{
+  const bool on_plane = this->Mapping && !this->Horizontal[0] && this->Along[0] && this->Along[1] && this->IsOfPlane(*this->Along[0]) &&
+    this->IsOfPlane(*this->Along[1]);
+  if (!on_plane) {
+    return nullptr;
+  }
+  const bool is_angle = this->UnitOf(*this->Along[0]).IsAngle();
+  const double metres = vtkStratusUnitOf(this->File.Text(*this->Along[0], "units")).Scale;
+  auto projection = std::make_shared<vtkStratusProjection>(this->File, *this->Mapping, is_angle ? 1.0 : metres);
+  if (projection->IsRotated() != is_angle || is_angle != this->UnitOf(*this->Along[1]).IsAngle()) {
+    this->File.Fail("'" + this->Along[0]->Name + "' and '" + this->Along[1]->Name + "' are in '" +
+      this->File.Text(*this->Along[0], "units") + "' and '" + this->File.Text(*this->Along[1], "units") + "', the grid mapping " +
+      projection->Describe() + " needs " + (projection->IsRotated() ? "degrees" : "lengths"));
+  }
+  return projection;
+}
+
+// Finds longitudes and latitudes of all columns and rows by the projection. Those of places off the Earth are NaN.
+void vtkStratusCFGrid::FindPlaces()
+{
+  const std::shared_ptr<vtkStratusProjection> projection = this->MakeProjection();
+  if (!projection) {
+    return;
+  }
+  const size_t columns = this->GetLength(0), rows = this->GetLength(1);
+  for (std::vector<double>& each : this->Places) {
+    each.resize(columns * rows, std::nan(""));
+  }
+  for (size_t j = 0; j < rows; ++j) {
+    for (size_t i = 0; i < columns; ++i) {
+      const double at[2] = { this->Axes[0][i], this->Axes[1][j] };
+      double degrees[2];
+      if (projection->ToEarth(at, degrees)) {
+        this->Places[0][j * columns + i] = degrees[0];
+        this->Places[1][j * columns + i] = degrees[1];
+      }
+    }
+  }
+  this->Description += "longitudes and latitudes by the grid mapping " + projection->Describe() + "; ";
+}
+
+vtkStratusCFGrid::Place vtkStratusCFGrid::GetPlaceOnPlane() const
+{
+  const std::shared_ptr<vtkStratusProjection> projection = this->MakeProjection();
+  if (!projection) {
+    return nullptr;
+  }
+  const std::array<double, 2> factors = this->Factors;
+  const double middle = 0.5 * (this->Axes[0].front() + this->Axes[0].back()) / factors[0];
+  return [projection, factors, middle](const double degrees[2], double at[2]) {
+    const bool found = projection->ToPlane(degrees, at);
+    if (projection->IsRotated()) { // in the turn of the file's longitudes
+      at[0] -= 360.0 * std::round((at[0] - middle) / 360.0);
+    }
+    at[0] *= factors[0];
+    at[1] *= factors[1];
+    return found;
+  };
+}
+
+// Two-dimensional coordinates are used if one-dimensional ones are missing or plain numbers, or not of the Earth, which is wanted. WRF's
+// are also known by their names.
 void vtkStratusCFGrid::FindHorizontal(const std::vector<const Variable*>& others)
 {
   const auto is_number = [this](const Variable* one) {
     return !one || (this->File.Text(*one, "units").empty() && this->File.Text(*one, "standard_name").empty());
   };
-  if (!is_number(this->Along[0]) && !is_number(this->Along[1])) {
+  const bool of_earth = this->Along[0] && this->Along[1] && this->IsOfEarth(*this->Along[0]) && this->IsOfEarth(*this->Along[1]);
+  if (!is_number(this->Along[0]) && !is_number(this->Along[1]) && (of_earth || !this->OnEarth)) {
     return;
   }
   std::vector<const Variable*> candidates = others;
@@ -149,7 +235,8 @@ void vtkStratusCFGrid::FindHorizontal(const std::vector<const Variable*>& others
   std::array<const Variable*, 2> found = { { nullptr, nullptr } };
   for (const Variable* one : candidates) {
     const int given = this->AxisOf(*one), axis = given < 0 ? AxisOfName(one->BaseName()) : given;
-    if (this->Has(*one, 0) && this->Has(*one, 1) && (axis == 0 || axis == 1) && !found[static_cast<size_t>(axis)]) {
+    if (this->Has(*one, 0) && this->Has(*one, 1) && (axis == 0 || axis == 1) && !found[static_cast<size_t>(axis)] &&
+      (this->IsOfEarth(*one) || !this->OnEarth)) {
       found[static_cast<size_t>(axis)] = one;
     }
   }
@@ -217,7 +304,7 @@ void vtkStratusCFGrid::ReadAxis(int axis)
 
 double vtkStratusCFGrid::MiddleLatitude() const
 {
-  std::vector<double> latitudes = this->Axes[1];
+  std::vector<double> latitudes = this->Places[1].empty() ? this->Axes[1] : this->Places[1];
   if (this->Horizontal[1]) {
     const vtkStratusUnit unit = this->UnitOf(*this->Horizontal[1]);
     const vtkSmartPointer<vtkDataArray> all = this->File.Read(*this->Horizontal[1]);
@@ -232,7 +319,8 @@ double vtkStratusCFGrid::MiddleLatitude() const
     high = std::isfinite(latitude) ? std::max(high, latitude) : high;
   }
   if (low > high) {
-    this->File.Fail("coordinate '" + this->Horizontal[1]->Name + "' has no value that is finite");
+    this->File.Fail(this->Horizontal[1] ? "coordinate '" + this->Horizontal[1]->Name + "' has no value that is finite"
+                                        : "no point of '" + this->Of.Name + "' is on the Earth by its projection");
   }
   return 0.5 * (low + high);
 }
@@ -244,6 +332,7 @@ void vtkStratusCFGrid::ConvertUnits()
   for (size_t a = 0; a < 2; ++a) {
     from[a] = this->Horizontal[a] ? this->Horizontal[a] : this->Spacing[a] > 0.0 ? nullptr : this->Along[a];
     units[a] = from[a] ? this->UnitOf(*from[a]) : vtkStratusUnitOf(this->Spacing[a] > 0.0 ? "m" : "");
+    units[a] = this->Places[a].empty() ? units[a] : vtkStratusUnitOf("degree");
   }
   const bool degrees = units[0].IsAngle() && units[1].IsAngle();
   this->Flat = degrees || (units[0].IsLength() && units[1].IsLength());
@@ -251,7 +340,7 @@ void vtkStratusCFGrid::ConvertUnits()
   if (degrees) {
     const double degree = std::acos(-1.0) / 180.0, middle = this->MiddleLatitude();
     this->Factors = { { vtkStratusSphere::EarthRadius * degree * std::cos(middle * degree), vtkStratusSphere::EarthRadius * degree } };
-    this->Description += "degrees as metres at latitude " + vtkStratusNumberText(middle) + "; ";
+    this->Description += this->OnEarth ? "" : "degrees as metres at latitude " + vtkStratusNumberText(middle) + "; ";
   }
   for (size_t a = 0; a < 2; ++a) {
     const std::string text = from[a] ? this->File.Text(*from[a], "units") : "";
@@ -279,7 +368,7 @@ void vtkStratusCFGrid::DescribeHorizontal(const std::array<const Variable*, 2>& 
 {
   for (size_t a = 0; a < 2; ++a) {
     vtkStratusFileAxis& axis = this->FileAxes[a];
-    const bool turned = from[a] && this->File.Text(*from[a], "standard_name").compare(0, 5, "grid_") == 0; // about another pole
+    const bool turned = this->Places[a].empty() && from[a] && !this->IsOfEarth(*from[a]); // about another pole
     axis.Title = this->TitleOr(from[a], degrees ? (a == 0 ? "longitude" : "latitude") : this->Names[a]);
     if (degrees) {
       axis.Kind = turned ? vtkStratusVariableReader::AXIS_OF_NUMBERS
@@ -407,9 +496,17 @@ vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::ReadValues(size_t step) const
   return sorted;
 }
 
-// Reads x or y of two or more dimensions in metres. Longitudes are made continuous. Values that are missing are NaN.
+// Reads x or y of two or more dimensions in degrees or metres. Longitudes are made continuous. Values that are missing are NaN.
 std::vector<double> vtkStratusCFGrid::ReadHorizontal(int axis, size_t step, std::array<size_t, 3>& strides) const
 {
+  if (!this->Places[0].empty()) {
+    strides = { { 1, this->GetLength(0), 0 } };
+    std::vector<double> at = this->Places[static_cast<size_t>(axis)];
+    if (axis == 0) {
+      vtkStratusLongitudes::Unwrap(at, vtkStratusLongitudes::LatticeEdges({ { this->GetLength(0), this->GetLength(1), 1 } }, strides));
+    }
+    return at;
+  }
   const Variable& variable = *this->Horizontal[static_cast<size_t>(axis)];
   const vtkStratusUnit unit = this->UnitOf(variable);
   const vtkStratusCFField field = this->ReadField(variable, step);
@@ -464,9 +561,9 @@ vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::ReadPoints(
     const size_t a = static_cast<size_t>(axis);
     std::array<size_t, 3> strides = { { 0, 0, 0 } };
     std::vector<double> at;
-    if (axis < 2 && this->Horizontal[a]) {
+    if (axis < 2 && (this->Horizontal[a] || !this->Places[a].empty())) {
       at = this->ReadHorizontal(axis, step, strides);
-      if (axis == 0 && this->UnitOf(*this->Horizontal[0]).IsAngle()) {
+      if (axis == 0 && !this->OnEarth && this->UnitOf(*this->Horizontal[0]).IsAngle()) {
         this->HideTorn(at, strides, hidden_cells);
       }
       std::transform(at.begin(), at.end(), at.begin(), [this, a](double value) { return value * this->Factors[a]; });
@@ -490,23 +587,32 @@ vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::ReadPoints(
   return points;
 }
 
-std::array<std::vector<double>, 2> vtkStratusCFGrid::ReadPlaces(size_t step) const
+std::vector<double> vtkStratusCFGrid::ReadDegrees(size_t step) const
 {
-  std::array<std::vector<double>, 2> places;
+  const size_t columns = this->GetLength(0), rows = this->GetLength(1);
+  std::array<std::vector<double>, 2> at;
+  std::array<std::array<size_t, 3>, 2> strides = { { { { 1, 0, 0 } }, { { 0, 1, 0 } } } };
   for (size_t a = 0; a < 2; ++a) {
-    std::array<size_t, 3> strides = { { a == 0, a == 1, 0 } };
-    std::vector<double> at = this->Axes[a];
-    std::transform(at.begin(), at.end(), at.begin(), [this, a](double value) { return value / this->Factors[a]; });
-    if (this->Horizontal[a]) {
-      at = this->ReadHorizontal(static_cast<int>(a), step, strides);
+    if (this->Horizontal[a] || !this->Places[a].empty()) {
+      at[a] = this->ReadHorizontal(static_cast<int>(a), step, strides[a]);
+      continue;
     }
-    for (size_t j = 0; j < this->GetLength(1); ++j) {
-      for (size_t i = 0; i < this->GetLength(0); ++i) {
-        places[a].push_back(at[i * strides[0] + j * strides[1]]);
+    at[a] = this->Axes[a];
+    std::transform(at[a].begin(), at[a].end(), at[a].begin(), [this, a](double value) { return value / this->Factors[a]; });
+  }
+  const size_t levels = strides[0][2] > 0 || strides[1][2] > 0 ? this->GetLength(2) : 1;
+  std::vector<double> degrees;
+  degrees.reserve(2 * columns * rows * levels);
+  for (size_t k = 0; k < levels; ++k) {
+    for (size_t j = 0; j < rows; ++j) {
+      for (size_t i = 0; i < columns; ++i) {
+        for (size_t a = 0; a < 2; ++a) {
+          degrees.push_back(at[a][i * strides[a][0] + j * strides[a][1] + k * strides[a][2]]);
+        }
       }
     }
   }
-  return places;
+  return degrees;
 }
 
 // Marks points that have no place, and puts them where the last one is that has one.

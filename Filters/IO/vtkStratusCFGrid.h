@@ -6,10 +6,12 @@
 #include "vtkStratusCFVertical.h"
 #include "vtkStratusNetCDFFile.h"
 #include "vtkStratusNetCDFLayout.h"
+#include "vtkStratusProjection.h"
 #include "vtkStratusUnits.h"
 #include "vtkStratusVariableReader.h"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,15 +34,21 @@ public:
   // Returns whether the variable has three dimensions in space, longer than 1, and numbers.
   static bool IsVolume(const vtkStratusNetCDFFile& file, const Variable& variable);
 
-  vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable); // throws vtkStratusReadError
+  // on_earth: horizontal coordinates are longitudes and latitudes of the Earth, whatever plane the file's own are on: two-dimensional ones
+  // of the file, or those that its projection gives. A file that has neither is an error.
+  vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable, bool on_earth = false); // throws vtkStratusReadError
 
-  bool IsCurved() const { return this->Horizontal[0] || this->Vertical->IsCurved(); }
+  bool IsCurved() const { return this->Horizontal[0] || !this->Places[0].empty() || this->Vertical->IsCurved(); }
   bool IsUniform() const;
   std::string Describe() const { return this->Description; }
   bool IsInDegrees() const { return this->Degrees; } // longitudes and latitudes of the Earth, which became metres
-  std::array<double, 2> GetDegrees() const { return { { 1.0 / this->Factors[0], 1.0 / this->Factors[1] } }; } // in a metre of x and y
-  // Longitudes and latitudes of the columns and rows, x fastest, in degrees: of the lowest level where they differ between levels.
-  std::array<std::vector<double>, 2> ReadPlaces(size_t step) const;
+  // Finds x and y of a longitude and latitude in degrees on a grid that is on the plane of a projection. Returns false where it has no
+  // place.
+  using Place = std::function<bool(const double degrees[2], double at[2])>;
+  // The function of a grid whose x and y are projection coordinates, empty for another. Throws vtkStratusReadError as vtkStratusProjection.
+  Place GetPlaceOnPlane() const;
+  // Longitude and latitude of the columns and rows, x fastest, in degrees: of one level, or of all levels where they differ between levels.
+  std::vector<double> ReadDegrees(size_t step) const;
   bool IsInMetres() const { return this->Metres; }
   // The name of an axis of the points' coordinates and their unit, "" if it has none.
   const std::string& GetAxisName(int axis) const { return this->Names[static_cast<size_t>(axis)]; }
@@ -74,6 +82,10 @@ private:
   bool FindWrfSpacing(const Variable& x, const Variable& y);
   int AxisOfDimension(int dimension) const;
   vtkStratusUnit UnitOf(const Variable& coordinate) const;
+  bool IsOfEarth(const Variable& coordinate) const;
+  bool IsOfPlane(const Variable& coordinate) const;
+  std::shared_ptr<vtkStratusProjection> MakeProjection() const;
+  void FindPlaces();
   void ReadAxis(int axis);
   void ConvertUnits();
   void NameAxes(const std::array<const Variable*, 2>& from, const std::array<vtkStratusUnit, 2>& units, bool degrees);
@@ -88,12 +100,15 @@ private:
 
   const vtkStratusNetCDFFile& File;
   const Variable& Of;
+  const bool OnEarth;
+  const Variable* Mapping; // of the file's plane, nullptr: none
   vtkStratusNetCDFLayout Layout;
   std::array<int, 3> Dimensions;                                            // of x, y, z
   std::array<const Variable*, 3> Along = { { nullptr, nullptr, nullptr } }; // coordinates of one dimension
   std::array<std::vector<double>, 3> Axes;
   std::array<bool, 3> Flipped = { { false, false, false } };
   std::array<const Variable*, 2> Horizontal = { { nullptr, nullptr } }; // of two dimensions or more
+  std::array<std::vector<double>, 2> Places; // longitudes and latitudes by the projection, x fastest; empty: not used
   std::unique_ptr<vtkStratusCFVertical> Vertical;
   std::array<double, 2> Spacing = { { 0.0, 0.0 } }; // of points without coordinates, in metres; 0: unknown
   std::array<double, 2> Factors = { { 1.0, 1.0 } }; // of x and y in m or degrees, to metres

@@ -63,32 +63,26 @@ void Hide(vtkDataSetAttributes* data, const std::vector<char>& hidden, unsigned 
   data->AddArray(ghosts);
 }
 
-vtkStratusSphere::Lattice LatticeOf(const vtkStratusCFGrid& grid, size_t step)
+stratus_globe_lattice LatticeOf(const vtkStratusCFGrid& grid, const std::vector<double>& degrees)
 {
-  const std::array<std::vector<double>, 2> places = grid.ReadPlaces(step);
-  const size_t columns = grid.GetLength(0);
-  return vtkStratusSphere::FindLattice(columns, grid.GetLength(1), [&](size_t i, size_t j, double degrees[2]) {
-    degrees[0] = places[0][j * columns + i];
-    degrees[1] = places[1][j * columns + i];
-  });
+  return vtkStratusSphere::FindLattice(grid.GetLength(0), grid.GetLength(1), degrees);
 }
 
 // Builds the grid on the sphere. factor: of heights, 0: automatic. Returns the one that is used.
 double BuildSphere(const vtkStratusCFGrid& grid, size_t step, double factor, vtkStructuredGrid* output)
 {
-  const vtkStratusSphere::Lattice lattice = LatticeOf(grid, step);
+  const std::vector<double> degrees = grid.ReadDegrees(step);
+  const stratus_globe_lattice lattice = LatticeOf(grid, degrees);
   const size_t levels = grid.GetLength(2);
-  std::vector<char> hidden, torn; // torn: on a plane
-  vtkSmartPointer<vtkDataArray> at = grid.ReadPoints(step, hidden, torn);
-  at = vtkStratusSphere::Spread(lattice, levels, at);
+  std::vector<char> hidden, torn; // torn: none on the Earth
+  const vtkSmartPointer<vtkDoubleArray> flat = vtkDoubleArray::SafeDownCast(grid.ReadPoints(step, hidden, torn));
+  factor = factor > 0.0 ? factor : vtkStratusSphere::FactorOf(flat, hidden);
+  const vtkSmartPointer<vtkDoubleArray> places = vtkStratusSphere::Place(&lattice, levels, degrees, flat, factor);
   hidden = vtkStratusSphere::Spread(lattice, levels, hidden);
-  vtkDoubleArray* places = vtkDoubleArray::SafeDownCast(at);
-  vtkStratusSphere::PlacePoles(lattice, levels, grid.GetDegrees(), places);
-  factor = factor > 0.0 ? factor : vtkStratusSphere::FactorOf(places, hidden);
-  vtkStratusSphere::Place(places, lattice.Columns.size() * lattice.GetRows(), grid.GetDegrees(), factor);
   vtkNew<vtkPoints> points;
   points->SetData(places);
-  output->SetDimensions(static_cast<int>(lattice.Columns.size()), static_cast<int>(lattice.GetRows()), static_cast<int>(levels));
+  output->SetDimensions(
+    static_cast<int>(stratus_globe_columns(&lattice)), static_cast<int>(stratus_globe_rows(&lattice)), static_cast<int>(levels));
   output->SetPoints(points);
   Hide(output->GetPointData(), hidden, vtkDataSetAttributes::HIDDENPOINT);
   const vtkSmartPointer<vtkDataArray> values = vtkStratusSphere::Spread(lattice, levels, grid.ReadValues(step));
@@ -114,7 +108,7 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
     FailWithoutVolume(file);
   }
   const Variable& chosen = *file.Find(this->ChosenName());
-  const vtkStratusCFGrid grid(file, chosen);
+  const vtkStratusCFGrid grid(file, chosen, this->Coordinates == SPHERE);
   for (int a = 0; a < 3; ++a) {
     if (grid.GetLength(a) > static_cast<size_t>(INT_MAX)) {
       file.Fail("a dimension of " + std::to_string(grid.GetLength(a)) + " values is longer than VTK's grids, 2147483647");
@@ -131,12 +125,13 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
   }
   if (this->Coordinates == SPHERE) {
     if (!grid.IsInDegrees()) {
-      file.Fail("'" + this->ChosenName() + "' has no longitudes and latitudes of the Earth, so that it has no place on a sphere");
+      file.Fail("'" + this->ChosenName() +
+        "' has no longitudes and latitudes of the Earth, and no grid mapping that gives them, so that it has no place on a sphere");
     }
-    const vtkStratusSphere::Lattice lattice = LatticeOf(grid, 0);
-    this->WholeExtent[1] = static_cast<int>(lattice.Columns.size()) - 1;
-    this->WholeExtent[3] = static_cast<int>(lattice.GetRows()) - 1;
-    this->Description += "; on a sphere of 6371 km" + lattice.Description;
+    const stratus_globe_lattice lattice = LatticeOf(grid, grid.ReadDegrees(0));
+    this->WholeExtent[1] = static_cast<int>(stratus_globe_columns(&lattice)) - 1;
+    this->WholeExtent[3] = static_cast<int>(stratus_globe_rows(&lattice)) - 1;
+    this->Description += "; on a sphere of 6371 km" + vtkStratusSphere::Describe(lattice);
     this->SetAxesOnSphere();
     return "vtkStructuredGrid";
   }
@@ -144,6 +139,11 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
     vtkWarningMacro(
       << file.GetPath() << ": the levels of '" << this->ChosenName()
       << "' have no unit of length or pressure, and no formula that is known: heights are only numbers, while x and y are in metres");
+  }
+  try {
+    this->SetPlaceOnPlane(grid.GetPlaceOnPlane(), "");
+  } catch (const vtkStratusReadError& why) { // the grid itself needs no projection
+    this->SetPlaceOnPlane(nullptr, why.Text);
   }
   this->LengthUnits = grid.IsInMetres() ? "m" : "";
   for (int a = 0; a < 3; ++a) {
@@ -156,7 +156,7 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
 
 void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
 {
-  const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName()));
+  const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName()), this->Coordinates == SPHERE);
   if (this->Coordinates == SPHERE) {
     this->UsedHeightFactor = BuildSphere(grid, step, this->HeightFactor, vtkStructuredGrid::SafeDownCast(output));
     return;

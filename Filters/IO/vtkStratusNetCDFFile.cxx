@@ -303,18 +303,23 @@ bool vtkStratusNetCDFFile::Has(const Variable& variable, const char* attribute) 
   return nc_inq_att(variable.Group, variable.Id, attribute, nullptr, nullptr) == NC_NOERR;
 }
 
-bool vtkStratusNetCDFFile::Number(const Variable& variable, const char* attribute, double& value) const
+std::vector<double> vtkStratusNetCDFFile::NumbersOf(const Variable& variable, const char* attribute) const
 {
   nc_type type = NC_NAT;
   size_t length = 0;
-  if (nc_inq_att(variable.Group, variable.Id, attribute, &type, &length) != NC_NOERR || length < 1 || type == NC_CHAR ||
-    type == NC_STRING) {
-    return false;
+  if (nc_inq_att(variable.Group, variable.Id, attribute, &type, &length) != NC_NOERR || type == NC_CHAR || type >= NC_STRING) {
+    return {};
   }
   std::vector<double> values(length);
   this->Check(nc_get_att_double(variable.Group, variable.Id, attribute, values.data()), "attribute");
-  value = values[0];
-  return true;
+  return values;
+}
+
+bool vtkStratusNetCDFFile::Number(const Variable& variable, const char* attribute, double& value) const
+{
+  const std::vector<double> values = this->NumbersOf(variable, attribute);
+  value = values.empty() ? value : values[0];
+  return !values.empty();
 }
 
 vtkStratusNetCDFValues vtkStratusNetCDFFile::ValuesOf(const Variable& variable) const

@@ -67,6 +67,8 @@ public:
   // Returns the name of a coordinate in words: its long_name, unless that is a sentence, or its standard_name, or "".
   std::string Title(const Variable& variable) const;
   bool Has(const Variable& variable, const char* attribute) const;
+  // Returns the numbers of an attribute, none if there is none or it is text. Number: sets the first, returns whether there is one.
+  std::vector<double> NumbersOf(const Variable& variable, const char* attribute) const;
   bool Number(const Variable& variable, const char* attribute, double& value) const;
 
   // Reads a block of values; empty start and count: all. Missing values are NaN, the others are unpacked, by the rules at

@@ -95,9 +95,22 @@ vtkStratusNetCDFReader::~vtkStratusNetCDFReader()
   this->SetSelection(nullptr);
 }
 
+void vtkStratusNetCDFReader::SetPlaceOnPlane(const std::function<bool(const double[2], double[2])>& place, const std::string& why_not)
+{
+  this->PlaceOnPlane = place;
+  this->WhyNoPlaces = why_not;
+}
+
+bool vtkStratusNetCDFReader::FindPlace(double longitude, double latitude, double at[2]) const
+{
+  const double degrees[2] = { longitude, latitude };
+  return this->PlaceOnPlane && this->PlaceOnPlane(degrees, at);
+}
+
 std::string vtkStratusNetCDFReader::Inspect()
 {
   const vtkStratusNetCDFFile file(this->FileName, this->Selection ? this->Selection : "");
+  this->SetPlaceOnPlane(nullptr, "");
   return this->InspectFile(file);
 }
 

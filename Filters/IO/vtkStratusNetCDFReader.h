@@ -23,6 +23,8 @@
 
 #include "vtkStratusVariableReader.h"
 
+#include <functional>
+
 class vtkStratusNetCDFFile;
 struct vtkStratusNetCDFVariable;
 
@@ -54,7 +56,8 @@ public:
    * a sphere of 6,371 km about 0, whose x axis goes through longitude 0 on the equator, and whose z axis goes through the north pole;
    * heights, times HeightFactor, are added to the radius. Images and rectilinear grids become a vtkStructuredGrid then. Lattices that go
    * all the way round are closed by one more column, and rows around a pole by points at the pole; columns and rows that a file repeats are
-   * left out. A grid without longitudes and latitudes of the Earth is an error.
+   * left out. Grids on a map projection or about another pole have the longitudes and latitudes of two dimensions that the file has, or
+   * those of its grid mapping by PROJ. A grid without longitudes and latitudes of the Earth is an error.
    */
   vtkSetClampMacro(Coordinates, int, PLANE, SPHERE);
   vtkGetMacro(Coordinates, int);
@@ -75,6 +78,18 @@ public:
    */
   vtkGetMacro(UsedHeightFactor, double);
 
+  //@{
+  /**
+   * Find x and y of the output for a longitude and latitude in degrees, if its grid is on the plane of a map projection, or of longitudes
+   * and latitudes about another pole. HasPlaces() returns whether it is, after UpdateInformation(). Returns false where the projection has
+   * no such place. GetReasonWithoutPlaces() is why a grid with a grid mapping has no places, "" for one without: a mapping that is unknown
+   * or incomplete, or a build without PROJ.
+   */
+  bool HasPlaces() const { return static_cast<bool>(this->PlaceOnPlane); }
+  bool FindPlace(double longitude, double latitude, double at[2]) const;
+  const char* GetReasonWithoutPlaces() const { return this->WhyNoPlaces.c_str(); }
+  //@}
+
 protected:
   vtkStratusNetCDFReader() = default;
   ~vtkStratusNetCDFReader() override;
@@ -90,12 +105,21 @@ protected:
   std::string Inspect() override;
   void Build(size_t step, vtkDataObject* output) override;
 
+#ifndef __VTK_WRAP__
+  /// Sets how longitudes and latitudes become x and y of the output, none if it is null, and why not.
+  void SetPlaceOnPlane(const std::function<bool(const double[2], double[2])>& place, const std::string& why_not);
+#endif
+
   char* Selection = nullptr;
   int Coordinates = PLANE;
   double HeightFactor = 0.0, UsedHeightFactor = 0.0;
 
 private:
   std::vector<int> Ranks; // of Variables
+#ifndef __VTK_WRAP__
+  std::function<bool(const double[2], double[2])> PlaceOnPlane;
+#endif
+  std::string WhyNoPlaces;
 
   vtkStratusNetCDFReader(const vtkStratusNetCDFReader&) = delete;
   void operator=(const vtkStratusNetCDFReader&) = delete;

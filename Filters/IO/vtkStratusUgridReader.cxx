@@ -200,7 +200,12 @@ void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFFile& file, size_t s
   grid->SetPoints(MakePoints(mesh, z));
   if (vtkDoubleArray* places = this->Coordinates == SPHERE ? vtkDoubleArray::SafeDownCast(grid->GetPoints()->GetData()) : nullptr) {
     this->UsedHeightFactor = this->HeightFactor > 0.0 ? this->HeightFactor : vtkStratusSphere::FactorOf(places, {});
-    vtkStratusSphere::Place(places, mesh.GetNodes(), { { 1.0 / mesh.GetFactor(0), 1.0 / mesh.GetFactor(1) } }, this->UsedHeightFactor);
+    std::vector<double> degrees(2 * mesh.GetNodes()); // which all levels have
+    for (size_t i = 0; i < degrees.size(); ++i) {
+      degrees[i] = places->GetComponent(static_cast<vtkIdType>(i / 2), static_cast<int>(i % 2)) / mesh.GetFactor(static_cast<int>(i % 2));
+    }
+    const size_t levels = static_cast<size_t>(places->GetNumberOfTuples()) / mesh.GetNodes();
+    vtkStratusSphere::Place(nullptr, levels, degrees, places, this->UsedHeightFactor);
   }
   AddCells(mesh, z, dry, grid);
   const Variable& chosen = *file.Find(this->ChosenName());

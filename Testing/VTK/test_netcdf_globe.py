@@ -142,6 +142,24 @@ if not got.error:
     check(not got.hidden_cells().any(), "no cell is torn on a sphere")
     check_shell(got, "tripolar", 0, 50 * 10000, 2e-2)
 
+# F-point pivots: the line between the poles is between rows, and the last row is the one before it in reverse
+fold = (1 - (numpy.arange(46) + 0.5) / 45)[:, None]
+w = numpy.radians(2.0 * numpy.arange(180) + 1)
+cap = numpy.tan(numpy.radians(35.0)) * (numpy.cos(w) + 1j * numpy.sin(fold * numpy.pi / 2) * numpy.sin(w))
+south = numpy.arange(-89, 20, 2.0)
+lons = numpy.concatenate([numpy.tile(2.0 * numpy.arange(180) + 1, (len(south), 1)), numpy.degrees(numpy.angle(cap)) % 360])
+lats = numpy.concatenate([numpy.tile(south[:, None], (1, 180)), 90 - 2 * numpy.degrees(numpy.arctan(abs(cap)))])
+for rows in (len(lons), len(lons) - 1):  # files have that row or not
+    field = numpy.arange(3 * rows * 180, dtype="f4").reshape(3, rows, 180)
+    path = write("globe F-point pivot %d" % rows, {"y": rows, "x": 180, "z": 3}, z=("z", heights, {"units": "m", "positive": "up"}),
+        lon=("y x", lons[:rows], {"units": "degrees_east"}), lat=("y x", lats[:rows], {"units": "degrees_north"}),
+        q=("z y x", field, {"coordinates": "lon lat"}))
+    got = on_sphere(path, 50)
+    check(not got.error and got.shape == (3, 102, 181), f"a pole, 100 rows and the seam: {got.error or got.shape}")
+    check("closed at the seam between two poles" in got.description, got.description)
+    check_shell(got, "F-point pivot", 0, 50 * 10000, 2e-3)
+    check(near(got.values[:, -1, :-1], 0.5 * (field[:, 99] + field[:, 99, ::-1]), 1e-6), "the seam has the mean of both sides")
+
 flat = write("globe flat", {"z": 3, "y": 4, "x": 5}, z=("z", heights, {"units": "m"}), y=("y", numpy.arange(4.0), {"units": "m"}),
     x=("x", numpy.arange(5.0), {"units": "m"}), q=("z y x", numpy.zeros((3, 4, 5), "f4"), {}))
 check("has no longitudes and latitudes of the Earth" in on_sphere(flat).error, "metres have no place on a sphere")

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Finds PROJ and sets stratus_proj: whether the readers of netCDF files know the longitudes and latitudes of projected grids.
+set(STRATUS_BUILD_PROJ AUTO CACHE STRING "Project grids of netCDF files by PROJ, which needs libproj: ON, OFF, or AUTO (where it is found)")
+set_property(CACHE STRATUS_BUILD_PROJ PROPERTY STRINGS AUTO ON OFF)
+set(stratus_proj OFF)
+if (STRATUS_BUILD_PROJ AND stratus_netcdf)
+  find_path(PROJ_INCLUDE_DIR proj.h)
+  find_library(PROJ_LIBRARY proj)
+  mark_as_advanced(PROJ_INCLUDE_DIR PROJ_LIBRARY)
+  if (PROJ_INCLUDE_DIR AND PROJ_LIBRARY)
+    set(stratus_proj ON)
+  elseif (STRATUS_BUILD_PROJ STREQUAL "AUTO")
+    message(STATUS "No PROJ: building without the longitudes and latitudes of projected grids (Debian: libproj-dev)")
+  else ()
+    message(FATAL_ERROR "STRATUS_BUILD_PROJ is ${STRATUS_BUILD_PROJ}, but PROJ was not found (Debian: libproj-dev)")
+  endif ()
+endif ()
