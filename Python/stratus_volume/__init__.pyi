@@ -182,7 +182,7 @@ def render(
     data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: Any = ..., spacing: Sequence[float] | None = ...,
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
     device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., exaggerate: float | None = ...,
-    **options: Any) -> Rendering: ...
+    globe: bool = ..., **options: Any) -> Rendering: ...
 def show(
     data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: Any = ..., background: _Background = ...,
     **options: Any) -> Picture: ...
@@ -191,7 +191,7 @@ def turn(
     background: _Background = ..., seconds: float = ..., progress: _Progress = ..., spacing: Sequence[float] | None = ...,
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
     device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., exaggerate: float | None = ...,
-    **options: Any) -> Film: ...
+    globe: bool = ..., **options: Any) -> Film: ...
 def cloud(
     data: Any, radius: float | None = ..., ice: bool | None = ..., units: str | None = ..., metres: float | None = ...,
     density: ArrayLike | None = ..., variable: str | None = ..., step: int = ..., sun: Sequence[float] | None = ..., time: Any = ...,

@@ -26,7 +26,7 @@ class Axis(typing.NamedTuple):
         return self._replace(scale=self.scale / factor, levels=levels)
 
 
-def _flag(value, name):
+def flag(value, name):
     if not isinstance(value, (bool, numpy.bool_)):
         raise TypeError(f"{name} is {value!r}, it must be True or False")
     return bool(value)
@@ -39,8 +39,8 @@ class Annotation:
         if caption is not None and not isinstance(caption, str):
             raise TypeError(f"caption is {caption!r}, it must be a text")
         self.struct = library.stratus_annotation_default()
-        self.struct.axes, self.struct.coast = int(_flag(show_axes, "show_axes")), int(_flag(coast, "coast"))
-        self._has_bar = _flag(color_bar, "color_bar")
+        self.struct.axes, self.struct.coast = int(flag(show_axes, "show_axes")), int(flag(coast, "coast"))
+        self._has_bar = flag(color_bar, "color_bar")
         self.struct.ink = number(ink, "ink")
         if not 0 <= self.struct.ink <= 1:
             raise ValueError(f"ink is {ink!r}, it must be in 0..1")

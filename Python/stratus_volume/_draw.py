@@ -1,17 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One call for one picture of whatever it is."""
+from ._annotation import flag
 from ._core import Progress, whole
+from ._globe import Globe
 from ._picture import Film, paint
 from ._tetrahedra import Tetrahedra
 from ._values import background_color, number, positive
 from ._volume import Volume
 
 
-_OF_DATA = ("spacing", "origin", "axes", "scalars", "component", "device", "threads", "matrix", "exaggerate")
+_OF_DATA = ("spacing", "origin", "axes", "scalars", "component", "device", "threads", "matrix", "exaggerate", "globe")
 
 
-def drawn_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, exaggerate=None):
+def drawn_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, exaggerate=None,
+             globe=False):
     """What draws the data: a Volume or Tetrahedra."""
+    if flag(globe, "globe"):
+        for name, value in dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, matrix=matrix).items():
+            if value is not None:
+                raise ValueError(f"{name} is {value!r}, but on a globe places are those of longitudes, latitudes and heights: leave it out")
+        return Globe(data, exaggerate, device, threads)
     if isinstance(data, (Volume, Tetrahedra)):
         given = dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, device=device, threads=threads, matrix=matrix,
                      exaggerate=exaggerate)
@@ -28,12 +36,15 @@ def drawn_of(data, spacing=None, origin=None, axes=None, scalars=None, component
 
 
 def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing=None, origin=None, axes=None, scalars=None, component=None,
-           device=None, threads=None, matrix=None, exaggerate=None, **options):
+           device=None, threads=None, matrix=None, exaggerate=None, globe=False, **options):
     """Draws a volume and returns a Rendering: rgba, depth, counters.
 
     data           a NumPy array, an xarray.DataArray, a vtkImageData or vtkRectilinearGrid, a vtkUnstructuredGrid or vtkStructuredGrid,
                    pyvista's too; or a Volume or Tetrahedra, which are drawn again without building anew. See `Volume` and `Tetrahedra`
                    for the accepted data, and for spacing, origin, axes, scalars, component, device, threads, matrix and exaggerate
+    globe          True: an xarray.DataArray with longitudes and latitudes, of one or two dimensions, on a sphere of 6371 km, which hides what is
+                   behind it. Heights are times `exaggerate`, by default as much as makes them reach over a tenth of the radius. Lattices that go
+                   all the way round are closed, at poles and at the seam between two poles, too. Cells are drawn, as of structured grids
     opacity        pairs of a value and its opacity in 0..1 per unit_distance. Two pairs at one value are a step. A number is the top of a
                    ramp away from the most frequent value, or the opacity of the whole volume if all values are equal; default 0.3, in mode
                    slice 1 for all values. For several components one of these for all, or a list with one for each
@@ -89,7 +100,7 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
                    or of the world if there are none or a matrix turns them. Cameras of azimuth, elevation and zoom leave room for text
     color_bar      True: the colours of the values of the first component, with their name and unit
     caption        a text at the top, whose lines break to fit
-    coast          True: coastlines of 1:110 million, at the bottom of data with longitudes and latitudes, of depths at the top
+    coast          True: coastlines of 1:110 million, at the bottom of data with longitudes and latitudes, of depths at the top, or on the globe
     ink            grey of lines and text, 0..1; default 0.9
     progress       function of a stage's name and a fraction in 0..1; a true result, an exception, or Ctrl+C ends the call.
                    Or a bar of tqdm's protocol
@@ -97,7 +108,7 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
     Cells of unstructured and structured grids have no interpolation, structure, sampling, sample_distance, jitter, audit, labels, looks,
     and function_2d, but a method: auto, march or project. A picture that shows nothing gives one warning, NothingShown, that names the reason.
     """
-    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate)
+    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, globe)
     return drawn.render(opacity, color, size, camera, **options)
 
 
@@ -112,7 +123,7 @@ def show(data, opacity=None, color=None, size=(640, 480), camera=None, backgroun
     background = background_color(background)
     drawn = drawn_of(data, **{name: options.pop(name) for name in _OF_DATA if name in options})
     factor = getattr(drawn, "exaggeration", 1.0)
-    heights = "" if factor == 1 else f"heights x {factor:.15g}"
+    heights = "" if factor == 1 else f"heights x {factor:.4g}" if isinstance(drawn, Globe) else f"heights x {factor:.15g}"
     if options.get("caption") is None and heights:
         options["caption"] = heights
     elif options.get("caption") and heights:
@@ -134,7 +145,7 @@ def render_tetrahedra(points, tetrahedra, values, opacity=None, color=None, size
 
 def turn(data, frames=36, opacity=None, color=None, size=(320, 240), elevation=25.0, zoom=1.15, background=(0.08, 0.1, 0.14), seconds=4.0,
          progress=None, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None,
-         exaggerate=None, **options):
+         exaggerate=None, globe=False, **options):
     """Returns a Film of the data as it turns once about the z axis: a list of Pictures, which notebooks show as a film.
 
     frames     number of pictures, 1..1000
@@ -146,7 +157,7 @@ def turn(data, frames=36, opacity=None, color=None, size=(320, 240), elevation=2
     whole(frames, "frames", 1, 1000)
     background, seconds = background_color(background), positive(seconds, "seconds")
     view = dict(elevation=number(elevation, "elevation"), zoom=number(zoom, "zoom"))
-    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate)
+    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, globe)
     film, report = Film(seconds=seconds), Progress.of(progress)
     for n in range(frames):
         part = None if report is None else lambda stage, fraction, n=n: report(stage, (n + fraction) / frames)

@@ -27,7 +27,7 @@ def is_down(name, coordinate):
     return positive == "down" if positive else str(coordinate.attrs.get("standard_name", name)).lower() in _DOWN
 
 
-def _heights_of(context, pressures):
+def _heights_of_pressures(context, pressures):
     """Heights in metres of pressures in Pa, in the standard atmosphere."""
     heights, logarithms = numpy.linspace(-2000, 32000, 341), numpy.empty(341)
     pressure, temperature = ctypes.c_double(), ctypes.c_double()
@@ -38,13 +38,23 @@ def _heights_of(context, pressures):
     return numpy.interp(numpy.log(numpy.maximum(pressures, 1e-300)), logarithms[::-1], heights[::-1])
 
 
+def heights_of(context, name, coordinate):
+    """Heights in metres of a vertical coordinate, a length or a pressure; None for another. Depths are below 0."""
+    values, units = numpy.asarray(coordinate.values, numpy.float64), _units(coordinate)
+    if units in _PRESSURES:
+        return _heights_of_pressures(context, values * _PRESSURES[units])
+    if units in _LENGTHS:
+        return values * _LENGTHS[units] * (-1.0 if is_down(name, coordinate) else 1.0)
+    return None
+
+
 def places_of(context, names, coordinates):
     """Places along x, y and z, and the metres of their unit; or None if the coordinates are not on the Earth: degrees of longitude and latitude,
     or lengths; and a height, a depth or a pressure. Places are in metres, but lengths that all have one unit keep it.
 
     names, coordinates: of x, y and z
     """
-    x, y, z = (numpy.asarray(each.values, numpy.float64) for each in coordinates)
+    x, y = (numpy.asarray(each.values, numpy.float64) for each in coordinates[:2])
     units = [_units(each) for each in coordinates]
     one = _LENGTHS.get(units[0]) if len(set(units)) == 1 else None
     if all(unit.lower().startswith("degree") for unit in units[:2]):
@@ -55,13 +65,17 @@ def places_of(context, names, coordinates):
         x, y = _LENGTHS[units[0]] * x, _LENGTHS[units[1]] * y
     elif one is None:
         return None
-    if units[2] in _PRESSURES:
-        z = _heights_of(context, z * _PRESSURES[units[2]])
-    elif units[2] in _LENGTHS:
-        z = z * (1.0 if one else _LENGTHS[units[2]]) * (-1.0 if is_down(names[2], coordinates[2]) else 1.0)
-    else:
-        return None
-    return (x, y, z), one or 1.0
+    z = heights_of(context, names[2], coordinates[2])
+    return None if z is None else ((x, y, z / (one or 1.0)), one or 1.0)
+
+
+def values_of(data):
+    """The values of a DataArray, with its fill values masked."""
+    values = numpy.ma.asarray(data.values)
+    for name in "_FillValue", "missing_value":
+        if name in data.attrs:  # values in the encoding were replaced as the file was read
+            values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | numpy.isin(values.data, data.attrs[name]), values.data)
+    return values
 
 
 _TITLE = 32  # letters of a long_name that is no sentence
@@ -128,11 +142,14 @@ class About:
         return kind, ctypes.string_at(name.value).decode() if name.value else None
 
 
-def functions(context, about, volume, column_axis):
-    """Returns points of opacity, points of colour and the unit distance, guessed by the core. Call it with the context's lock held."""
+def functions(context, about, volume, column_axis, thickness=None):
+    """Returns points of opacity, points of colour and the unit distance, guessed by the core. Call it with the context's lock held.
+
+    thickness  the length along the column of each value; None: as of the volume
+    """
     options, look = library.stratus_look_options_default(), c.stratus_look()
     options.kind, name = about.kind()
-    options.column_axis = column_axis
+    options.column_axis, options.thickness = column_axis, address(thickness)
     context.call(library.stratus_look_guess, context.pointer, ctypes.byref(volume), 1, ctypes.byref(options), ctypes.byref(look))
     if name is None:
         name = "cool-warm" if look.kind == c.ENUMS["stratus_look_kind"]["STRATUS_LOOK_SIGNED"] else "viridis"

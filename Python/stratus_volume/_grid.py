@@ -163,16 +163,12 @@ _EASTS = ("x", "lon", "longitude", "east", "easting", "west_east", "i")
 def _of_xarray(data, spacing, origin, axes):
     """Returns the Grid of a DataArray: its dimensions' names give the axes, its coordinates the places, and its fill values are masked."""
     names = [str(name).lower() for name in data.dims]
-    values = numpy.ma.asarray(data.values) if len(names) == 3 else None
-    if values is None:
+    if len(names) != 3:
         raise ValueError(f"the DataArray has the dimensions {tuple(data.dims)}, it must have three; choose of the others by .isel()")
     if axes is None:
         letters = ["".join(letter for letter, known in (("z", _HEIGHTS), ("y", _NORTHS), ("x", _EASTS)) if name in known) for name in names]
         axes = letters if sorted(letters) == ["x", "y", "z"] else "zyx"
-    for where in data.attrs, getattr(data, "encoding", {}):
-        for name in "_FillValue", "missing_value":
-            if name in where and where is data.attrs:  # values in the encoding were replaced as the file was read
-                values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | numpy.isin(values.data, where[name]), values.data)
+    values = _earth.values_of(data)
     coordinates, earth, labels = None, None, None
     if spacing is None and origin is None and all(name in data.coords for name in data.dims):
         places = [numpy.asarray(data.coords[name].values) for name in data.dims]

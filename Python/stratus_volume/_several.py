@@ -21,6 +21,8 @@ def _parted(item, n, device, threads):
         raise TypeError(f"item {n} is a {type(item).__name__}, it must be data, or a pair of data and a dict of how they look")
     place = {name: look[name] for name in _DATA if name in look}
     look = {name: value for name, value in look.items() if name not in _DATA}
+    if getattr(data, "innermost", None) is not None:
+        raise ValueError(f"item {n} is on a globe, which `render` draws with one data set only")
     if hasattr(data, "render") and hasattr(data, "context"):
         return drawn_of(data, **place), look
     return drawn_of(data, device=device, threads=threads, **place), look

@@ -44,6 +44,8 @@ class Tetrahedra:
 
     Memory is not copied if types are the named ones and arrays are contiguous.
     """
+    innermost = None  # of data on a globe: the least distance of a point from the middle of the Earth
+    bar_title = ("", "")  # of the colour bar: title and unit
 
     def __init__(self, points, tetrahedra=None, values=None, scalars=None, device=None, threads=None, matrix=None, component=None):
         self._units = Units(points, matrix=None if matrix is None else affine(matrix).reshape(4, 4))
@@ -145,6 +147,23 @@ class Tetrahedra:
         mesh.hidden = address(self.hidden)
         return mesh
 
+    def _earth(self, image, opaque_depth, coast, ink):
+        """The Earth in a picture, None for data that are not on a globe."""
+        if self.innermost is None:
+            return None
+        if opaque_depth is not None:
+            raise ValueError("opaque_depth is given, but on a globe the Earth ends rays: leave it out")
+        from ._globe import Earth
+        return Earth(self.innermost, image, coast, ink)
+
+    def camera_of(self, camera):
+        """The camera of a picture, whose default data may define."""
+        return camera
+
+    def guess(self, mode):
+        """Functions by what data say of themselves, or None."""
+        return None
+
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", method="auto", tolerance=None,
                shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, opaque_depth=None, progress=None,
                dependent=False, weights=None, mean_components=False, surface=None, quantities=None, threshold=0.5, show_axes=False, color_bar=False,
@@ -156,16 +175,18 @@ class Tetrahedra:
         """
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_tetra_report()
+        earth, camera = self._earth(image, opaque_depth, coast, ink), self.camera_of(camera)
         numbers = Quantities(quantities, threshold, image, self._units)
-        around = Annotation(show_axes, color_bar, caption, coast, ink)
+        around = Annotation(show_axes, color_bar, caption, coast and not earth, ink)
         with self.context.lock:
             asked = AskedOfCells(self, opacity, color, unit_distance, mode, method, tolerance, shade, gradient_opacity, contours, crop, clip_planes,
                                  average_range, dependent, weights, mean_components, surface)
             if not self.nothing:
                 around.set_box(self.bounds)
-                around.set_bar(asked.transfers[0], self.spread, self.power)
+                around.set_bar(asked.transfers[0], self.spread, self.power, *self.bar_title)
                 room = None if _view.is_placed(camera) else around.room(self.context, size, False)
                 view = _view.make(self.context, camera, self.bounds, size, room=room)
+                view = earth.end_rays(self.context, view) if earth else view
                 self.context.call(library.stratus_tetra_caster_render, self._caster.pointer, ctypes.byref(asked.mesh), asked.functions,
                                   ctypes.byref(view), ctypes.byref(asked.options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
                 own = c.stratus_ray_cast_input(tetra=self._caster.pointer, mesh=ctypes.addressof(asked.mesh), transfer=asked.functions,
@@ -174,6 +195,8 @@ class Tetrahedra:
         asked.explain(image.rgba, report.rays)
         if not self.nothing:
             with self.context.lock:
+                if earth:
+                    earth.draw(self.context, view, image)
                 around.draw(self.context, view, image)
         return image.rendering(as_dict(report), numbers.result(0 if self.nothing else self.power))
 
@@ -202,6 +225,10 @@ class AskedOfCells:
             if drawn.components == 1:
                 own_points(opacity)
             return
+        guessed = drawn.guess(mode) if opacity is None else None
+        if guessed:
+            opacity, color = guessed[0], guessed[1] if color is None else color
+            unit_distance = guessed[2] if unit_distance is None else unit_distance
         self._wanted = functions_of(drawn, opacity, color, gradient_opacity, weights, dependent, None)
         for each in self._wanted:
             own_points(each.opacity)

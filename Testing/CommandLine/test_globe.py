@@ -2,6 +2,7 @@
 """`stratus render --globe`: the Earth's disk is as large as the camera says, it hides what is behind it, data are where their longitude and
 latitude are, and other data are refused. Usage: test_globe.py PATH-OF-STRATUS FOLDER"""
 import math
+import os
 import re
 
 from checking import done, expect, fail
@@ -70,6 +71,30 @@ for azimuth, elevation, seen in ((40, 20, True), (220, -20, False), (130, 0, Fal
     elif azimuth == 220 and red.any():
         fail(f"the Earth hides no spot behind it: {red.sum()} pixels")
 
+# Python draws the picture of the command line
+try:
+    import stratus_volume
+except ImportError:
+    stratus_volume = None
+if stratus_volume:
+    class Coordinate:
+        def __init__(self, name, places, units):
+            self.values, self.dims, self.attrs = places, (name,), {"units": units}
+
+    class Labelled:
+        values, dims, attrs, name = spot(east, north, 40, 20), ("z", "lat", "lon"), {}, "q"
+        coords = {"z": Coordinate("z", levels, "m"), "lat": Coordinate("lat", north, "degrees_north"), "lon": Coordinate("lon", east, "degrees_east")}
+
+    said, image = picture("world.nc", "--globe", "--coast", *LOOK, "--unit-distance", "300000", "--azimuth", "70", "--elevation", "10")
+    eye = [float(x) for x in re.search(r"eye (\S+) (\S+) (\S+),", said).groups()]
+    camera = dict(position=eye, focal_point=(0, 0, 0), view_angle=float(re.search(r"angle (\S+)", said).group(1)))
+    other = stratus_volume.show(Labelled(), [(0, 0), (0.5, 0), (0.6, 1)], [(0, 1, 0, 0), (1, 1, 0, 0)], (SIZE, SIZE), camera, (0, 0, 0), globe=True,
+                                coast=True, unit_distance=300000, device="host", ink=0.85, caption="")
+    apart = abs(other[::-1, :, :3].astype(int)[:SIZE - 30] - image[:SIZE - 30]).max(axis=2)  # without the factor at the top
+    print(f"Python's picture differs from the command line's in {(apart > 2).sum()} pixels")
+    if (apart > 2).any() or (image.max(axis=2) > 8).sum() < 3000:
+        fail("Python draws another globe")
+
 # a region is looked at from above
 east, north = numpy.linspace(100, 130, 31), numpy.linspace(-40, -20, 21)
 write("region.nc", east, north, levels, spot(east, north, 115, -30))
@@ -103,4 +128,56 @@ said, image = picture("world.nc", "--globe", "--opacity", "0:0,1:0", "--exaggera
                       "5", "--coast")
 if (image != plain).any():
     fail(f"the South Pacific has no coast: {(image != plain).any(axis=2).sum()} pixels")
+
+
+def write_plane(name, mapping, x, y, units, standard):
+    write(name, x, y, levels, numpy.ones((3, len(y), len(x)), "f4"))
+    with netCDF4.Dataset(name, "a") as file:
+        for axis, kind in (("lon", standard % "x"), ("lat", standard % "y")):
+            file[axis].units, file[axis].standard_name, file[axis].axis = units, kind, "X" if axis == "lon" else "Y"
+        file.createVariable("crs", "i4").setncatts(mapping)
+        file["q"].grid_mapping = "crs"
+    return name
+
+
+# Coastlines of a plane: a map of Iceland in azimuthal projection reaches from 24.5 W to 13.5 W and from 63.4 N to 66.5 N.
+x = numpy.linspace(-400e3, 400e3, 9)
+laea = {"grid_mapping_name": "lambert_azimuthal_equal_area", "longitude_of_projection_origin": -19.0, "latitude_of_projection_origin": 64.0,
+        "earth_radius": RADIUS}
+plane = write_plane("iceland.nc", laea, x, x, "m", "projection_%s_coordinate")
+above = ("--parallel", "--elevation", "90", "--azimuth", "-90", "--exaggerate", "1")
+bare = picture(plane, *above, "--opacity", "0:0,2:0")[1]
+said, box = picture(plane, *above, "--coast", "--opacity", "0:1,2:1", "--color", "0:1:0:0,2:1:0:0")
+has_proj = os.environ.get("STRATUS_PROJ", "1") == "1"
+if has_proj:
+    said, coast = picture(plane, *above, "--coast", "--opacity", "0:0,2:0")
+    rows, columns = numpy.nonzero((coast != bare).any(axis=2))
+    filled = numpy.nonzero((box != bare).any(axis=2))
+    metres = 800e3 / (filled[1].max() - filled[1].min() + 1)
+    middle = [0.5 * (each.max() + each.min()) for each in filled]
+    ends = [(columns.min() - middle[1]) * metres, (columns.max() - middle[1]) * metres, (rows.min() - middle[0]) * metres,
+            (rows.max() - middle[0]) * metres]
+    wanted = [RADIUS * math.radians(angle) for angle in (-5.5 * math.cos(math.radians(65.5)), 5.4 * math.cos(math.radians(65)), -0.6, 2.5)]
+    print(f"Iceland reaches over {[round(end / 1000) for end in ends]} km, by the map over {[round(end / 1000) for end in wanted]}")
+    if max(abs(end - want) for end, want in zip(ends, wanted)) > 30e3:
+        fail("Iceland is elsewhere")
+    said, image = picture(plane, "--globe", "--opacity", "0:0,2:1")
+    if "'crs' (lambert_azimuthal_equal_area)" not in said or (image[..., 0] != image[..., 2]).sum() < 50:
+        fail(f"a projected grid on the globe:\n{said}")
+
+    # A pole of the grid that is the Earth's own: the picture is that of longitudes and latitudes.
+    east, north = numpy.linspace(-20, 40, 13), numpy.linspace(30, 65, 8)
+    write("europe.nc", east, north, levels, numpy.ones((3, 8, 13), "f4"))
+    own = {"grid_mapping_name": "rotated_latitude_longitude", "grid_north_pole_longitude": 180.0, "grid_north_pole_latitude": 90.0}
+    turned = write_plane("turned.nc", own, east, north, "degrees", "grid_%s")
+    with netCDF4.Dataset("turned.nc", "a") as file:
+        file["lon"].standard_name, file["lat"].standard_name = "grid_longitude", "grid_latitude"
+    one, other = (picture(name, *above, "--coast", "--opacity", "0:0,2:0")[1].max(axis=2) > 30 for name in ("europe.nc", "turned.nc"))
+    if one.sum() < 200 or (one != other).sum() > 0.02 * one.sum():
+        fail(f"two maps of Europe differ in {(one != other).sum()} of {one.sum()} pixels")
+else:
+    expect(2, "need PROJ, which this build lacks", "render", plane, "--coast", "-o", "no.png")
+wrong = write_plane("wrong.nc", dict(laea, grid_mapping_name="peirce"), x, x, "m", "projection_%s_coordinate")
+expect(2, "is none of the known ones: albers_conical_equal_area", "render", wrong, "--coast", "-o", "no.png")
+expect(1, "is none of the known ones: albers_conical_equal_area", "render", wrong, "--globe", "-o", "no.png")
 done()
