@@ -165,7 +165,7 @@ if has_proj:
     if "'crs' (lambert_azimuthal_equal_area)" not in said or (image[..., 0] != image[..., 2]).sum() < 50:
         fail(f"a projected grid on the globe:\n{said}")
 
-    # A pole of the grid that is the Earth's own: the picture is that of longitudes and latitudes.
+    # A grid about the Earth's own pole: its picture equals the one of longitudes and latitudes.
     east, north = numpy.linspace(-20, 40, 13), numpy.linspace(30, 65, 8)
     write("europe.nc", east, north, levels, numpy.ones((3, 8, 13), "f4"))
     own = {"grid_mapping_name": "rotated_latitude_longitude", "grid_north_pole_longitude": 180.0, "grid_north_pole_latitude": 90.0}
