@@ -45,9 +45,10 @@ std::string set_by_data(
   cli::set_heights(o, in, grid);
   const bool is_map = o.about.axes[0].kind == STRATUS_AXIS_LONGITUDE && o.about.axes[1].kind == STRATUS_AXIS_LATITUDE;
   if (o.coast && !o.globe && !is_map && !o.about.place) {
-    throw cli::usage("--coast: '" + o.source +
-      "' has no longitudes and latitudes along x and y, and no grid mapping, as netCDF files may have" +
-      (o.about.why_no_place.empty() ? "" : "; " + o.about.why_no_place));
+    throw cli::usage("--coast: " +
+      (!o.about.why_no_place.empty()
+          ? o.about.why_no_place
+          : "'" + o.source + "' has no longitudes and latitudes along x and y, and no grid mapping, as netCDF files may have"));
   }
   return cli::set_sun(o, given, in, grid, step);
 }
