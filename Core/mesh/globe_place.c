@@ -131,8 +131,14 @@ static stratus_status place_level(stratus_context* context, const stratus_globe_
       double* const unit = units->unit + 3 * index;
       const double* const known = pole >= 0 ? units->pole[pole] : has_units && isfinite(unit[0]) ? unit : NULL;
       double* const point = points + 3 * (level * rows * columns + index);
+      const double height = from->heights[(level * from->count + first) * from->height_stride];
       place p;
-      if (find_place(from, degrees, level, first, stride, count, known, &p)) {
+      if (count == 1 && known && isfinite(height)) { /* most points */
+        memcpy(p.unit, known, sizeof p.unit);
+        p.height = height;
+        TRY(put(context, from, &p, point));
+        *last = point;
+      } else if (find_place(from, degrees, level, first, stride, count, known, &p)) {
         TRY(put(context, from, &p, point));
         memcpy(unit, p.unit, sizeof p.unit);
         *last = point;
