@@ -22,6 +22,7 @@
 #include "stratus/version.h"
 #include "stratus/context.h"
 #include "stratus/volume.h"
+#include "stratus/bricks.h"
 #include "stratus/camera.h"
 #include "stratus/skipping.h"
 #include "stratus/voxels.h"

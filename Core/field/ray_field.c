@@ -8,8 +8,9 @@
 #include <string.h>
 
 #define BLOCK_SIZE_DEFAULT 4
-/* Traversal addresses all eight octant maps with one int. */
-#define MAP_BYTES_MOST 2000000000.0
+/* Eight octant maps of a byte a block. With value ranges, blocks then take at most half a GiB, which a volume that is larger than memory
+ * leaves little of; and traversal addresses the maps with one int. */
+#define MAP_BYTES_MOST 0x1p28
 
 static bool same_data(const stratus_ray_field* field, const stratus_volume* volume, int block_size)
 {

@@ -212,7 +212,7 @@ typedef struct stratus_ray_sampling_options {
 /* How rays skip what is empty. It changes no bit of an image. */
 typedef struct stratus_ray_skipping_options {
   stratus_structure structure; /* default AUTO: the structure that renders fastest, found by timing; see the report */
-  int block_size;              /* 2, 4, 8, 16, 32; 0 (default): 4, or larger if the maps would need more than 2e9 bytes */
+  int block_size;              /* 2, 4, 8, 16, 32; 0 (default): 4, or larger if the maps would need more than 2^28 bytes */
   int audit;                   /* 1: also draw without a structure, and count the pixels whose bits differ. Default 0. */
 } stratus_ray_skipping_options;
 

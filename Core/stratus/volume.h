@@ -85,6 +85,14 @@ STRATUS_API stratus_volume stratus_volume_default(void);
 /* Check a view: pointers, dimensions, overflow of sizes, finite positive spacing, invertible matrices. */
 STRATUS_API stratus_status stratus_volume_check(stratus_context* context, const stratus_volume* volume);
 
+/* A coarse copy of a large volume: one value in so many along each axis, about 2^24 in all, in the same place. */
+typedef struct stratus_coarse stratus_coarse;
+/* Reads the copy that is kept of a volume of one component with an identity and more than 2^26 values, since its value ranges were found.
+ * STRATUS_UNSUPPORTED if none is kept. No value of the volume is read. */
+STRATUS_API stratus_status stratus_coarse_recall(stratus_context* context, const stratus_volume* volume, stratus_coarse** coarse);
+STRATUS_API const stratus_volume* stratus_coarse_volume(const stratus_coarse* coarse);
+STRATUS_API void stratus_coarse_destroy(stratus_coarse* coarse);
+
 /* A transfer function, piecewise linear between points of non-decreasing value. Two points of equal value make a step. */
 typedef struct stratus_transfer {
   /* opacity_count pairs: value, and opacity in 0..1 per unit_distance. If the opacity is 1 over an interval of values, then the medium is

@@ -313,21 +313,20 @@ stratus_status stratus_look_guess(
   TRY(check_options(context, &o, count));
   const bool samples = count == 1 && !o.thickness && stratus_look_samples(volumes);
   const double edge = voxel_edge(volumes), all = (double)stratus_volume_count(volumes);
-  stratus_volume sample;
-  void* memory = NULL;
+  stratus_look_sample sample = { .memory = NULL };
   stratus_status status = STRATUS_OK;
   if (samples) {
-    TRY(stratus_look_sample_make(context, volumes, &sample, &memory));
-    volumes = &sample;
+    TRY(stratus_look_sample_make(context, volumes, &sample));
+    volumes = &sample.view;
   }
   TRY_CLEANUP(make_histogram(context, volumes, count, true, &histogram));
   if (samples) {
-    stratus_look_histogram_scale(histogram, all / (double)stratus_volume_count(&sample));
+    stratus_look_histogram_scale(histogram, all / (double)stratus_volume_count(&sample.view));
   }
   status = guess(context, volumes, count, edge, &o, histogram, &made);
 cleanup:
   stratus_release(context, histogram);
-  stratus_release(context, memory);
+  stratus_release(context, sample.memory);
   if (status == STRATUS_OK) {
     *look = made;
   }

@@ -3,6 +3,7 @@
  *
  * A row of blocks shares (B+1)^2 rows of values. They are reduced elementwise into one row of extremes, which vectorises for any type,
  * and that row is reduced along x by doubling windows. Rows that two rows of blocks share are read twice, the second time from cache. */
+#include "look_sample.h"
 #include "value_range_kept.h"
 #include "volume.h"
 #include "volume_device.h"
@@ -162,7 +163,9 @@ static void give_room(span* s, uint8_t* memory)
   s->bad = memory + 6 * row;
 }
 
-static void reduce_row(span* s, const stratus_value_range* ranges, reduce_function reduce, int64_t j, int64_t k)
+/* Finds the ranges of a row of blocks, and takes what a coarse copy has of its values, if there is one (not NULL). */
+static void reduce_row(
+  span* s, const stratus_value_range* ranges, reduce_function reduce, int64_t j, int64_t k, const stratus_look_sample* sample)
 {
   const int64_t *n = s->volume->dimensions, size = ranges->block_size;
   const int64_t y1 = (j + 1) * size < n[1] ? (j + 1) * size : n[1] - 1;
@@ -176,9 +179,14 @@ static void reduce_row(span* s, const stratus_value_range* ranges, reduce_functi
   s->block_hi = ranges->hi + block;
   s->gaps = ranges->gaps + block;
   reduce(s);
+  if (sample) {
+    stratus_look_sample_rows(
+      sample, s->volume, s->y0, j + 1 < ranges->blocks[1] ? s->y0 + size : n[1], s->z0, k + 1 < ranges->blocks[2] ? s->z0 + size : n[2]);
+  }
 }
 
-static stratus_status reduce_on_host(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges)
+static stratus_status reduce_on_host(
+  stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges, const stratus_look_sample* sample)
 {
   const reduce_function reduce = reduce_of(volume->type);
   const int64_t rows = ranges->blocks[1] * ranges->blocks[2];
@@ -204,7 +212,7 @@ static stratus_status reduce_on_host(stratus_context* context, const stratus_vol
       if (stopped) {
         continue;
       }
-      reduce_row(&s, ranges, reduce, row % ranges->blocks[1], row / ranges->blocks[1]);
+      reduce_row(&s, ranges, reduce, row % ranges->blocks[1], row / ranges->blocks[1], sample);
       /* Only the calling thread reports progress; the first rows are its share. */
       if (thread == 0 && row % ranges->blocks[1] == 0) {
         status = stratus_progress(context, "value ranges", (double)row * threads / (double)rows);
@@ -333,7 +341,17 @@ static stratus_status reduce(stratus_context* context, const stratus_volume* vol
       return status;
     }
   }
-  return reduce_on_host(context, volume, ranges);
+  /* What is kept of a large volume for later is taken now that all its values are read. */
+  stratus_look_sample sample = { .memory = NULL };
+  if (volume->identity != 0 && !volume->point_ghosts && !volume->cell_ghosts && stratus_look_samples(volume)) {
+    TRY(stratus_look_sample_begin(context, volume, &sample));
+  }
+  const stratus_status status = reduce_on_host(context, volume, ranges, sample.memory ? &sample : NULL);
+  if (status == STRATUS_OK && sample.memory && stratus_volume_check_missing(context, volume) == STRATUS_OK) {
+    stratus_look_sample_keep(volume, &sample);
+  }
+  stratus_release(context, sample.memory);
+  return status;
 }
 
 stratus_status stratus_value_range_create(stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
@@ -356,7 +374,6 @@ stratus_status stratus_value_range_create(stratus_context* context, const stratu
   ranges = memory;
   ranges->context = context;
   ranges->block_size = block_size;
-  ranges->bias = stratus_volume_bias(volume);
   ranges->wide = stratus_type_is_wide(volume->type);
   ranges->integer = stratus_type_is_integer(volume->type);
 
@@ -364,6 +381,7 @@ stratus_status stratus_value_range_create(stratus_context* context, const stratu
   TRY_CLEANUP(stratus_progress(context, "value ranges", 0.0));
   TRY_CLEANUP(allocate_blocks(context, volume, ranges));
   if (!stratus_value_range_recall(volume, ranges)) {
+    ranges->bias = stratus_volume_bias(volume);
     TRY_CLEANUP(stratus_volume_hidden_cells(context, volume, &hidden));
     TRY_CLEANUP(reduce(context, volume, ranges));
     if (hidden) {

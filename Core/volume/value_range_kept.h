@@ -5,7 +5,7 @@
 
 #include "volume.h"
 
-/* Fills the arrays of `ranges`, which has its shape and bias, from the file that an earlier call kept of the volume. Returns false, and
+/* Fills `ranges`, which has its shape, from the file that an earlier call kept of the volume. Returns false, and
  * nothing is changed, where nothing is kept. */
 bool stratus_value_range_recall(const stratus_volume* volume, stratus_value_range* ranges);
 void stratus_value_range_keep(const stratus_volume* volume, const stratus_value_range* ranges);

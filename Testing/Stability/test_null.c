@@ -56,6 +56,38 @@ static void check_refused(const char* call, stratus_status status, bool names_nu
 static int64_t three[3], more[3];
 static double six[6], nine[16];
 
+static void bricks(const stratus_volume* v)
+{
+  const stratus_brick_pool_options options = stratus_brick_pool_options_default();
+  const stratus_brick_source source = { .type = STRATUS_FLOAT32 };
+  stratus_brick_pool* pool = NULL;
+  stratus_brick_pool_report pool_report;
+  stratus_bricks_report report;
+  TAKES(stratus_brick_pool_options_default());
+  IS_SILENT(stratus_brick_pool_create(NULL, &options, MAKES(stratus_brick_pool)));
+  REFUSES(stratus_brick_pool_create(context, &options, NULL));
+  ACCEPTS(stratus_brick_pool_create(context, NULL, &pool));
+  IS_SILENT(stratus_brick_pool_set_memory(NULL, 0));
+  TAKES(stratus_brick_pool_get_report(NULL, &pool_report));
+  TAKES(stratus_brick_pool_get_report(pool, NULL));
+  IS_SILENT(stratus_bricks_create(NULL, pool, &source, MAKES(stratus_bricks)));
+  REFUSES(stratus_bricks_create(context, NULL, &source, MAKES(stratus_bricks)));
+  REFUSES(stratus_bricks_create(context, pool, NULL, MAKES(stratus_bricks)));
+  REFUSES(stratus_bricks_create(context, pool, &source, NULL));
+  GIVES(NULL, stratus_bricks_values(NULL));
+  GIVES(NULL, stratus_bricks_missing(NULL));
+  GIVES(NULL, stratus_bricks_reads(NULL));
+  TAKES(stratus_bricks_get_report(NULL, &report));
+  TAKES(stratus_bricks_destroy(NULL));
+  stratus_brick_pool_destroy(pool);
+  TAKES(stratus_brick_pool_destroy(NULL));
+  IS_SILENT(stratus_coarse_recall(NULL, v, MAKES(stratus_coarse)));
+  REFUSES(stratus_coarse_recall(context, NULL, MAKES(stratus_coarse)));
+  REFUSES(stratus_coarse_recall(context, v, NULL));
+  GIVES(NULL, stratus_coarse_volume(NULL));
+  TAKES(stratus_coarse_destroy(NULL));
+}
+
 static void contexts(void)
 {
   char message[128] = "";
@@ -772,6 +804,7 @@ static void no_public_function_falls_over_null(void** state)
   annotations(&scene);
   globes(&scene);
   looks(&scene);
+  bricks(&scene.volume);
   path_tracers(&scene);
   frustums(&scene);
   meshes(&scene);

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Values of a large file as an array whose bricks are read from the file when something first reads them, in bounded memory. */
+#ifndef STRATUS_PUBLIC_BRICKS_H
+#define STRATUS_PUBLIC_BRICKS_H
+
+#include "volume.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Writes the values of the box from `lo` on, of `size` values along each axis, x fastest, without gaps. The box is one or several whole
+ * bricks. Returns 0, or another number if the values cannot be read: they then count as missing. Other threads call it, several at once. It
+ * must not read values of bricks. */
+typedef int (*stratus_brick_read_function)(void* user, const int64_t lo[3], const int64_t size[3], void* values);
+typedef void (*stratus_brick_release_function)(void* user);
+
+/* A file, or anything else that knows the values of a grid and can say those of a part of it. */
+typedef struct stratus_brick_source {
+  stratus_type type;
+  int64_t dimensions[3]; /* number of values along x, y, z; each >= 1 */
+  /* Values along x, y, z of the parts in which the source reads best, such as the chunks of a file; each >= 1. Parts begin at multiples of
+   * it. The last ones along an axis are smaller. */
+  int64_t brick[3];
+  stratus_brick_read_function read;
+  /* NULL, or called once with `user`: by stratus_bricks_destroy(), or by stratus_bricks_create() if that fails. */
+  stratus_brick_release_function release;
+  void* user;
+} stratus_brick_source;
+
+/* The memory that the bricks of several arrays share, and the threads that read them. */
+typedef struct stratus_brick_pool stratus_brick_pool;
+/* An array of bricks. */
+typedef struct stratus_bricks stratus_bricks;
+
+typedef struct stratus_brick_pool_options {
+  /* Bytes that the pool's bricks take at most. 0 (default): half of the memory that the machine, or the control group that the process is
+   * in, has free when the pool is made. Less than 16 MiB counts as 16 MiB. */
+  uint64_t memory;
+  int threads; /* 0..64 that read bricks. 0 (default): as many as the context has, but at least 2 */
+} stratus_brick_pool_options;
+
+typedef struct stratus_brick_pool_report {
+  /* 1: bricks are read when something first reads their values. 0: the system does not offer that (it needs Linux 5.14 or later, and a
+   * process that may use userfaultfd), and stratus_bricks_create() reads all values. */
+  int paged;
+  uint64_t memory;        /* the limit, in bytes */
+  uint64_t resident;      /* bytes of the bricks that are in memory */
+  uint64_t resident_most; /* the most there were */
+} stratus_brick_pool_report;
+
+typedef struct stratus_bricks_report {
+  uint64_t parts;      /* into which the array is divided */
+  uint64_t parts_here; /* in memory */
+  uint64_t parts_read; /* how often a part was read; again after it was dropped */
+  uint64_t parts_dropped;
+  uint64_t bytes_read;
+  uint64_t missing; /* bytes of values that the source could not read; they are NaN, integers 0 */
+} stratus_bricks_report;
+
+STRATUS_API stratus_brick_pool_options stratus_brick_pool_options_default(void);
+STRATUS_API stratus_status stratus_brick_pool_create(
+  stratus_context* context, const stratus_brick_pool_options* options, stratus_brick_pool** pool);
+/* Changes the limit; 0: as in the options. Bricks beyond it are dropped when the next one is read. */
+STRATUS_API stratus_status stratus_brick_pool_set_memory(stratus_brick_pool* pool, uint64_t memory);
+STRATUS_API void stratus_brick_pool_get_report(stratus_brick_pool* pool, stratus_brick_pool_report* report);
+/* The arrays of the pool must be destroyed before. */
+STRATUS_API void stratus_brick_pool_destroy(stratus_brick_pool* pool);
+
+/* Makes an array of all values of the source, of which none are read yet. The part of the array that is read and dropped as a whole is a
+ * row of bricks along x, because neighbours along x share pages of memory; where that is less than 64 KiB, several rows or layers of them.
+ * What reads the array waits for its parts. Parts are dropped if they were not read for longest (by a clock with a second chance). */
+STRATUS_API stratus_status stratus_bricks_create(
+  stratus_context* context, stratus_brick_pool* pool, const stratus_brick_source* source, stratus_bricks** bricks);
+/* The values, x fastest, without gaps, for stratus_volume.values. They must not be written. System calls that read them give EFAULT where
+ * they are not in memory. A process that fork() makes does not have them. */
+STRATUS_API const void* stratus_bricks_values(const stratus_bricks* bricks);
+/* Where the missing bytes are counted, for stratus_volume.missing. */
+STRATUS_API const uint64_t* stratus_bricks_missing(const stratus_bricks* bricks);
+/* Where the parts that were read are counted. */
+STRATUS_API const uint64_t* stratus_bricks_reads(const stratus_bricks* bricks);
+STRATUS_API void stratus_bricks_get_report(stratus_bricks* bricks, stratus_bricks_report* report);
+/* Nothing may read the values any more. */
+STRATUS_API void stratus_bricks_destroy(stratus_bricks* bricks);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

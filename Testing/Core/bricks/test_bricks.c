@@ -1,0 +1,434 @@
+/* SPDX-License-Identifier: BSD-3-Clause
+ * Arrays of bricks against the values that their source has: whatever the shapes, the limit of memory and the threads that read, and
+ * which parts are read, dropped and kept. */
+#include "bricks.h"
+#include "structures.h"
+#include "stratus.h"
+
+#include <omp.h>
+#include <stdio.h>
+
+/* A source of values that a formula gives. */
+typedef struct formula {
+  stratus_type type;
+  int64_t dimensions[3], brick[3];
+  int64_t fails_at; /* a brick that holds this value cannot be read; -1: none */
+  int released, calls, misplaced;
+} formula;
+
+static stratus_context* host;
+
+static int begin(void** state)
+{
+  (void)state;
+  host = make_context("host", 2);
+  return 0;
+}
+
+static int end(void** state)
+{
+  (void)state;
+  stratus_context_destroy(host);
+  return 0;
+}
+
+static uint32_t mix(int64_t at)
+{
+  uint32_t x = (uint32_t)at * 2654435761u + 12345u;
+  x ^= x >> 13;
+  return x * 2246822519u;
+}
+
+static void put(stratus_type type, void* values, int64_t to, int64_t at)
+{
+  switch (stratus_type_size(type)) {
+    case 1:
+      ((uint8_t*)values)[to] = (uint8_t)(mix(at) >> 9);
+      break;
+    case 2:
+      ((uint16_t*)values)[to] = (uint16_t)(mix(at) >> 9);
+      break;
+    case 4:
+      if (type == STRATUS_FLOAT32) {
+        ((float*)values)[to] = (float)(mix(at) >> 8) * 0x1p-24f;
+      } else {
+        ((uint32_t*)values)[to] = mix(at);
+      }
+      break;
+    default:
+      ((double*)values)[to] = (double)mix(at) + 0.5;
+      break;
+  }
+}
+
+static int read_formula(void* user, const int64_t lo[3], const int64_t size[3], void* values)
+{
+  formula* const f = user;
+  const int64_t* n = f->dimensions;
+  int64_t to = 0;
+  int failed = 0;
+#pragma omp atomic
+  ++f->calls;
+  for (int a = 0; a < 3; ++a) {
+    const int64_t end = lo[a] + size[a];
+    if (lo[a] % f->brick[a] != 0 || end > n[a] || (end % f->brick[a] != 0 && end != n[a])) {
+#pragma omp atomic
+      ++f->misplaced;
+    }
+  }
+  for (int64_t k = lo[2]; k < lo[2] + size[2]; ++k) {
+    for (int64_t j = lo[1]; j < lo[1] + size[1]; ++j) {
+      for (int64_t i = lo[0]; i < lo[0] + size[0]; ++i) {
+        const int64_t at = (k * n[1] + j) * n[0] + i;
+        failed = failed || at == f->fails_at;
+        put(f->type, values, to++, at);
+      }
+    }
+  }
+  return failed;
+}
+
+static void release_formula(void* user)
+{
+  ++((formula*)user)->released;
+}
+
+static formula make_formula(stratus_type type, int64_t nx, int64_t ny, int64_t nz, int64_t bx, int64_t by, int64_t bz)
+{
+  return (formula){ .type = type, .dimensions = { nx, ny, nz }, .brick = { bx, by, bz }, .fails_at = -1 };
+}
+
+static stratus_brick_source source_of(formula* f)
+{
+  stratus_brick_source source = { .type = f->type, .read = read_formula, .release = release_formula, .user = f };
+  memcpy(source.dimensions, f->dimensions, sizeof source.dimensions);
+  memcpy(source.brick, f->brick, sizeof source.brick);
+  return source;
+}
+
+static stratus_brick_pool* make_pool(uint64_t memory)
+{
+  stratus_brick_pool_options options = stratus_brick_pool_options_default();
+  stratus_brick_pool* pool = NULL;
+  options.memory = memory;
+  assert_int_equal(stratus_brick_pool_create(host, &options, &pool), STRATUS_OK);
+  return pool;
+}
+
+static stratus_bricks* make_bricks(stratus_brick_pool* pool, formula* f)
+{
+  const stratus_brick_source source = source_of(f);
+  stratus_bricks* bricks = NULL;
+  assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_OK);
+  assert_non_null(stratus_bricks_values(bricks));
+  return bricks;
+}
+
+static int is_paged(stratus_brick_pool* pool)
+{
+  stratus_brick_pool_report report;
+  stratus_brick_pool_get_report(pool, &report);
+  if (!report.paged) {
+    printf("SKIPPED: this system offers no pages that stop their readers\n");
+  }
+  return report.paged;
+}
+
+static stratus_bricks_report report_of(stratus_bricks* bricks)
+{
+  stratus_bricks_report report;
+  stratus_bricks_get_report(bricks, &report);
+  return report;
+}
+
+static int64_t count_of(const formula* f)
+{
+  return f->dimensions[0] * f->dimensions[1] * f->dimensions[2];
+}
+
+static int equals(const formula* f, const void* values, int64_t at)
+{
+  double expected;
+  const size_t size = stratus_type_size(f->type);
+  put(f->type, &expected, 0, at);
+  return memcmp(&expected, (const char*)values + (size_t)at * size, size) == 0;
+}
+
+/* Reads values at random, by several threads; returns how many are wrong. */
+static int64_t wrong_at_random(const formula* f, const void* values, int reads)
+{
+  const int64_t count = count_of(f);
+  int64_t wrong = 0;
+#pragma omp parallel for num_threads(4) reduction(+ : wrong)
+  for (int i = 0; i < reads; ++i) {
+    wrong += !equals(f, values, (int64_t)(((uint64_t)mix(i) << 16 ^ mix(i + reads)) % (uint64_t)count));
+  }
+  return wrong;
+}
+
+static int64_t wrong_in_order(const formula* f, const void* values)
+{
+  const int64_t count = count_of(f);
+  int64_t wrong = 0;
+#pragma omp parallel for num_threads(2) reduction(+ : wrong)
+  for (int64_t i = 0; i < count; ++i) {
+    wrong += !equals(f, values, i);
+  }
+  return wrong;
+}
+
+static void values_are_the_sources(void** state)
+{
+  (void)state;
+  formula all[] = {
+    make_formula(STRATUS_FLOAT32, 256, 128, 64, 64, 32, 16), /* parts end where pages do */
+    make_formula(STRATUS_UINT8, 301, 257, 67, 50, 33, 9),    /* and where they don't */
+    make_formula(STRATUS_INT16, 97, 1021, 31, 97, 100, 1),   /* whole rows */
+    make_formula(STRATUS_FLOAT64, 130, 70, 90, 130, 70, 4),  /* whole layers */
+    make_formula(STRATUS_UINT32, 3, 5, 20011, 2, 3, 7),      /* many rows to a page */
+    make_formula(STRATUS_FLOAT32, 100003, 1, 1, 1000, 8, 8), /* a line */
+    make_formula(STRATUS_INT8, 1, 1, 1, 9, 9, 9),            /* a value */
+    make_formula(STRATUS_FLOAT32, 40000, 9, 9, 512, 2, 2),
+  };
+  for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
+    formula* const f = &all[i];
+    stratus_brick_pool* pool = make_pool(0);
+    stratus_bricks* bricks = make_bricks(pool, f);
+    assert_int_equal(wrong_at_random(f, stratus_bricks_values(bricks), 1000), 0);
+    assert_int_equal(wrong_in_order(f, stratus_bricks_values(bricks)), 0);
+    const stratus_bricks_report report = report_of(bricks);
+    assert_int_equal(report.parts_here, report.parts);
+    assert_int_equal(report.parts_read, report.parts);
+    assert_int_equal(report.missing, 0);
+    assert_int_equal(*stratus_bricks_missing(bricks), 0);
+    assert_int_equal(f->misplaced, 0);
+    stratus_bricks_destroy(bricks);
+    assert_int_equal(f->released, 1);
+    stratus_brick_pool_report left;
+    stratus_brick_pool_get_report(pool, &left);
+    assert_int_equal(left.resident, 0);
+    stratus_brick_pool_destroy(pool);
+  }
+}
+
+/* Where the system has no such pages, create reads all, and everything else is the same. */
+static void without_pages_all_is_read_at_once(void** state)
+{
+  (void)state;
+  formula f = make_formula(STRATUS_UINT16, 130, 77, 40, 32, 32, 8);
+  stratus_brick_pool* pool = make_pool(0);
+  const int faults = pool->faults;
+  pool->faults = -1;
+  stratus_bricks* bricks = make_bricks(pool, &f);
+  const stratus_bricks_report report = report_of(bricks);
+  assert_int_equal(report.parts_here, report.parts);
+  assert_int_equal(wrong_in_order(&f, stratus_bricks_values(bricks)), 0);
+  stratus_bricks_destroy(bricks);
+  assert_int_equal(f.released, 1);
+  pool->faults = faults;
+  stratus_brick_pool_destroy(pool);
+}
+
+static void only_parts_that_are_looked_at_are_read(void** state)
+{
+  (void)state;
+  formula f = make_formula(STRATUS_FLOAT32, 256, 256, 256, 64, 64, 64);
+  stratus_brick_pool* pool = make_pool(0);
+  if (!is_paged(pool)) {
+    stratus_brick_pool_destroy(pool);
+    return;
+  }
+  stratus_bricks* bricks = make_bricks(pool, &f);
+  const float* values = stratus_bricks_values(bricks);
+  assert_int_equal(report_of(bricks).parts, 16);
+  assert_int_equal(report_of(bricks).parts_read, 0);
+  for (int64_t k = 70; k < 120; k += 7) {
+    for (int64_t i = 0; i < 256; i += 31) {
+      assert_true(equals(&f, values, (k * 256 + 130) * 256 + i));
+    }
+  }
+  assert_int_equal(report_of(bricks).parts_read, 1);
+  assert_int_equal(report_of(bricks).bytes_read, 256 * 64 * 64 * 4);
+  assert_int_equal(f.calls, 4);
+  stratus_bricks_destroy(bricks);
+  stratus_brick_pool_destroy(pool);
+}
+
+static void memory_stays_within_its_limit(void** state)
+{
+  (void)state;
+  enum { LIMIT = 24 << 20 };
+  formula f[] = { make_formula(STRATUS_FLOAT32, 256, 256, 256, 64, 64, 16), make_formula(STRATUS_UINT8, 301, 401, 267, 50, 33, 19) };
+  stratus_brick_pool* pool = make_pool(LIMIT);
+  if (!is_paged(pool)) {
+    stratus_brick_pool_destroy(pool);
+    return;
+  }
+  stratus_bricks* bricks[2] = { make_bricks(pool, &f[0]), make_bricks(pool, &f[1]) };
+  for (int round = 0; round < 2; ++round) {
+    for (int i = 0; i < 2; ++i) {
+      assert_int_equal(wrong_at_random(&f[i], stratus_bricks_values(bricks[i]), 300), 0);
+      assert_int_equal(wrong_in_order(&f[i], stratus_bricks_values(bricks[i])), 0);
+    }
+  }
+  stratus_brick_pool_report report;
+  stratus_brick_pool_get_report(pool, &report);
+  assert_int_equal(report.memory, LIMIT);
+  assert_true(report.resident <= LIMIT);
+  assert_true(report.resident_most <= LIMIT);
+  assert_true(report_of(bricks[0]).parts_dropped > 0);
+  assert_true(report_of(bricks[0]).parts_read > report_of(bricks[0]).parts);
+  stratus_bricks_destroy(bricks[0]);
+  assert_int_equal(wrong_in_order(&f[1], stratus_bricks_values(bricks[1])), 0);
+  stratus_bricks_destroy(bricks[1]);
+  stratus_brick_pool_get_report(pool, &report);
+  assert_int_equal(report.resident, 0);
+  assert_int_equal(stratus_brick_pool_set_memory(pool, 1), STRATUS_OK);
+  stratus_brick_pool_get_report(pool, &report);
+  assert_int_equal(report.memory, 16 << 20); /* the least */
+  stratus_brick_pool_destroy(pool);
+}
+
+/* A part that is read between all others is dropped at most once, when the clock first goes around and all parts look alike. */
+static void what_is_read_stays(void** state)
+{
+  (void)state;
+  formula f = make_formula(STRATUS_FLOAT32, 256, 256, 256, 256, 256, 4); /* 64 parts of 1 MiB */
+  stratus_brick_pool* pool = make_pool(16 << 20);
+  if (!is_paged(pool)) {
+    stratus_brick_pool_destroy(pool);
+    return;
+  }
+  stratus_bricks* bricks = make_bricks(pool, &f);
+  const float* values = stratus_bricks_values(bricks);
+  const int64_t part = 256 * 256 * 4;
+  uint64_t reads[4] = { 0 };
+  for (int round = 0; round < 3; ++round) {
+    for (int64_t p = 1; p < 64; ++p) {
+      assert_true(equals(&f, values, p * part + 77));
+      assert_true(equals(&f, values, 5 + round));
+    }
+    reads[round + 1] = report_of(bricks).parts_read;
+    assert_true(reads[round + 1] - reads[round] <= 63 + (round == 0 ? 2 : 0));
+  }
+  assert_true(report_of(bricks).parts_dropped > 100);
+  stratus_bricks_destroy(bricks);
+  stratus_brick_pool_destroy(pool);
+}
+
+static void values_that_cannot_be_read_are_counted(void** state)
+{
+  (void)state;
+  formula f[] = { make_formula(STRATUS_FLOAT32, 128, 128, 64, 32, 32, 16), make_formula(STRATUS_UINT16, 128, 128, 64, 128, 128, 8) };
+  for (int i = 0; i < 2; ++i) {
+    f[i].fails_at = (17 * 128 + 33) * 128 + 65;
+    stratus_brick_pool* pool = make_pool(0);
+    stratus_bricks* bricks = make_bricks(pool, &f[i]);
+    const void* values = stratus_bricks_values(bricks);
+    int64_t wrong = 0;
+    for (int64_t z = 0; z < 64; ++z) {
+      for (int64_t y = 0; y < 128; ++y) {
+        for (int64_t x = 0; x < 128; ++x) {
+          const int64_t at = (z * 128 + y) * 128 + x;
+          const bool missing = i == 0 ? x / 32 == 2 && y / 32 == 1 && z / 16 == 1 : z / 8 == 2;
+          wrong += !missing ? !equals(&f[i], values, at) : i == 0 ? !isnan(((const float*)values)[at]) : ((const uint16_t*)values)[at] != 0;
+        }
+      }
+    }
+    assert_int_equal(wrong, 0);
+    assert_int_equal(*stratus_bricks_missing(bricks), (i == 0 ? 32 * 32 * 16 * 4 : 128 * 128 * 8 * 2));
+    stratus_volume volume = stratus_volume_default();
+    volume.values = values;
+    volume.type = f[i].type;
+    memcpy(volume.dimensions, f[i].dimensions, sizeof volume.dimensions);
+    volume.missing = stratus_bricks_missing(bricks);
+    stratus_value_range* ranges = NULL;
+    assert_int_equal(stratus_value_range_create(host, &volume, 4, &ranges), STRATUS_INVALID_ARGUMENT);
+    assert_non_null(strstr(stratus_context_message(host), "missing"));
+    stratus_bricks_destroy(bricks);
+    stratus_brick_pool_destroy(pool);
+  }
+}
+
+/* A picture of bricks in little memory has the bits of one of values in memory, and reads less where less shows. */
+static void pictures_are_the_same(void** state)
+{
+  (void)state;
+  enum { N = 160, SIZE = 96 };
+  formula f = make_formula(STRATUS_FLOAT32, N, N, N, 32, 32, 1);
+  const double opacity[] = { 0.9, 0.0, 1.0, 0.6 }, color[] = { 0.9, 1.0, 0.5, 0.1, 1.0, 0.2, 0.6, 1.0 };
+  stratus_transfer transfer = stratus_transfer_default();
+  transfer.opacity = opacity;
+  transfer.opacity_count = 2;
+  transfer.color = color;
+  transfer.color_count = 2;
+  stratus_volume volume = stratus_volume_default();
+  volume.type = STRATUS_FLOAT32;
+  memcpy(volume.dimensions, f.dimensions, sizeof volume.dimensions);
+  const size_t count = (size_t)N * N * N;
+  float* plain = malloc(count * sizeof *plain);
+  assert_non_null(plain);
+  for (size_t i = 0; i < count; ++i) {
+    put(STRATUS_FLOAT32, plain, (int64_t)i, (int64_t)i);
+  }
+  stratus_brick_pool* pool = make_pool(1);
+  pool->memory = 8 << 20; /* the array takes 16 MB */
+  stratus_bricks* bricks = make_bricks(pool, &f);
+  float pixels[2][SIZE * SIZE * 4];
+  for (int i = 0; i < 2; ++i) {
+    stratus_ray_caster* caster = NULL;
+    stratus_camera camera;
+    const double eye[3] = { 3.0 * N, 0.4 * N, 0.3 * N }, focal[3] = { 0.5 * N, 0.5 * N, 0.5 * N }, up[3] = { 0.0, 1.0, 0.0 };
+    volume.values = i == 0 ? plain : stratus_bricks_values(bricks);
+    volume.missing = i == 0 ? NULL : stratus_bricks_missing(bricks);
+    assert_int_equal(stratus_camera_perspective(host, eye, focal, up, 30.0, 1.0, &camera), STRATUS_OK);
+    stratus_image image = { .width = SIZE, .height = SIZE, .rgba = pixels[i] };
+    assert_int_equal(stratus_ray_caster_create(host, &caster), STRATUS_OK);
+    assert_int_equal(stratus_ray_caster_render(caster, &volume, &transfer, &camera, NULL, &image, NULL), STRATUS_OK);
+    stratus_ray_caster_destroy(caster);
+  }
+  assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+  stratus_brick_pool_report report;
+  stratus_brick_pool_get_report(pool, &report);
+  assert_true(!report.paged || (report.resident_most <= 8 << 20 && report_of(bricks).parts_dropped > 0));
+  stratus_bricks_destroy(bricks);
+  stratus_brick_pool_destroy(pool);
+  free(plain);
+}
+
+static void faults_of_the_caller_are_told(void** state)
+{
+  (void)state;
+  formula f = make_formula(STRATUS_FLOAT32, 8, 8, 8, 4, 4, 4);
+  stratus_brick_pool* pool = make_pool(0);
+  stratus_bricks* bricks = NULL;
+  stratus_brick_pool_options options = { .threads = 65 };
+  stratus_brick_pool* none = NULL;
+  assert_int_equal(stratus_brick_pool_create(host, &options, &none), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(host), "0..64"));
+  stratus_brick_source source = source_of(&f);
+  source.brick[1] = 0;
+  assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_INVALID_ARGUMENT);
+  assert_int_equal(f.released, 1);
+  source = source_of(&f);
+  source.read = NULL;
+  assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_INVALID_ARGUMENT);
+  source = source_of(&f);
+  source.type = (stratus_type)99;
+  assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_INVALID_ARGUMENT);
+  source = source_of(&f);
+  source.dimensions[0] = source.dimensions[1] = source.dimensions[2] = INT64_C(1) << 30;
+  assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_OVERFLOW);
+  assert_int_equal(f.released, 4);
+  assert_null(bricks);
+  stratus_brick_pool_destroy(pool);
+}
+
+int test_bricks(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(values_are_the_sources), cmocka_unit_test(without_pages_all_is_read_at_once),
+    cmocka_unit_test(only_parts_that_are_looked_at_are_read), cmocka_unit_test(memory_stays_within_its_limit),
+    cmocka_unit_test(what_is_read_stays), cmocka_unit_test(values_that_cannot_be_read_are_counted), cmocka_unit_test(pictures_are_the_same),
+    cmocka_unit_test(faults_of_the_caller_are_told) };
+  return cmocka_run_group_tests(tests, begin, end);
+}
