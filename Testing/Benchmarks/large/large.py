@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Times and memory of first pictures of large files by the command line, against the limit of memory and against the disk.
+
+large.py make FOLDER KIND SIZE     writes FOLDER/KIND-SIZE.raw or .nc, layer by layer: clouds of which most blocks are empty
+large.py measure FILE OPTION...    draws it by `stratus render`, and prints rows scene,method,metric,value,unit
+  --stratus PROGRAM   default: stratus of the path
+  --memory SIZE       as of `stratus render`; default: none
+  --repeats N         default 3
+  --cold              drop the file's pages from memory before each picture
+
+KIND: raw (bytes), netcdf (floats, chunks of 64 along each axis, zlib at level 1), contiguous (floats, netCDF-4 in one piece).
+SIZE: NX,NY,NZ. Methods: first: with an empty cache folder; later: with the ranges that the first picture kept; dd: the file is only read.
+"""
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy
+
+CLOUDS = 60
+VIEW = ["--size", "512", "--tolerance", "0.005"]
+
+
+def clouds(nx, ny, nz):
+    """Places and radii in voxels, the same for each size of one shape."""
+    chance = numpy.random.default_rng(7)
+    radius = min(nx, ny, nz) * chance.uniform(0.04, 0.12, CLOUDS)
+    at = chance.uniform(0.1, 0.9, (CLOUDS, 3)) * (nx, ny, nz)
+    return at, radius
+
+
+def layers(nx, ny, nz, at_a_time):
+    """Layers of the field, 0..1, which is exactly 0 outside of all clouds."""
+    at, radius = clouds(nx, ny, nz)
+    for first in range(0, nz, at_a_time):
+        count = min(at_a_time, nz - first)
+        field = numpy.zeros((count, ny, nx), "f4")
+        for (cx, cy, cz), r in zip(at, radius):
+            lo = numpy.maximum(numpy.floor((cx - r, cy - r, cz - r)), (0, 0, first)).astype(int)
+            hi = numpy.minimum(numpy.ceil((cx + r, cy + r, cz + r)) + 1, (nx, ny, first + count)).astype(int)
+            if (hi <= lo).any():
+                continue
+            x, y, z = (numpy.arange(a, b, dtype="f4") for a, b in zip(lo, hi))
+            d = ((x - cx)[None, None] ** 2 + (y - cy)[None, :, None] ** 2 + (z - cz)[:, None, None] ** 2) / r ** 2
+            ripple = numpy.sin(0.37 * x)[None, None] * numpy.sin(0.31 * y)[None, :, None] * numpy.sin(0.41 * z)[:, None, None]
+            part = field[lo[2] - first:hi[2] - first, lo[1]:hi[1], lo[0]:hi[0]]
+            numpy.maximum(part, numpy.maximum(0, 1 - d) * (0.8 + 0.2 * ripple), out=part)
+        yield first, field
+
+
+def make(folder, kind, size):
+    nx, ny, nz = size
+    name = os.path.join(folder, f"{kind}-{nx}x{ny}x{nz}")
+    if kind == "raw":
+        with open(name + ".raw", "wb") as file:
+            for _, field in layers(nx, ny, nz, 16):
+                (255 * field).astype("u1").tofile(file)
+        return name + ".raw"
+    import netCDF4
+    with netCDF4.Dataset(name + ".nc", "w") as file:
+        for axis, count in zip("zyx", (nz, ny, nx)):
+            file.createDimension(axis, count)
+            file.createVariable(axis, "f4", (axis,))[:] = numpy.arange(count)
+            file[axis].units, file[axis].axis = "m", axis.upper()
+        how = dict(contiguous=True) if kind == "contiguous" else dict(chunksizes=(64, 64, 64), zlib=True, complevel=1)
+        variable = file.createVariable("density", "f4", ("z", "y", "x"), fill_value=False, **how)
+        for first, field in layers(nx, ny, nz, 64):
+            variable[first:first + len(field)] = field
+    return name + ".nc"
+
+
+def forget(path):
+    """Drops the file's pages from the system's memory."""
+    handle = os.open(path, os.O_RDONLY)
+    os.fsync(handle)
+    os.posix_fadvise(handle, 0, 0, os.POSIX_FADV_DONTNEED)
+    os.close(handle)
+
+
+def run(command, environment):
+    """Returns seconds, processor seconds and the most resident bytes of a program."""
+    start = time.perf_counter()
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(process.pid, 0)
+    if status:
+        sys.exit(f"failed: {' '.join(command)}")
+    return time.perf_counter() - start, used.ru_utime + used.ru_stime, used.ru_maxrss * 1024
+
+
+def measure(path, options):
+    rows, scene = [], os.path.basename(path)
+    command = [options.stratus, "render", path, "-o", os.path.join(options.folder, "large.png"), "--quiet", *VIEW]
+    if path.endswith(".raw"):
+        command += ["--raw", scene.split("-")[1][:-4] + ":uint8"]
+    if options.memory:
+        command += ["--memory", options.memory]
+
+    def add(method, name, values, unit):
+        rows.append(f"{scene},{method},{name},{float(numpy.median(values)):.6g},{unit}")
+
+    for method in ("dd", "first", "later"):
+        results = []
+        for _ in range(options.repeats if method == "later" else 1):
+            if method == "first":
+                shutil.rmtree(options.cache, ignore_errors=True)
+            if options.cold:
+                forget(path)
+            one = ["dd", "if=" + path, "of=/dev/null", "bs=1M", "status=none"] if method == "dd" else command
+            results.append(run(one, dict(os.environ, STRATUS_CACHE_DIR=options.cache)))
+        add(method, "seconds", [result[0] for result in results], "s")
+        add(method, "processor_seconds", [result[1] for result in results], "s")
+        if method != "dd":
+            add(method, "resident_most", [result[2] for result in results], "bytes")
+    print("\n".join(rows))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 5 and sys.argv[1] == "make":
+        print(make(sys.argv[2], sys.argv[3], [int(word) for word in sys.argv[4].split(",")]))
+    elif len(sys.argv) > 2 and sys.argv[1] == "measure":
+        parser = argparse.ArgumentParser()
+        parser.add_argument("--stratus", default="stratus")
+        parser.add_argument("--memory", default="")
+        parser.add_argument("--repeats", type=int, default=3)
+        parser.add_argument("--cold", action="store_true")
+        options = parser.parse_args(sys.argv[3:])
+        options.folder = tempfile.mkdtemp()
+        options.cache = os.path.join(options.folder, "cache")
+        try:
+            measure(sys.argv[2], options)
+        finally:
+            shutil.rmtree(options.folder, ignore_errors=True)
+    else:
+        sys.exit(__doc__)
