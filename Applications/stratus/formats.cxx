@@ -82,7 +82,13 @@ made ensight(const std::string& path)
 made netcdf(const std::string& path)
 {
 #ifdef STRATUS_NETCDF
-  return vtkStratusUgridReader::CanReadFile(path.c_str()) ? reader_for<vtkStratusUgridReader>(path) : reader_for<vtkStratusCFReader>(path);
+  if (vtkStratusUgridReader::CanReadFile(path.c_str())) {
+    return reader_for<vtkStratusUgridReader>(path);
+  }
+  auto reader = vtkSmartPointer<vtkStratusCFReader>::New();
+  reader->SetFileName(path.c_str());
+  reader->MapFileOn(); // its values go to nobody but the core
+  return reader;
 #else
   throw cli::failure(
     "cannot read '" + path + "': this program was built without libnetcdf (Debian: libnetcdf-dev), which reads netCDF files");
@@ -374,6 +380,13 @@ void choose_variable(vtkAlgorithm* reader, const std::string& name)
   if (by_name) {
     const std::string known = name.empty() ? name : name_in(by_name, name);
     by_name->SetVariableName(known.empty() ? nullptr : known.c_str());
+  }
+}
+
+void set_memory(double bytes)
+{
+  if (bytes > 0.0) {
+    vtkStratusVariableReader::SetMemoryLimit(static_cast<vtkTypeInt64>(bytes));
   }
 }
 

@@ -73,6 +73,8 @@ std::string value_units_of(vtkAlgorithm* reader); // of the chosen variable
 // True where the reader does not read by variables. "wind.x" is there where "wind" is.
 bool has_variable(vtkAlgorithm* reader, const std::string& name);
 void choose_variable(vtkAlgorithm* reader, const std::string& name);
+// Limits the memory of values that readers leave in their files, in bytes; 0: as it is.
+void set_memory(double bytes);
 // Sets the indices at which dimensions are read, "NAME=INDEX,NAME=INDEX". Throws usage for a reader of files without named dimensions.
 void select_indices(vtkAlgorithm* reader, const std::string& select);
 // Places a reader's longitudes and latitudes on a sphere, with heights times `factor`, or 0: automatic. Throws usage for a file that is not

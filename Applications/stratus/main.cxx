@@ -220,6 +220,7 @@ bool run(const cli::options& o)
     cli::silence();
   }
   cli::set_read_timeout(o.read_timeout);
+  cli::set_memory(o.memory);
   if (o.command == "render") {
     cli::render(o);
   } else if (o.command == "info") {

@@ -139,6 +139,8 @@ Rendering
   --quiet                 print nothing but errors
   --report, -v            print each build stage: its device, kernels that the device ran, milliseconds, bytes
   --threads N             threads of the host (default: all)
+  --memory SIZE           memory that values of large files take at most: 2G, 512M (default: half of what is free). Chunks of netCDF files,
+                          and uncompressed files that are larger, are read when a ray meets them, and dropped for others
   --read-timeout S        stop reading INPUT, or a mask, after S seconds without a byte read or progress reported; 0: never (default 60)
   --show samples          show a heat map of the samples that each pixel used, with a scale, instead of the image; --color sets its colours
   --quantity Q            show a map of a number of each pixel's ray, with a scale, instead of the image: integral (of the values over the
@@ -563,6 +565,7 @@ constexpr struct {
   { "--normals", [](options& o, text, text value) { o.normals = normals_named(value); } },
   { "--device", keep<&options::device> },
   { "--threads", [](options& o, text word, text value) { o.threads = whole_number(value, word, 1, 1024); } },
+  { "--memory", [](options& o, text word, text value) { o.memory = byte_size(value, word, 16e6, 1e15); } },
   { "--read-timeout", [](options& o, text word, text value) { o.read_timeout = within(value, word, 0.0, 1e6); } },
   { "--show", set_show },
   { "--quantity", set_quantities },

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -120,6 +122,22 @@ int whole_number(const std::string& text, const std::string& what, int low, int 
     throw usage(what + ": '" + text + "' is not a whole number within " + std::to_string(low) + ".." + std::to_string(high));
   }
   return static_cast<int>(value);
+}
+
+double byte_size(const std::string& text, const std::string& what, double low, double high)
+{
+  static const std::string units = "KMGT";
+  const size_t digits = std::min(text.find_first_not_of("0123456789.eE+"), text.size());
+  const std::string unit = text.substr(digits);
+  const size_t power = unit.empty() ? 0 : units.find(static_cast<char>(std::toupper(static_cast<unsigned char>(unit[0]))));
+  if (digits == 0 || power == std::string::npos || unit.size() > 1) {
+    throw usage(what + ": '" + text + "' is not a size such as 512M or 2G (K, M, G, T)");
+  }
+  const double bytes = number(text.substr(0, digits), what) * (unit.empty() ? 1.0 : std::pow(1024.0, static_cast<double>(power + 1)));
+  if (!(bytes >= low && bytes <= high)) {
+    throw usage(what + ": '" + text + "' is " + format("%.0f bytes, must be %.0f to %.0f", bytes, low, high));
+  }
+  return bytes;
 }
 
 std::string grouped(unsigned long long value)

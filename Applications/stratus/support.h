@@ -50,6 +50,8 @@ std::vector<std::string> split(const std::string& text, char separator);
 // Parses a finite number. Throws usage that names `what` for any other text.
 double number(const std::string& text, const std::string& what);
 int whole_number(const std::string& text, const std::string& what, int low, int high);
+// Returns the bytes of a size such as "2G" or "512M", in powers of 1024. Throws usage for another text, or a number out of range.
+double byte_size(const std::string& text, const std::string& what, double low, double high);
 // 1234567 -> "1,234,567"
 std::string grouped(unsigned long long value);
 // Prints a line of a command's output: a name and its value.

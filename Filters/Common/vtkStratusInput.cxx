@@ -246,6 +246,7 @@ bool vtkStratusImageView::SetValues(
   // The image's own time counts too: programs that write through a pointer often call Modified() on the image only.
   volume.revision = Mix(Mix(0, array->GetMTime()), image->GetMTime());
   volume.missing = vtkStratusMissingOf(plain);
+  this->Reads = vtkStratusReadsOf(plain);
   volume.identity = vtkStratusIdentityOf(plain);
   volume.identity += volume.identity && component > 0 ? static_cast<uint64_t>(component) : 0;
   return true;

@@ -39,6 +39,8 @@ public:
   bool SetInput(vtkDataSet* image, vtkDataArray* array, int association, std::string& error);
   void SetGradients(const float* gradients) { this->Volume.gradients = gradients; } // borrowed; until the next Set()
   const stratus_volume& GetVolume() const { return this->Volume; }
+  // Where the parts that were read of an array of bricks are counted; null for another array.
+  const uint64_t* GetReads() const { return this->Reads; }
   // The offset from VTK's cropping planes to the core's: crop_bounds = planes + offset. VTK's planes ignore the image's direction.
   const double* GetCropOffset() const { return this->CropOffset; }
   void Release();
@@ -51,6 +53,7 @@ private:
   void HideCellsAtPoints(vtkDataSet* image, vtkUnsignedCharArray* points, vtkUnsignedCharArray* cells);
 
   stratus_volume Volume;
+  const uint64_t* Reads = nullptr;
   std::vector<double> Coordinates[3]; // of a rectilinear grid
   double CropOffset[3] = { 0, 0, 0 };
   std::vector<uint8_t> CellGhosts;      // where values are of cells and points are hidden

@@ -36,11 +36,12 @@ bool HasItsValues(vtkDataArray* array)
 }
 } // namespace
 
-void vtkStratusSetMapped(vtkDataArray* array, uint64_t identity, const uint64_t* missing)
+void vtkStratusSetMapped(vtkDataArray* array, uint64_t identity, const uint64_t* missing, const uint64_t* reads)
 {
   vtkInformation* const information = array->GetInformation();
   information->Set(Key("IDENTITY"), static_cast<unsigned long>(identity));
   information->Set(Key("MISSING"), reinterpret_cast<unsigned long>(missing));
+  information->Set(Key("READS"), reinterpret_cast<unsigned long>(reads));
   information->Set(Key("VALUES"), reinterpret_cast<unsigned long>(array->GetVoidPointer(0)));
   information->Set(Key("TIME"), static_cast<unsigned long>(array->GetMTime()));
 }
@@ -53,4 +54,9 @@ uint64_t vtkStratusIdentityOf(vtkDataArray* array)
 const uint64_t* vtkStratusMissingOf(vtkDataArray* array)
 {
   return HasItsValues(array) ? reinterpret_cast<const uint64_t*>(Find(array, "MISSING")) : nullptr;
+}
+
+const uint64_t* vtkStratusReadsOf(vtkDataArray* array)
+{
+  return HasItsValues(array) ? reinterpret_cast<const uint64_t*>(Find(array, "READS")) : nullptr;
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusCFGrid.h"
+
+#include "vtkStratusNetCDFBricks.h"
 #include "vtkStratusText.h"
 
 #include "vtkStratusLongitudes.h"
@@ -494,6 +496,22 @@ vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::ReadValues(size_t step) const
     }
   }
   return sorted;
+}
+
+vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::MakeBricks(size_t step) const
+{
+  vtkStratusNetCDFPart part;
+  for (const int dimension : this->Of.Dimensions) {
+    const auto axis = std::find(this->Dimensions.begin(), this->Dimensions.end(), dimension);
+    const bool space = axis != this->Dimensions.end();
+    part.Axes.push_back(space ? static_cast<int>(axis - this->Dimensions.begin()) : -1);
+    part.Indices.push_back(space ? 0 : this->Layout.IndexOf(dimension, step));
+  }
+  for (size_t a = 0; a < 3; ++a) {
+    part.Lengths[a] = this->GetLength(static_cast<int>(a));
+  }
+  part.Flipped = this->Flipped;
+  return vtkStratusMakeNetCDFBricks(this->File, this->Of, part);
 }
 
 // Reads x or y of two or more dimensions in degrees or metres. Longitudes are made continuous. Values that are missing are NaN.

@@ -187,7 +187,12 @@ void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFFile& file, size_t step
     Hide(curved->GetPointData(), hidden_points, vtkDataSetAttributes::HIDDENPOINT);
     Hide(curved->GetCellData(), hidden_cells, vtkDataSetAttributes::HIDDENCELL);
   }
-  const vtkSmartPointer<vtkDataArray> values = grid.ReadValues(step);
+  vtkSmartPointer<vtkDataArray> values;
+  if (this->MapFile && static_cast<double>(n[0]) * n[1] * n[2] * sizeof(float) >= static_cast<double>(this->MappedBytesLeast)) {
+    values = grid.MakeBricks(step);
+  }
+  this->Mapped = values ? 1 : 0;
+  values = values ? values : grid.ReadValues(step);
   output->GetPointData()->AddArray(values);
   output->GetPointData()->SetActiveScalars(values->GetName());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusImageReader.h"
 
+#include "vtkStratusBricks.h"
 #include "vtkStratusImageFile.h"
 #include "vtkStratusImageValues.h"
 #include "vtkStratusMakeArray.h"
@@ -125,7 +126,11 @@ vtkStratusImageFile ReadHeader(std::string path)
 }
 } // namespace
 
-vtkStratusImageReader::vtkStratusImageReader() = default;
+vtkStratusImageReader::vtkStratusImageReader()
+{
+  this->MapFile = 1;
+}
+
 vtkStratusImageReader::~vtkStratusImageReader() = default;
 
 int vtkStratusImageReader::CanReadFile(const char* path)
@@ -260,8 +265,18 @@ vtkSmartPointer<vtkDataArray> vtkStratusImageReader::Map(int64_t first, int64_t 
   std::error_code error;
   const int64_t length = static_cast<int64_t>(std::filesystem::file_size(file.Files[0], error));
   const int64_t begin = file.ByteSkip < 0 ? length - file.CountValues() * size : file.HeaderBytes + file.ByteSkip;
-  return error ? nullptr
-               : vtkStratusMapFile(file.Files[0], begin + first * size, file.ArrayName.c_str(), file.Type, this->Components, points);
+  if (error) {
+    return nullptr;
+  }
+  if (bytes > vtkStratusGetBrickMemory()) {
+    const int64_t sizes[3] = { this->WholeExtent[1] + 1, this->WholeExtent[3] + 1, this->WholeExtent[5] + 1 };
+    const vtkSmartPointer<vtkDataArray> bricks =
+      vtkStratusMakeRawBricks(file.Files[0], begin + first * size, file.ArrayName.c_str(), file.Type, this->Components, sizes);
+    if (bricks) {
+      return bricks;
+    }
+  }
+  return vtkStratusMapFile(file.Files[0], begin + first * size, file.ArrayName.c_str(), file.Type, this->Components, points);
 }
 
 // Reads a step in time as it is stored, with components first.
@@ -362,7 +377,4 @@ int vtkStratusImageReader::RequestInformation(vtkInformation* request, vtkInform
 void vtkStratusImageReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "MapFile: " << this->MapFile << "\n";
-  os << indent << "Mapped: " << this->Mapped << "\n";
-  os << indent << "MappedBytesLeast: " << this->MappedBytesLeast << "\n";
 }

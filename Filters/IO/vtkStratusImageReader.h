@@ -20,6 +20,10 @@
  * Time: in NRRD an axis of time, in MetaImage and NIfTI the fourth dimension. If the file does not say how long a step is, steps are
  * numbered.
  *
+ * MapFile is on by default: values that are in the file as the program needs them stay there: uncompressed, in the machine's order of
+ * bytes, not scaled, in one piece. If they are more than the memory limit, they are bricks; otherwise what a program writes into the array
+ * stays in memory.
+ *
  * A file is an error if it has less data than its header says, or needs an unsupported feature: the message names it. docs/command-line.md
  * has a table of supported features.
  *
@@ -41,21 +45,6 @@ public:
   static vtkStratusImageReader* New();
   vtkTypeMacro(vtkStratusImageReader, vtkStratusVariableReader);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-
-  //@{
-  /**
-   * Values that are in the file as the program needs them stay there, and are read when something looks at them (default): uncompressed,
-   * in the machine's order of bytes, not scaled, in one piece, and at least MappedBytesLeast bytes (default 16 MiB; less is read as
-   * quickly). The array then has the file's values as long as the file is not written to; after that, its values are undefined. Where a
-   * file is cut short, the values that are missing become 0, and the mappers report an error. Off: all values are read into memory.
-   */
-  vtkSetMacro(MapFile, vtkTypeBool);
-  vtkGetMacro(MapFile, vtkTypeBool);
-  vtkBooleanMacro(MapFile, vtkTypeBool);
-  vtkSetMacro(MappedBytesLeast, vtkTypeInt64);
-  vtkGetMacro(MappedBytesLeast, vtkTypeInt64);
-  vtkGetMacro(Mapped, vtkTypeBool); // whether the last output's values are in the file
-  //@}
 
   /**
    * Read a file without a header: size[0]*size[1]*size[2] values of a type of VTK's (VTK_FLOAT), x fastest, behind `skip` bytes. The first
@@ -87,8 +76,6 @@ private:
   std::unique_ptr<vtkStratusImageFile> File;
   double Origin[3], Spacing[3], Direction[9];
   int Components = 1;
-  vtkTypeBool MapFile = 1, Mapped = 0;
-  vtkTypeInt64 MappedBytesLeast = vtkTypeInt64(1) << 24;
   std::unique_ptr<vtkStratusImageFile> Raw; // the layout of a file without a header
 };
 

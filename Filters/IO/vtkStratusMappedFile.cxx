@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusMappedFile.h"
 
+#include "vtkStratusBricks.h"
 #include "vtkStratusMapped.h"
 
 #include "vtkDataArray.h"
@@ -9,8 +10,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <fcntl.h>
+#include <memory>
 #include <mutex>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -133,6 +136,37 @@ uint64_t IdentityOf(int file, const struct stat& status, int64_t begin, int64_t 
   return hash ? hash : 1;
 }
 
+// A file that is open as long as this is.
+class OpenFile
+{
+public:
+  explicit OpenFile(const std::string& path) : Handle(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~OpenFile()
+  {
+    if (this->Handle >= 0) {
+      close(this->Handle);
+    }
+  }
+  OpenFile(const OpenFile&) = delete;
+  void operator=(const OpenFile&) = delete;
+
+  // Reads all of the bytes; false if there are fewer, or the disk fails.
+  bool Read(int64_t at, void* to, size_t bytes) const
+  {
+    for (size_t done = 0; done < bytes;) {
+      const ssize_t got =
+        pread(this->Handle, static_cast<char*>(to) + done, bytes - done, static_cast<off_t>(at) + static_cast<off_t>(done));
+      if (got == 0 || (got < 0 && errno != EINTR)) {
+        return false;
+      }
+      done += got > 0 ? static_cast<size_t>(got) : 0;
+    }
+    return true;
+  }
+
+  const int Handle;
+};
+
 vtkSmartPointer<vtkDataArray> MapOpen(int file, int64_t begin, const char* name, int type, int components, vtkIdType tuples)
 {
   auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
@@ -166,17 +200,57 @@ vtkSmartPointer<vtkDataArray> MapOpen(int file, int64_t begin, const char* name,
 vtkSmartPointer<vtkDataArray> vtkStratusMapFile(
   const std::string& path, int64_t begin, const char* name, int type, int components, vtkIdType tuples)
 {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) {
-    return nullptr;
+  const OpenFile file(path);
+  return file.Handle < 0 ? nullptr : MapOpen(file.Handle, begin, name, type, components, tuples);
+}
+
+vtkSmartPointer<vtkDataArray> vtkStratusMakeRawBricks(
+  const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3])
+{
+  constexpr int64_t layers = 16; // of a part, which has at least 64 KiB of each
+  const auto file = std::make_shared<OpenFile>(path);
+  const int64_t row = sizes[0] * components * vtkDataArray::GetDataTypeSize(type), rows = sizes[1];
+  vtkStratusBrickSource source;
+  source.Name = name;
+  source.Type = type;
+  source.Components = components;
+  std::copy_n(sizes, 3, source.Dimensions.begin());
+  source.Brick = { { sizes[0], 1, layers } };
+  source.Identity = vtkStratusIdentityOfFile(path, begin, row * rows * sizes[2]);
+  source.Read = [file, begin, row, rows](const int64_t lo[3], const int64_t size[3], void* values) {
+    const size_t bytes = static_cast<size_t>(size[1] * row); // of whole rows, which follow one another
+    bool whole = true;
+    for (int64_t z = 0; z < size[2]; ++z) {
+      whole =
+        file->Read(begin + ((lo[2] + z) * rows + lo[1]) * row, static_cast<char*>(values) + static_cast<size_t>(z) * bytes, bytes) && whole;
+    }
+    return whole;
+  };
+  return file->Handle < 0 ? nullptr : vtkStratusMakeBricks(source);
+}
+
+uint64_t vtkStratusIdentityOfFile(const std::string& path, int64_t begin, int64_t bytes)
+{
+  const OpenFile file(path);
+  struct stat status;
+  if (file.Handle < 0 || fstat(file.Handle, &status) != 0) {
+    return 0;
   }
-  const vtkSmartPointer<vtkDataArray> array = MapOpen(file, begin, name, type, components, tuples);
-  close(file);
-  return array;
+  return IdentityOf(file.Handle, status, begin, bytes < 0 ? static_cast<int64_t>(status.st_size) - begin : bytes);
 }
 #else
 vtkSmartPointer<vtkDataArray> vtkStratusMapFile(const std::string&, int64_t, const char*, int, int, vtkIdType)
 {
   return nullptr;
+}
+
+vtkSmartPointer<vtkDataArray> vtkStratusMakeRawBricks(const std::string&, int64_t, const char*, int, int, const int64_t[3])
+{
+  return nullptr;
+}
+
+uint64_t vtkStratusIdentityOfFile(const std::string&, int64_t, int64_t)
+{
+  return 0;
 }
 #endif

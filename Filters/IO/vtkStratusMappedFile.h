@@ -14,6 +14,10 @@
 
 class vtkDataArray;
 
+// Returns a number that the file's bytes have in every process, from its length, its time and a sample of `bytes` bytes from `begin` on;
+// never 0, but where the file cannot be read. bytes < 0: to its end.
+VTK_STRATUS_PRIVATE uint64_t vtkStratusIdentityOfFile(const std::string& path, int64_t begin, int64_t bytes);
+
 // Returns an array called `name`, of a type of VTK's numbers over the file's bytes from `begin` on, or null where the file can't be mapped:
 // on a system or a file system without mappings, or where `begin` is no multiple of a value's size. What the program writes into the array
 // stays in memory. A file that is renamed or removed keeps its values. Where one is cut short, or the disk fails, the values that are
@@ -21,5 +25,9 @@ class vtkDataArray;
 // length, time and a sample of its bytes.
 VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMapFile(
   const std::string& path, int64_t begin, const char* name, int type, int components, vtkIdType tuples);
+
+// Returns such an array of sizes x, y, z as bricks, which take no more memory than vtkStratusGetBrickMemory(). Null where it can't be made.
+VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMakeRawBricks(
+  const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3]);
 
 #endif

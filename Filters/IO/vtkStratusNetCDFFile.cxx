@@ -41,6 +41,12 @@ size_t BytesOfAttributes(int file, int variable, int count)
 }
 } // namespace
 
+std::recursive_mutex& vtkStratusNetCDFLock()
+{
+  static std::recursive_mutex lock;
+  return lock;
+}
+
 std::vector<std::string> vtkStratusWords(const std::string& text)
 {
   std::vector<std::string> words;
@@ -337,6 +343,14 @@ vtkStratusNetCDFValues vtkStratusNetCDFFile::ValuesOf(const Variable& variable) 
 std::string vtkStratusNetCDFFile::DescribeValues(const Variable& variable) const
 {
   return this->ValuesOf(variable).Describe();
+}
+
+std::vector<size_t> vtkStratusNetCDFFile::ChunksOf(const Variable& variable) const
+{
+  int storage = NC_CONTIGUOUS;
+  std::vector<size_t> chunks(variable.Dimensions.size());
+  const int status = nc_inq_var_chunking(variable.Group, variable.Id, &storage, chunks.data());
+  return status == NC_NOERR && storage == NC_CHUNKED ? chunks : std::vector<size_t>();
 }
 
 vtkSmartPointer<vtkDataArray> vtkStratusNetCDFFile::Read(

@@ -10,6 +10,7 @@
 #include "vtkSmartPointer.h"
 
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,9 @@ public:
   int FindDimension(const std::string& name) const; // -1 if there is none
   size_t CountOf(const Variable& variable) const;   // values
 
+  // Returns the lengths of the variable's chunks along its dimensions; empty for one that is in one piece, or in a classic file.
+  std::vector<size_t> ChunksOf(const Variable& variable) const;
+
   std::string Text(const Variable& variable, const char* attribute) const; // "" if there is none
   // Returns the name of a coordinate in words: its long_name, unless that is a sentence, or its standard_name, or "".
   std::string Title(const Variable& variable) const;
@@ -114,6 +118,9 @@ private:
   std::map<int, int> Numbers;      // of libnetcdf's numbers of dimensions
   std::vector<Variable> Variables;
 };
+
+// libnetcdf serves one thread at a time: readers hold this lock, and so does what reads bricks.
+std::recursive_mutex& vtkStratusNetCDFLock();
 
 // Splits at blanks.
 std::vector<std::string> vtkStratusWords(const std::string& text);

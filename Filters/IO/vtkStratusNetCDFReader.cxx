@@ -109,6 +109,7 @@ bool vtkStratusNetCDFReader::FindPlace(double longitude, double latitude, double
 
 std::string vtkStratusNetCDFReader::Inspect()
 {
+  const std::lock_guard<std::recursive_mutex> lock(vtkStratusNetCDFLock());
   const vtkStratusNetCDFFile file(this->FileName, this->Selection ? this->Selection : "");
   this->SetPlaceOnPlane(nullptr, "");
   return this->InspectFile(file);
@@ -116,6 +117,7 @@ std::string vtkStratusNetCDFReader::Inspect()
 
 void vtkStratusNetCDFReader::Build(size_t step, vtkDataObject* output)
 {
+  const std::lock_guard<std::recursive_mutex> lock(vtkStratusNetCDFLock());
   const vtkStratusNetCDFFile file(this->FileName, this->Selection ? this->Selection : "");
   this->BuildFile(file, step, vtkDataSet::SafeDownCast(output));
 }

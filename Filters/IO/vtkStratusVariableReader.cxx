@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusVariableReader.h"
 
+#include "vtkStratusBricks.h"
 #include "vtkStratusMetres.h"
 #include "vtkStratusReadError.h"
 #include "vtkStratusUnits.h"
@@ -28,6 +29,21 @@ vtkStratusVariableReader::~vtkStratusVariableReader()
 {
   this->SetFileName(nullptr);
   this->SetVariableName(nullptr);
+}
+
+void vtkStratusVariableReader::SetMemoryLimit(vtkTypeInt64 bytes)
+{
+  vtkStratusSetBrickMemory(bytes);
+}
+
+vtkTypeInt64 vtkStratusVariableReader::GetMemoryLimit()
+{
+  return vtkStratusGetBrickMemory();
+}
+
+vtkTypeInt64 vtkStratusVariableReader::GetMemoryUsed()
+{
+  return vtkStratusGetBrickMemoryUsed();
 }
 
 int vtkStratusVariableReader::FillInputPortInformation(int, vtkInformation*)
@@ -298,5 +314,8 @@ void vtkStratusVariableReader::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
   os << indent << "VariableName: " << (this->VariableName ? this->VariableName : "(the first)") << "\n";
+  os << indent << "MapFile: " << this->MapFile << "\n";
+  os << indent << "Mapped: " << this->Mapped << "\n";
+  os << indent << "MappedBytesLeast: " << this->MappedBytesLeast << "\n";
   os << indent << "Description: " << this->Description << "\n";
 }

@@ -58,6 +58,38 @@ public:
 
   //@{
   /**
+   * Values stay in the file where the reader can leave them there, and are read when something looks at them. Values of fewer bytes than
+   * MappedBytesLeast (default 16 MiB) are read at once, which is as quick. The array then has the file's values as long as nothing writes
+   * to the file; after that, its values are undefined. Where a file is cut short, the values that are missing become 0 or NaN, and the
+   * mappers report an error. Readers of images leave uncompressed values in the file by default. Those of netCDF files do so if MapFile is
+   * on (default off), and read a row of the file's chunks at a time; these arrays, and all of more bytes than the memory limit, are
+   * *bricks*. Nothing may write into bricks; and system calls that read them (such as a file's write or a message of MPI) fail where values
+   * are not in memory, so that such arrays are for mappers, not for writers.
+   */
+  vtkSetMacro(MapFile, vtkTypeBool);
+  vtkGetMacro(MapFile, vtkTypeBool);
+  vtkBooleanMacro(MapFile, vtkTypeBool);
+  vtkSetMacro(MappedBytesLeast, vtkTypeInt64);
+  vtkGetMacro(MappedBytesLeast, vtkTypeInt64);
+  vtkGetMacro(Mapped, vtkTypeBool); // whether the last output's values are in the file
+  //@}
+
+  //@{
+  /**
+   * Set/Get how many bytes of memory all bricks of the process take together, at least 16 MiB. Those that were not looked at for longest
+   * are dropped, and read again when something looks at them. 0 (default): half of the memory that is free when the first file is read.
+   */
+  static void SetMemoryLimit(vtkTypeInt64 bytes);
+  static vtkTypeInt64 GetMemoryLimit();
+  //@}
+
+  /**
+   * Get how many bytes of memory all bricks of the process take now.
+   */
+  static vtkTypeInt64 GetMemoryUsed();
+
+  //@{
+  /**
    * Get the variables that can be read, after UpdateInformation(): their number, all names, and the name, units, long name and standard
    * name (of the CF conventions) of each. A text that the file does not contain is "". An index out of range gives "".
    */
@@ -145,6 +177,8 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  vtkTypeBool MapFile = 0, Mapped = 0;
+  vtkTypeInt64 MappedBytesLeast = vtkTypeInt64(1) << 24;
   char* FileName = nullptr;
   char* VariableName = nullptr;
   std::vector<VariableEntry> Variables;

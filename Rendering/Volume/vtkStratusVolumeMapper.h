@@ -68,6 +68,10 @@
  * picture if nothing has changed. Until PathTolerance is reached it invokes vtkCommand::UpdateEvent, so that a program can draw the
  * next one. Images of one component, without labels and gradient opacity. Surfaces end its rays, and take and cast no shadows.
  *
+ * Values that a reader left in their file as bricks (vtkStratusVariableReader::SetMapFile()) are read while rays meet them. While a picture
+ * has to wait for bricks, pictures of a moving camera are of a coarse copy, which is kept since the file was drawn first; and if something
+ * observes vtkCommand::UpdateEvent, the first picture is, too, and the event asks for the exact one (GetLastPictureIsCoarse()).
+ *
  * The tree of an image that carries one (vtkStratusHybridTreeFilter) is used if it serves the transfer function: by first hits and by
  * HYBRID_STRUCTURE always, by AUTO_STRUCTURE where it is faster.
  *
@@ -118,6 +122,11 @@ public:
   void SetRenderModeToPath() { this->SetRenderMode(PATH_MODE); }
   const char* GetRenderModeAsString();
   //@}
+
+  /**
+   * Get whether the last picture is of a coarse copy of the values, because exact ones were not in memory yet.
+   */
+  vtkTypeBool GetLastPictureIsCoarse();
 
   //@{
   /**

@@ -28,6 +28,7 @@ vtkStratusVolumeMapper::Internals::Internals(vtkStratusVolumeMapper* mapper)
   this->Context.OnRelease = [this] {
     stratus_ray_caster_destroy(this->Caster);
     stratus_path_tracer_destroy(this->Tracer);
+    this->ReleaseCoarse();
     this->Caster = nullptr;
     this->Tracer = nullptr;
     this->PathReport = stratus_path_report();

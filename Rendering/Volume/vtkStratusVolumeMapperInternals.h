@@ -76,6 +76,7 @@ public:
   std::string LastError;                        // of the last picture, reported already; empty: none
   vtkStratusLeftOut LeftOut;                    // settings that the last picture did not use
   vtkStratusSurfaces Surfaces;                  // that hide the last picture's lights
+  bool ShowsCoarse = false;                     // the last picture is of a coarse copy
   double DrawMilliseconds = 0.0;
   double UsedCoarseness = 1.0;
   vtkSmartPointer<vtkDataObject> PickedOf;           // composite data whose block the input is; nullptr: the input is all
@@ -113,6 +114,9 @@ private:
   bool IsFirstHit() const { return this->Mapper->RenderMode == FIRST_HIT_MODE; }
   // Random paths (vtkStratusVolumeMapperPath.cxx).
   bool IsPath() const { return this->Mapper->RenderMode == PATH_MODE; }
+  // Coarse copies of large files (vtkStratusVolumeMapperCoarse.cxx).
+  void ChooseCoarse(vtkRenderer* renderer, const stratus_ray_cast_options& options);
+  void ReleaseCoarse();
   stratus_status CastPaths(const stratus_ray_cast_options& options, const stratus_image& image);
   bool SetShading(vtkRenderer* renderer, vtkVolume* volume, stratus_ray_cast_options& options, std::string& error);
   bool SetMaterials(vtkVolumeProperty* property, stratus_ray_cast_options& options);
@@ -129,12 +133,17 @@ private:
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
   bool CastTo(const stratus_ray_cast_options& options, const float* depths, std::vector<float>& rgba);
-  stratus_ray_cast_input InputOf(const stratus_ray_cast_options& options);
+  stratus_ray_cast_input InputOf(const stratus_ray_cast_options& options); // of what the picture shows
   bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error);
 
   vtkRenderer* Renderer = nullptr; // set while rendering
   vtkStratusPicture Picture;
   bool HasPicture = false;
+  stratus_coarse* CoarseCopy =
+    nullptr; // of the volume of identity CoarseOf; nullptr: none is kept. It and its caster belong to the context
+  stratus_ray_caster* CoarseCaster = nullptr;
+  uint64_t CoarseOf = 0;
+  bool HasToRead = true;   // the last exact picture waited for bricks, or there was none
   bool HasSamples = false; // the picture was drawn with CountSamples
   std::vector<float> Rgba, Depth, PartDepth;
   std::vector<unsigned char> Bytes;

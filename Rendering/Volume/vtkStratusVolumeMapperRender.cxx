@@ -90,27 +90,17 @@ void vtkStratusVolumeMapper::Internals::LearnTime(const Coarseness& coarseness)
 
 // ---------------------------------------------------------------- a picture
 
-stratus_ray_cast_input vtkStratusVolumeMapper::Internals::InputOf(const stratus_ray_cast_options& options)
-{
-  stratus_ray_cast_input input = stratus_ray_cast_input();
-  input.caster = this->Caster;
-  input.volume = &this->Image.GetVolume();
-  input.transfer = this->Functions.data();
-  input.options = &options;
-  return input;
-}
-
 bool vtkStratusVolumeMapper::Internals::Cast(
   vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error)
 {
   const stratus_image image = this->Picture.MakeRoom(
     this->Rgba, this->Depth, opaqueDepth, this->HasSamples ? &this->Samples : nullptr, bytes ? &this->Bytes : nullptr);
   this->Renderer = renderer;
-  stratus_context_start_build_report(this->Context.Get());
-  stratus_status status = this->IsPath() ? this->CastPaths(options, image)
-                                         : stratus_ray_caster_render(this->Caster, &this->Image.GetVolume(), this->Functions.data(),
-                                             &this->Picture.Camera, &options, &image, &this->Report);
   const stratus_ray_cast_input input = this->InputOf(options);
+  stratus_context_start_build_report(this->Context.Get());
+  stratus_status status = this->IsPath()
+    ? this->CastPaths(options, image)
+    : stratus_ray_caster_render(input.caster, input.volume, input.transfer, &this->Picture.Camera, &options, &image, &this->Report);
   if (status == STRATUS_OK && this->Picture.TakesShadows) {
     status = stratus_ray_caster_shade_surfaces(&input, 1, &this->Picture.Camera, &image);
     const int all[4] = { 0, image.width, 0, image.height };
@@ -137,8 +127,9 @@ bool vtkStratusVolumeMapper::Internals::CastTo(const stratus_ray_cast_options& o
   stratus_ray_cast_options plain = options;
   stratus_ray_cast_report report;
   plain.skipping.audit = 0;
-  return stratus_ray_caster_render(
-           this->Caster, &this->Image.GetVolume(), this->Functions.data(), &this->Picture.Camera, &plain, &image, &report) == STRATUS_OK;
+  const stratus_ray_cast_input input = this->InputOf(plain);
+  return stratus_ray_caster_render(input.caster, input.volume, input.transfer, &this->Picture.Camera, &plain, &image, &report) ==
+    STRATUS_OK;
 }
 
 bool vtkStratusVolumeMapper::Internals::Describe(
@@ -204,7 +195,8 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   this->WarnOfCrop(options);
   this->WarnOfGradientOpacity(prop->GetProperty());
   this->OfferTree(this->Caster, this->Context.Get());
-  const Coarseness coarseness = this->ChooseCoarseness(renderer, prop);
+  this->ChooseCoarse(renderer, options);
+  const Coarseness coarseness = this->ShowsCoarse ? Coarseness() : this->ChooseCoarseness(renderer, prop);
   if (coarseness.Step > 1.0) {
     options.sampling.distance = coarseness.Step * this->FullSampleDistance;
     options.sampling.rule = this->FullSampling; // rule and step by hand: nothing is probed while a camera moves
@@ -231,11 +223,15 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   this->Bytes.resize(this->Rgba.size());
   vtkStratusDisplay::Pixels pixels =
     vtkStratusDisplay::ChoosePixels(renderer, others, this->Mapper->FinalColorWindow, this->Mapper->FinalColorLevel, this->Bytes);
+  const uint64_t reads = this->Image.GetReads() ? *this->Image.GetReads() : 0;
   if (!this->Cast(renderer, options, opaqueDepth, pixels.Bytes != nullptr, error)) {
     return false;
   }
   this->HasPicture = true;
-  this->LearnTime(coarseness);
+  if (!this->ShowsCoarse) {
+    this->HasToRead = this->Image.GetReads() && *this->Image.GetReads() != reads;
+    this->LearnTime(coarseness);
+  }
   if (toImage) {
     return true;
   }
@@ -256,7 +252,7 @@ bool vtkStratusVolumeMapper::Internals::Render(vtkRenderer* renderer, vtkVolume*
   if (drawn) {
     this->DrawMilliseconds = Now() - cast + read - start;
   }
-  if (drawn && this->IsPath() && !this->Mapper->GetPathFinished()) {
+  if (drawn && (this->ShowsCoarse || (this->IsPath() && !this->Mapper->GetPathFinished()))) {
     this->Mapper->InvokeEvent(vtkCommand::UpdateEvent);
   }
   return drawn;

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkStratusBricks.h"
+
+#include "stratus/bricks.h"
+
+#include "vtkStratusMapped.h"
+
+#include "vtkDataArray.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <mutex>
+
+namespace {
+
+// The pool of the process. It stays until the process ends, because arrays may.
+struct Pool {
+  stratus_context* Context = nullptr;
+  stratus_brick_pool* Bricks = nullptr;
+  std::mutex Lock; // of the map, and of the context
+  std::map<void*, stratus_bricks*> Arrays;
+
+  Pool()
+  {
+    stratus_context_options options = stratus_context_options_default();
+    options.device = "host";
+    if (stratus_context_create(&options, &this->Context, nullptr, 0) == STRATUS_OK) {
+      stratus_brick_pool_create(this->Context, nullptr, &this->Bricks);
+    }
+  }
+
+  stratus_brick_pool_report Report()
+  {
+    stratus_brick_pool_report report = {};
+    stratus_brick_pool_get_report(this->Bricks, &report);
+    return report;
+  }
+};
+
+Pool& ThePool()
+{
+  static Pool* const pool = new Pool;
+  return *pool;
+}
+
+// VTK's type as the core's; false for another.
+bool CoreType(int type, stratus_type& core)
+{
+  constexpr struct {
+    int Type;
+    stratus_type Core;
+  } types[] = { { VTK_SIGNED_CHAR, STRATUS_INT8 }, { VTK_CHAR, STRATUS_INT8 }, { VTK_UNSIGNED_CHAR, STRATUS_UINT8 },
+    { VTK_SHORT, STRATUS_INT16 }, { VTK_UNSIGNED_SHORT, STRATUS_UINT16 }, { VTK_INT, STRATUS_INT32 }, { VTK_UNSIGNED_INT, STRATUS_UINT32 },
+    { VTK_LONG_LONG, STRATUS_INT64 }, { VTK_UNSIGNED_LONG_LONG, STRATUS_UINT64 }, { VTK_FLOAT, STRATUS_FLOAT32 },
+    { VTK_DOUBLE, STRATUS_FLOAT64 } };
+  for (const auto& one : types) {
+    if (one.Type == type) {
+      core = one.Core;
+      return true;
+    }
+  }
+  return false;
+}
+
+int ReadBox(void* user, const int64_t lo[3], const int64_t size[3], void* values)
+{
+  const vtkStratusBrickSource& source = *static_cast<const vtkStratusBrickSource*>(user);
+  const int64_t components = source.Components; // which the core sees as more values along x
+  const int64_t first[3] = { lo[0] / components, lo[1], lo[2] }, count[3] = { size[0] / components, size[1], size[2] };
+  return source.Read(first, count, values) ? 0 : 1;
+}
+
+void Release(void* user)
+{
+  delete static_cast<vtkStratusBrickSource*>(user);
+}
+
+// Frees the values of an array that is deleted.
+void Free(void* values)
+{
+  Pool& pool = ThePool();
+  const std::lock_guard<std::mutex> lock(pool.Lock);
+  const auto found = pool.Arrays.find(values);
+  if (found != pool.Arrays.end()) {
+    stratus_bricks_destroy(found->second);
+    pool.Arrays.erase(found);
+  }
+}
+} // namespace
+
+vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& source)
+{
+  Pool& pool = ThePool();
+  stratus_brick_source core = {};
+  if (!pool.Bricks || !pool.Report().paged || !CoreType(source.Type, core.type)) {
+    return nullptr;
+  }
+  for (int a = 0; a < 3; ++a) {
+    core.dimensions[a] = source.Dimensions[a] * (a == 0 ? source.Components : 1);
+    core.brick[a] = source.Brick[a] * (a == 0 ? source.Components : 1);
+  }
+  core.read = &ReadBox;
+  core.release = &Release;
+  core.user = new vtkStratusBrickSource(source);
+  stratus_bricks* bricks = nullptr;
+  const std::lock_guard<std::mutex> lock(pool.Lock);
+  if (stratus_bricks_create(pool.Context, pool.Bricks, &core, &bricks) != STRATUS_OK) {
+    return nullptr;
+  }
+  void* const values = const_cast<void*>(stratus_bricks_values(bricks));
+  pool.Arrays[values] = bricks;
+  auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(source.Type));
+  array->SetName(source.Name.c_str());
+  array->SetNumberOfComponents(source.Components);
+  array->SetVoidArray(
+    values, core.dimensions[0] * core.dimensions[1] * core.dimensions[2], 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
+  array->SetArrayFreeFunction(&Free);
+  vtkStratusSetMapped(array, source.Identity, stratus_bricks_missing(bricks), stratus_bricks_reads(bricks));
+  return array;
+}
+
+void vtkStratusSetBrickMemory(vtkTypeInt64 bytes)
+{
+  stratus_brick_pool_set_memory(ThePool().Bricks, static_cast<uint64_t>(std::max<vtkTypeInt64>(bytes, 0)));
+}
+
+vtkTypeInt64 vtkStratusGetBrickMemory()
+{
+  return static_cast<vtkTypeInt64>(ThePool().Report().memory);
+}
+
+vtkTypeInt64 vtkStratusGetBrickMemoryUsed()
+{
+  return static_cast<vtkTypeInt64>(ThePool().Report().resident);
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arrays of a file's bricks, which are read when something looks at them, in bounded memory. Private to the module.
+#ifndef vtkStratusBricks_h
+#define vtkStratusBricks_h
+
+#include "vtkStratusPrivate.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+class vtkDataArray;
+
+// What a file has, and how its bricks are read. Sizes are of x, y, z; `Brick` is what the file reads best.
+struct vtkStratusBrickSource {
+  std::string Name;
+  int Type = VTK_FLOAT, Components = 1;
+  std::array<int64_t, 3> Dimensions, Brick;
+  uint64_t Identity = 0; // as stratus_volume has it
+  // Writes the box of `size` values from `lo` on, components first, then x. Returns false if it cannot be read. Called by other threads.
+  std::function<bool(const int64_t lo[3], const int64_t size[3], void* values)> Read;
+};
+
+// Returns the array; null where the system cannot stop who reads a page that is not there.
+VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& source);
+
+// The bytes that all such arrays of the process take at most. 0: half of what was free at the first call.
+VTK_STRATUS_PRIVATE void vtkStratusSetBrickMemory(vtkTypeInt64 bytes);
+VTK_STRATUS_PRIVATE vtkTypeInt64 vtkStratusGetBrickMemory();
+VTK_STRATUS_PRIVATE vtkTypeInt64 vtkStratusGetBrickMemoryUsed();
+
+#endif
