@@ -58,7 +58,7 @@ struct options {
   int width = 512;
   int height = 512;
   int threads = 0;
-  double memory = 0.0;                      // bytes; 0: half of what is free
+  double memory = 0.0;                      // bytes; 0: half of the free memory
   double read_timeout = usual_read_timeout; // seconds; 0: no limit
   int depth = 3;                            // sort: depth of the K-D tree
   double exaggeration = 1.0;                // of heights

@@ -15,7 +15,7 @@
 
 class vtkDataArray;
 
-// What a file has, and how its bricks are read. Sizes are of x, y, z; `Brick` is what the file reads best.
+// The values of a file, and how its bricks are read. Sizes are of x, y, z; `Brick` is what the file reads best.
 struct vtkStratusBrickSource {
   std::string Name;
   int Type = VTK_FLOAT, Components = 1;
@@ -28,7 +28,7 @@ struct vtkStratusBrickSource {
 // Returns the array; null where the system cannot stop who reads a page that is not there.
 VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& source);
 
-// The bytes that all such arrays of the process take at most. 0: half of what was free at the first call.
+// The bytes that all such arrays of the process take at most. 0: half of the memory that was free at the first call.
 VTK_STRATUS_PRIVATE void vtkStratusSetBrickMemory(vtkTypeInt64 bytes);
 VTK_STRATUS_PRIVATE vtkTypeInt64 vtkStratusGetBrickMemory();
 VTK_STRATUS_PRIVATE vtkTypeInt64 vtkStratusGetBrickMemoryUsed();

@@ -118,7 +118,7 @@ private:
   vtkStratusNetCDFPart Where;
 };
 
-// The file's identity, with what the array shows of it. 0 if the file has none.
+// The identity of the array: of the file, the variable and its part. 0 if the file has none.
 uint64_t IdentityOf(const std::string& path, const std::string& name, const vtkStratusNetCDFPart& part)
 {
   uint64_t identity = vtkStratusIdentityOfFile(path, 0, -1);

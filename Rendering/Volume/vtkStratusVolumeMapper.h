@@ -70,7 +70,8 @@
  *
  * Values that a reader left in their file as bricks (vtkStratusVariableReader::SetMapFile()) are read while rays meet them. While a picture
  * has to wait for bricks, pictures of a moving camera are of a coarse copy, which is kept since the file was drawn first; and if something
- * observes vtkCommand::UpdateEvent, the first picture is, too, and the event asks for the exact one (GetLastPictureIsCoarse()).
+ * observes vtkCommand::UpdateEvent, the first picture is, too: the program can draw the exact one when it gets the event
+ * (GetLastPictureIsCoarse()).
  *
  * The tree of an image that carries one (vtkStratusHybridTreeFilter) is used if it serves the transfer function: by first hits and by
  * HYBRID_STRUCTURE always, by AUTO_STRUCTURE where it is faster.

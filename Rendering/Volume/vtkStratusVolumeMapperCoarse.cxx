@@ -16,7 +16,7 @@ void vtkStratusVolumeMapper::Internals::ReleaseCoarse()
 }
 
 // Decides if the next picture is of the copy: a picture of the volume would have to wait for bricks, and a camera moves, or the program
-// draws again when it is told to. A mask has as many values as the volume, so that the copy can't have it.
+// draws again at the mapper's event. A mask has as many values as the volume, so that the copy can't have it.
 void vtkStratusVolumeMapper::Internals::ChooseCoarse(vtkRenderer* renderer, const stratus_ray_cast_options& options)
 {
   const stratus_volume& volume = this->Image.GetVolume();

@@ -133,7 +133,7 @@ private:
   Coarseness ChooseCoarseness(vtkRenderer* renderer, vtkVolume* prop);
   void LearnTime(const Coarseness& coarseness);
   bool CastTo(const stratus_ray_cast_options& options, const float* depths, std::vector<float>& rgba);
-  stratus_ray_cast_input InputOf(const stratus_ray_cast_options& options); // of what the picture shows
+  stratus_ray_cast_input InputOf(const stratus_ray_cast_options& options); // of the values or of their coarse copy
   bool Cast(vtkRenderer* renderer, const stratus_ray_cast_options& options, const float* opaqueDepth, bool bytes, std::string& error);
 
   vtkRenderer* Renderer = nullptr; // set while rendering

@@ -133,7 +133,7 @@ check("bricks of another array went", used <= LIMIT)
 del data
 check("bricks end with their arrays", Reader.GetMemoryUsed() == 0)
 
-# Small values are read at once, and so are those of a sphere.
+# Arrays of few values are read at once.
 small = stratus.vtkStratusCFReader()
 small.SetFileName("plain.nc"), small.MapFileOn(), small.SetMappedBytesLeast(1 << 30), small.Update()
 check("less than the least is in memory", not small.GetMapped())
