@@ -13,7 +13,10 @@ void shown_bounds(const cli::context& core, const stratus_volume& volume, const 
   stratus_value_range* ranges = nullptr;
   stratus_occupancy* occupancy = nullptr;
   stratus_volume part = volume;
-  stratus_status status = stratus_value_range_create(core, &volume, 8, &ranges);
+  constexpr double large = 2147483648.0; // values, whose blocks are at least as large by default
+  const double values =
+    static_cast<double>(volume.dimensions[0]) * static_cast<double>(volume.dimensions[1]) * static_cast<double>(volume.dimensions[2]);
+  stratus_status status = stratus_value_range_create(core, &volume, values > large ? 0 : 8, &ranges);
   if (status == STRATUS_OK) {
     status = stratus_occupancy_create(core, ranges, &transfer, STRATUS_SAMPLING_MIDPOINT, &occupancy);
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support.h"
 
+#include "vtkStratusVariableReader.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -56,6 +58,13 @@ void context::print_build_report() const
   }
   if (count == 0) {
     row("built", "nothing");
+  }
+  if (const vtkTypeInt64 read = vtkStratusVariableReader::GetBytesRead()) {
+    constexpr vtkTypeInt64 mebibyte = 1 << 20;
+    row("read",
+      grouped(static_cast<unsigned long long>(read / mebibyte)) + " MiB of bricks, " +
+        grouped(static_cast<unsigned long long>(vtkStratusVariableReader::GetMemoryUsed() / mebibyte)) + " MiB in memory, limit " +
+        grouped(static_cast<unsigned long long>(vtkStratusVariableReader::GetMemoryLimit() / mebibyte)));
   }
 }
 

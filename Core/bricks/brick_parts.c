@@ -90,57 +90,135 @@ static void fill(stratus_type type, void* values, size_t count)
   }
 }
 
-/* Reads a box of the array that begins at `lo`. scratch: memory of a box, or NULL where there is none. Returns the bytes that are missing.
- */
-static uint64_t read_box(const stratus_bricks* bricks, const int64_t lo[3], const int64_t size[3], char* scratch)
+static int64_t bricks_along(const stratus_brick_source* s, int axis)
+{
+  return (s->dimensions[axis] + s->brick[axis] - 1) / s->brick[axis];
+}
+
+/* Returns the value that all of a brick's blocks have, or NaN: a block's range is of its cells' corners, so that the blocks in which a
+ * brick begins have all of its values. Zeros of either sign count as one value. */
+static float only_value(const stratus_brick_source* s, const stratus_value_range* ranges, const int64_t brick[3])
+{
+  int64_t first[3], last[3];
+  for (int a = 0; a < 3; ++a) {
+    const int64_t lo = brick[a] * s->brick[a], hi = least(lo + s->brick[a], s->dimensions[a]) - 1;
+    first[a] = least(lo / ranges->block_size, ranges->blocks[a] - 1);
+    last[a] = least(hi / ranges->block_size, ranges->blocks[a] - 1);
+  }
+  const float one = ranges->lo[(first[2] * ranges->blocks[1] + first[1]) * ranges->blocks[0] + first[0]];
+  for (int64_t k = first[2]; k <= last[2]; ++k) {
+    for (int64_t j = first[1]; j <= last[1]; ++j) {
+      const int64_t row = (k * ranges->blocks[1] + j) * ranges->blocks[0];
+      for (int64_t i = first[0]; i <= last[0]; ++i) {
+        if (ranges->lo[row + i] != one || ranges->hi[row + i] != one || ranges->gaps[row + i]) {
+          return NAN;
+        }
+      }
+    }
+  }
+  return one;
+}
+
+void stratus_brick_find_only(stratus_context* context, stratus_bricks* bricks)
 {
   const stratus_brick_source* s = &bricks->source;
-  const size_t value = stratus_type_size(s->type), count = (size_t)size[0] * (size_t)size[1] * (size_t)size[2],
-               row = (size_t)size[0] * value;
-  char* const at = bricks->store + (size_t)(lo[2] * s->dimensions[1] + lo[1]) * bricks->row + (size_t)lo[0] * value;
-  /* Whole rows of whole layers, or of one layer, are in the array as the source writes them. */
-  const bool in_place = size[0] == s->dimensions[0] && (size[1] == s->dimensions[1] || size[2] == 1);
-  char* const to = in_place ? at : scratch;
-  const int failed = to ? s->read(s->user, lo, size, to) : 1;
-  if (failed && to) {
+  stratus_volume volume = stratus_volume_default();
+  volume.type = s->type;
+  volume.identity = s->identity;
+  memcpy(volume.dimensions, s->dimensions, sizeof volume.dimensions);
+  const int64_t n[3] = { bricks_along(s, 0), bricks_along(s, 1), bricks_along(s, 2) };
+  const int64_t size = stratus_value_range_block_size(&volume, 0);
+  bool small = s->identity == 0 || stratus_type_is_wide(s->type);
+  for (int a = 0; a < 3; ++a) { /* many bricks in a block would look at it again and again */
+    small = small || (s->brick[a] < size && s->brick[a] < s->dimensions[a]);
+  }
+  stratus_value_range* const ranges = small ? NULL : stratus_value_range_find_kept(context, &volume);
+  bricks->only = ranges ? malloc((size_t)(n[0] * n[1] * n[2]) * sizeof *bricks->only) : NULL;
+  for (int64_t b = 0; bricks->only && b < n[0] * n[1] * n[2]; ++b) {
+    const int64_t brick[3] = { b % n[0], b / n[0] % n[1], b / n[0] / n[1] };
+    bricks->only[b] = only_value(s, ranges, brick);
+  }
+  stratus_value_range_destroy(ranges);
+}
+
+/* Fills a box of whole bricks with the one value that all of them are known to have; else returns false. */
+static bool fill_with_one(const stratus_bricks* bricks, const int64_t lo[3], const int64_t size[3], void* values)
+{
+  const stratus_brick_source* s = &bricks->source;
+  if (!bricks->only) {
+    return false;
+  }
+  const int64_t nx = bricks_along(s, 0), ny = bricks_along(s, 1);
+  const float one = bricks->only[(lo[2] / s->brick[2] * ny + lo[1] / s->brick[1]) * nx + lo[0] / s->brick[0]];
+  for (int64_t z = lo[2]; z < lo[2] + size[2]; z += s->brick[2]) {
+    for (int64_t y = lo[1]; y < lo[1] + size[1]; y += s->brick[1]) {
+      for (int64_t x = lo[0]; x < lo[0] + size[0]; x += s->brick[0]) {
+        if (!(bricks->only[(z / s->brick[2] * ny + y / s->brick[1]) * nx + x / s->brick[0]] == one)) {
+          return false;
+        }
+      }
+    }
+  }
+  const size_t count = (size_t)(size[0] * size[1] * size[2]), bytes = stratus_type_size(s->type);
+  for (size_t i = 0; i < count && bytes == 4; ++i) {
+    ((float*)values)[i] = one;
+  }
+  for (size_t i = 0; i < count && bytes == 2; ++i) {
+    ((uint16_t*)values)[i] = (uint16_t)(int)one;
+  }
+  if (bytes == 1) {
+    memset(values, (int)one, count);
+  }
+  return true;
+}
+
+/* Reads the box of a part that begins `y` rows and `z` layers into it, at x `x`. room: of the part. scratch: of a box that is not in the
+ * room as the source writes it. Returns the bytes that are missing. */
+static uint64_t read_box(const stratus_bricks* bricks, const box* b, const int64_t at[3], const int64_t size[3], char* room, char* scratch)
+{
+  const stratus_brick_source* s = &bricks->source;
+  const size_t value = stratus_type_size(s->type), count = (size_t)(size[0] * size[1] * size[2]), row = (size_t)size[0] * value;
+  const int64_t lo[3] = { at[0], b->y + at[1], b->z + at[2] };
+  char* const place = room + (size_t)(at[2] * b->rows + at[1]) * bricks->row + (size_t)at[0] * value;
+  char* const to = scratch ? scratch : place;
+  const int failed = fill_with_one(bricks, lo, size, to) ? 0 : s->read(s->user, lo, size, to);
+  if (failed) {
     fill(s->type, to, count);
   }
-  for (int64_t z = 0; !in_place && z < size[2]; ++z) {
+  for (int64_t z = 0; scratch && z < size[2]; ++z) {
     for (int64_t y = 0; y < size[1]; ++y) {
-      char* const place = at + (size_t)(z * s->dimensions[1] + y) * bricks->row;
-      if (scratch) {
-        memcpy(place, scratch + (size_t)(z * size[1] + y) * row, row);
-      } else {
-        fill(s->type, place, (size_t)size[0]);
-      }
+      memcpy(place + (size_t)(z * b->rows + y) * bricks->row, scratch + (size_t)(z * size[1] + y) * row, row);
     }
   }
   return failed ? count * value : 0;
 }
 
-uint64_t stratus_brick_part_read(const stratus_bricks* bricks, int64_t part)
+uint64_t stratus_brick_part_read(const stratus_bricks* bricks, int64_t part, stratus_brick_room* room)
 {
   const stratus_brick_source* s = &bricks->source;
   const box b = box_of(bricks, part);
-  uint64_t missing = 0;
-  char* scratch = NULL;
+  const size_t bytes = (size_t)stratus_brick_part_bytes(bricks, part);
   int64_t step[3] = { least(s->brick[0], s->dimensions[0]), least(s->brick[1], b.rows), least(s->brick[2], b.layers) };
-  if (step[0] == s->dimensions[0]) { /* one call for all of it: whole rows */
-    step[1] = b.rows;
-    step[2] = bricks->across == 1 ? b.layers : step[2];
+  const bool whole = step[0] == s->dimensions[0]; /* one call for all rows of some layers, which the room has as the source writes them */
+  step[1] = whole ? b.rows : step[1];
+  const size_t scratch = whole ? 0 : (size_t)(step[0] * step[1] * step[2]) * stratus_type_size(s->type);
+  if (room->capacity < bytes + scratch) {
+    free(room->bytes);
+    room->bytes = malloc(bytes + scratch);
+    room->capacity = room->bytes ? bytes + scratch : 0;
   }
-  if (step[0] < s->dimensions[0] || (bricks->across > 1 && step[2] > 1)) {
-    scratch = malloc((size_t)(step[0] * step[1] * step[2]) * stratus_type_size(s->type));
+  if (!room->bytes) {
+    return bytes;
   }
+  uint64_t missing = 0;
   for (int64_t z = 0; z < b.layers; z += step[2]) {
     for (int64_t y = 0; y < b.rows; y += step[1]) {
       for (int64_t x = 0; x < s->dimensions[0]; x += step[0]) {
-        const int64_t lo[3] = { x, b.y + y, b.z + z };
+        const int64_t at[3] = { x, y, z };
         const int64_t size[3] = { least(step[0], s->dimensions[0] - x), least(step[1], b.rows - y), least(step[2], b.layers - z) };
-        missing += read_box(bricks, lo, size, scratch);
+        missing += read_box(bricks, &b, at, size, room->bytes, whole ? NULL : room->bytes + bytes);
       }
     }
   }
-  free(scratch);
   return missing;
 }

@@ -3,8 +3,8 @@
  * tells one of the pool's threads (userfaultfd), which reads the part of the page and lets the thread go on. So everything that reads
  * values reads bricks, and what is in memory costs nothing.
  *
- * Each array is a file in memory that is mapped twice. Pages of the one mapping stop their readers; parts are written by the other, so that
- * nobody sees a page that is written in part. A page that parts share is shown once all of them are there, and stays.
+ * Each array is a file in memory that is mapped for its readers. Parts are written to the file, and their pages are shown to the readers
+ * when they are complete. A page that parts share is shown once all of them are there, and stays.
  *
  * A clock chooses what is dropped: its hand first takes the pages of a part out of the readers' mapping, and drops the part when it comes
  * around again and nothing has read it. */
@@ -50,7 +50,8 @@ static uint64_t limit_of(uint64_t memory)
 /* ------------------------------------------------------------------------------------------------ pages */
 #ifdef STRATUS_PAGED
 
-/* Lets readers see pages of the array, from byte `begin` to `end`; those that they see already stay. All are in the store. */
+/* Lets readers see pages of the array, from byte `begin` to `end`; those that they see already stay. A page that
+ * could not be written, for want of memory, is shown as zeros; its bytes count as missing. */
 static void show(const stratus_bricks* bricks, size_t begin, size_t end)
 {
   while (begin < end) {
@@ -65,7 +66,9 @@ static void show(const stratus_bricks* bricks, size_t begin, size_t end)
       ioctl(bricks->pool->faults, UFFDIO_WAKE, &one);
       begin += bricks->pool->page;
     } else if (errno != EAGAIN) {
-      return;
+      struct uffdio_zeropage zeros = { .range = { .start = (uintptr_t)bricks->values + begin, .len = bricks->pool->page } };
+      ioctl(bricks->pool->faults, UFFDIO_ZEROPAGE, &zeros);
+      begin += bricks->pool->page;
     }
   }
 }
@@ -142,8 +145,29 @@ static void make_room(stratus_brick_pool* pool, const stratus_bricks* keeper, in
   }
 }
 
+/* Writes the runs of a part from the room to the array's file. Returns how many bytes could not be written. */
+static uint64_t write_part(const stratus_bricks* bricks, int64_t part, const stratus_brick_room* room)
+{
+  const int64_t runs = room->bytes ? stratus_brick_runs(bricks, part) : 0;
+  const char* from = room->bytes;
+  uint64_t missing = 0;
+  for (int64_t r = 0; r < runs; ++r) {
+    const stratus_brick_run run = stratus_brick_run_at(bricks, part, r);
+    for (size_t at = run.begin; at < run.end;) {
+      const ssize_t wrote = pwrite(bricks->memory, from, run.end - at, (off_t)at);
+      if (wrote < 0 && errno != EINTR) {
+        missing += run.end - at;
+      }
+      const size_t done = wrote > 0 ? (size_t)wrote : wrote < 0 && errno == EINTR ? 0 : run.end - at;
+      from += done;
+      at += done;
+    }
+  }
+  return missing;
+}
+
 /* Reads a part, with the pool's lock on entry and on return, but not while the source reads. Room is made before. */
-static void read_part(stratus_bricks* bricks, int64_t part)
+static void read_part(stratus_bricks* bricks, int64_t part, stratus_brick_room* room)
 {
   stratus_brick_pool* const pool = bricks->pool;
   uint64_t edges = 0;
@@ -153,11 +177,14 @@ static void read_part(stratus_bricks* bricks, int64_t part)
   make_room(pool, bricks, part);
   pool->resident_most = pool->resident > pool->resident_most ? pool->resident : pool->resident_most;
   pthread_mutex_unlock(&pool->lock);
-  const uint64_t missing = stratus_brick_part_read(bricks, part);
+  uint64_t missing = stratus_brick_part_read(bricks, part, room);
+  missing += missing == stratus_brick_part_bytes(bricks, part) ? 0 : write_part(bricks, part, room);
   pthread_mutex_lock(&pool->lock);
   set_state(bricks, part, STRATUS_PART_HERE);
   bricks->report.parts_here += 1;
   bricks->report.parts_read += 1;
+  pool->parts_read += 1;
+  pool->bytes_read += stratus_brick_part_bytes(bricks, part) - missing;
   bricks->report.bytes_read += stratus_brick_part_bytes(bricks, part) - missing;
   bricks->report.missing += missing;
   __atomic_store_n(&bricks->reads, bricks->report.parts_read, __ATOMIC_RELEASE);
@@ -167,7 +194,7 @@ static void read_part(stratus_bricks* bricks, int64_t part)
 }
 
 /* Sees that a part is in memory and shown. Returns whether the lock was held all the time. */
-static bool bring(stratus_bricks* bricks, int64_t part)
+static bool bring(stratus_bricks* bricks, int64_t part, stratus_brick_room* room)
 {
   bool held = true;
   while ((bricks->state[part] & STRATUS_PART_STATE) == STRATUS_PART_READING) {
@@ -180,13 +207,13 @@ static bool bring(stratus_bricks* bricks, int64_t part)
     show_part(bricks, part);
   } else if (state == STRATUS_PART_ABSENT) {
     held = false;
-    read_part(bricks, part);
+    read_part(bricks, part, room);
   }
   return held;
 }
 
 /* Brings all parts of a page, and shows it. Another part may go while one comes: then they are looked at again. */
-static void bring_page(stratus_bricks* bricks, size_t begin)
+static void bring_page(stratus_bricks* bricks, size_t begin, stratus_brick_room* room)
 {
   const size_t page = bricks->pool->page, last = begin + page < bricks->bytes ? begin + page - 1 : bricks->bytes - 1;
   for (bool held = false; !held;) {
@@ -195,7 +222,7 @@ static void bring_page(stratus_bricks* bricks, size_t begin)
     for (size_t byte = begin; byte <= last; byte = (byte / bricks->row + 1) * bricks->row) {
       const int64_t part = stratus_brick_part_of(bricks, byte);
       if (part != before) {
-        held = bring(bricks, part) && held;
+        held = bring(bricks, part, room) && held;
         before = part;
       }
     }
@@ -203,13 +230,13 @@ static void bring_page(stratus_bricks* bricks, size_t begin)
   show(bricks, begin, begin + page);
 }
 
-static void serve(stratus_brick_pool* pool, uintptr_t address)
+static void serve(stratus_brick_pool* pool, uintptr_t address, stratus_brick_room* room)
 {
   pthread_mutex_lock(&pool->lock);
   for (stratus_bricks* bricks = pool->first; bricks; bricks = bricks->next) {
     const uintptr_t begin = (uintptr_t)bricks->values;
     if (address >= begin && address - begin < bricks->mapped) {
-      bring_page(bricks, (address - begin) / pool->page * pool->page);
+      bring_page(bricks, (address - begin) / pool->page * pool->page, room);
       break;
     }
   }
@@ -219,19 +246,17 @@ static void serve(stratus_brick_pool* pool, uintptr_t address)
 static void* serve_faults(void* user)
 {
   stratus_brick_pool* const pool = user;
-  for (;;) {
+  stratus_brick_room room = { .bytes = NULL };
+  for (bool more = true; more;) {
     struct pollfd wait[2] = { { .fd = pool->faults, .events = POLLIN }, { .fd = pool->quit, .events = POLLIN } };
-    if (poll(wait, 2, -1) < 0 && errno != EINTR) {
-      return NULL;
-    }
-    if (wait[1].revents) {
-      return NULL;
-    }
     struct uffd_msg message;
-    if (read(pool->faults, &message, sizeof message) == (ssize_t)sizeof message && message.event == UFFD_EVENT_PAGEFAULT) {
-      serve(pool, (uintptr_t)message.arg.pagefault.address);
+    more = (poll(wait, 2, -1) >= 0 || errno == EINTR) && !wait[1].revents;
+    if (more && read(pool->faults, &message, sizeof message) == (ssize_t)sizeof message && message.event == UFFD_EVENT_PAGEFAULT) {
+      serve(pool, (uintptr_t)message.arg.pagefault.address, &room);
     }
   }
+  free(room.bytes);
+  return NULL;
 }
 
 /* Opens what the kernel tells faults by. Returns -1 where it does not. */
@@ -291,19 +316,15 @@ static bool map(stratus_bricks* bricks)
   if (bricks->memory < 0 || ftruncate(bricks->memory, (off_t)bricks->mapped) != 0) {
     return false;
   }
-  void* const store = mmap(NULL, bricks->mapped, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, bricks->memory, 0);
   void* const values = mmap(NULL, bricks->mapped, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, bricks->memory, 0);
-  bricks->store = store == MAP_FAILED ? NULL : store;
   bricks->values = values == MAP_FAILED ? NULL : values;
-  if (!bricks->store || !bricks->values) {
+  if (!bricks->values) {
     return false;
   }
   struct uffdio_register range = { .range = { .start = (uintptr_t)bricks->values, .len = bricks->mapped },
     .mode = UFFDIO_REGISTER_MODE_MISSING | UFFDIO_REGISTER_MODE_MINOR };
   (void)madvise(bricks->values, bricks->mapped, MADV_DONTFORK);
-  (void)madvise(bricks->store, bricks->mapped, MADV_DONTFORK);
   (void)madvise(bricks->values, bricks->mapped, MADV_DONTDUMP);
-  (void)madvise(bricks->store, bricks->mapped, MADV_DONTDUMP);
   return ioctl(bricks->pool->faults, UFFDIO_REGISTER, &range) == 0;
 }
 
@@ -312,13 +333,10 @@ static void unmap(stratus_bricks* bricks)
   if (bricks->values) {
     munmap(bricks->values, bricks->mapped);
   }
-  if (bricks->store) {
-    munmap(bricks->store, bricks->mapped);
-  }
   if (bricks->memory >= 0) {
     close(bricks->memory);
   }
-  bricks->values = bricks->store = NULL;
+  bricks->values = NULL;
   bricks->memory = -1;
 }
 
@@ -392,7 +410,12 @@ void stratus_brick_pool_get_report(stratus_brick_pool* pool, stratus_brick_pool_
   }
   pthread_mutex_lock(&pool->lock);
   *report = (stratus_brick_pool_report){
-    .paged = pool->faults >= 0, .memory = pool->memory, .resident = pool->resident, .resident_most = pool->resident_most
+    .paged = pool->faults >= 0,
+    .memory = pool->memory,
+    .resident = pool->resident,
+    .resident_most = pool->resident_most,
+    .parts_read = pool->parts_read,
+    .bytes_read = pool->bytes_read,
   };
   pthread_mutex_unlock(&pool->lock);
 }
@@ -437,12 +460,25 @@ static stratus_status read_all(stratus_context* context, stratus_bricks* bricks)
 {
   void* memory = NULL;
   TRY(stratus_allocate(context, bricks->bytes, 1, &memory));
-  bricks->values = bricks->store = memory;
+  bricks->values = memory;
   bricks->mapped = bricks->bytes;
-  for (int64_t part = 0; part < bricks->parts; ++part) {
-    TRY(stratus_progress(context, "bricks", (double)part / (double)bricks->parts));
-    bricks->report.missing += stratus_brick_part_read(bricks, part);
+  stratus_brick_room room = { .bytes = NULL };
+  stratus_status status = STRATUS_OK;
+  for (int64_t part = 0; part < bricks->parts && status == STRATUS_OK; ++part) {
+    bricks->report.missing += stratus_brick_part_read(bricks, part, &room);
+    const int64_t runs = room.bytes ? stratus_brick_runs(bricks, part) : 0;
+    const char* from = room.bytes;
+    for (int64_t r = 0; r < runs; ++r) {
+      const stratus_brick_run run = stratus_brick_run_at(bricks, part, r);
+      memcpy(bricks->values + run.begin, from, run.end - run.begin);
+      from += run.end - run.begin;
+    }
+    status = room.bytes ? stratus_progress(context, "bricks", (double)part / (double)bricks->parts)
+                        : stratus_fail(context, STRATUS_OUT_OF_MEMORY, "out of memory for a part of %llu bytes",
+                            (unsigned long long)stratus_brick_part_bytes(bricks, part));
   }
+  free(room.bytes);
+  TRY(status);
   bricks->missing = bricks->report.missing;
   bricks->reads = (uint64_t)bricks->parts;
   bricks->report.parts_here = bricks->report.parts_read = (uint64_t)bricks->parts;
@@ -453,14 +489,15 @@ static stratus_status read_all(stratus_context* context, stratus_bricks* bricks)
 /* Releases what an array has, but for its place among the pool's. */
 static void release(stratus_context* context, stratus_bricks* bricks)
 {
-  if (bricks->memory < 0 && bricks->store) {
-    stratus_release(context, bricks->store);
+  if (bricks->memory < 0) {
+    stratus_release(context, bricks->values);
   } else {
     unmap(bricks);
   }
   if (bricks->source.release) {
     bricks->source.release(bricks->source.user);
   }
+  free(bricks->only);
   free(bricks->state);
   free(bricks);
 }
@@ -488,6 +525,7 @@ stratus_status stratus_bricks_create(
   b->memory = -1;
   stratus_brick_parts_divide(b);
   b->report.parts = (uint64_t)b->parts;
+  stratus_brick_find_only(context, b);
   b->state = calloc((size_t)b->parts, 1);
   if (!b->state) {
     status = stratus_fail(context, STRATUS_OUT_OF_MEMORY, "out of memory for the states of %lld parts", (long long)b->parts);

@@ -5,6 +5,7 @@
 
 #include "stratus/bricks.h"
 #include "base.h"
+#include "volume.h"
 
 #include <pthread.h>
 
@@ -23,23 +24,29 @@ struct stratus_bricks {
   stratus_bricks* next; /* of the pool */
   stratus_brick_source source;
   size_t bytes, row; /* of all values, and of a row along x */
-  /* The values twice: `values` is what others read, where a page that is not there yet stops them. `store` is where parts are written. Not
-   * paged: the same memory. */
-  char *values, *store;
+  /* Paged: a mapping of `memory`, where a page that is not shown yet stops its readers. */
+  char* values;
   size_t mapped;           /* bytes: whole pages */
-  int memory;              /* the file that both show; -1 if not paged */
+  int memory;              /* the file of the mapping, which parts are written to; -1 if not paged */
   int64_t rows, layers;    /* of a part, along y and z */
   int64_t across, parts;   /* parts along y, and in all */
   uint8_t* state;          /* of each part */
   uint64_t missing, reads; /* as in the report; others read them without the lock */
+  float* only;             /* of each brick the one value that all of its values are, or NaN; NULL: nothing is known */
   stratus_bricks_report report;
 };
+
+/* Memory that a thread reads parts into. */
+typedef struct stratus_brick_room {
+  char* bytes;
+  size_t capacity;
+} stratus_brick_room;
 
 struct stratus_brick_pool {
   stratus_context* context;
   pthread_mutex_t lock;
   pthread_cond_t read; /* a part was read */
-  uint64_t memory, resident, resident_most;
+  uint64_t memory, resident, resident_most, parts_read, bytes_read;
   stratus_bricks* first;
   stratus_bricks* hand; /* of the clock, at its part number hand_part */
   int64_t hand_part;
@@ -66,8 +73,11 @@ int64_t stratus_brick_part_of(const stratus_bricks* bricks, size_t byte);
 stratus_brick_run stratus_brick_inner(const stratus_bricks* bricks, size_t page, stratus_brick_run run);
 /* Returns the bytes of a part's values. */
 uint64_t stratus_brick_part_bytes(const stratus_bricks* bricks, int64_t part);
-/* Reads all values of a part into bricks->store. Returns how many bytes of them the source could not read. */
-uint64_t stratus_brick_part_read(const stratus_bricks* bricks, int64_t part);
+/* Sets bricks->only by the value ranges that are kept, if any are. */
+void stratus_brick_find_only(stratus_context* context, stratus_bricks* bricks);
+/* Reads all values of a part into the room, run after run. Returns how many bytes of them the source could not read: all where there is no
+ * memory for the room. */
+uint64_t stratus_brick_part_read(const stratus_bricks* bricks, int64_t part, stratus_brick_room* room);
 
 /* ---- brick_memory.c */
 

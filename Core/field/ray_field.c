@@ -7,11 +7,6 @@
 
 #include <string.h>
 
-#define BLOCK_SIZE_DEFAULT 4
-/* Eight octant maps of a byte a block. With value ranges, blocks then take at most half a GiB, which a volume that is larger than memory
- * leaves little of; and traversal addresses the maps with one int. */
-#define MAP_BYTES_MOST 0x1p28
-
 static bool same_data(const stratus_ray_field* field, const stratus_volume* volume, int block_size)
 {
   const stratus_volume* old = &field->volume;
@@ -19,25 +14,9 @@ static bool same_data(const stratus_ray_field* field, const stratus_volume* volu
     stratus_volume_components(old) == stratus_volume_components(volume);
 }
 
-static int chosen_block_size(const stratus_volume* volume, int wanted)
-{
-  int size = wanted ? wanted : BLOCK_SIZE_DEFAULT;
-  while (size < 32) {
-    double bytes = 8.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      bytes *= ceil((double)volume->dimensions[axis] / size + (axis == 0 ? 64.0 : 0.0));
-    }
-    if (bytes < MAP_BYTES_MOST) {
-      break;
-    }
-    size *= 2;
-  }
-  return size;
-}
-
 int stratus_ray_block_size(const stratus_volume* volume)
 {
-  return chosen_block_size(volume, 0);
+  return stratus_value_range_block_size(volume, 0);
 }
 
 /* Makes value ranges, unless `same`, and hidden bytes. */
@@ -84,7 +63,7 @@ static stratus_status make_ranges(stratus_ray_field* field, const stratus_volume
 stratus_status stratus_ray_field_update(stratus_ray_field* field, const stratus_volume* volume, const stratus_ray_cast_options* options,
   size_t rays, stratus_ray_field_change* change, double* ms)
 {
-  const int block_size = chosen_block_size(volume, options->skipping.block_size);
+  const int block_size = stratus_value_range_block_size(volume, options->skipping.block_size);
   const bool by_value = options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST && volume->cell_centered;
   const int followed = stratus_ray_followed(volume, options);
   const bool same = same_data(field, volume, block_size) && field->followed == followed;

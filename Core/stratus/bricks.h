@@ -23,6 +23,9 @@ typedef struct stratus_brick_source {
    * it. The last ones along an axis are smaller. */
   int64_t brick[3];
   stratus_brick_read_function read;
+  /* 0, or the identity of a stratus_volume of these values. Bricks of which its kept value ranges say that all values are the same are then
+   * not read. */
+  uint64_t identity;
   /* NULL, or called once with `user`: by stratus_bricks_destroy(), or by stratus_bricks_create() if that fails. */
   stratus_brick_release_function release;
   void* user;
@@ -47,6 +50,8 @@ typedef struct stratus_brick_pool_report {
   uint64_t memory;        /* the limit, in bytes */
   uint64_t resident;      /* bytes of the bricks that are in memory */
   uint64_t resident_most; /* the most there were */
+  uint64_t parts_read;    /* of all arrays, those of arrays that were destroyed, too */
+  uint64_t bytes_read;
 } stratus_brick_pool_report;
 
 typedef struct stratus_bricks_report {

@@ -14,7 +14,8 @@ extern "C" {
 
 typedef struct stratus_value_range stratus_value_range;
 
-/* Find the value range of each block. block_size: 2, 4, 8, 16 or 32 voxels; 0: the default, 4. Another size gives
+/* Find the value range of each block. block_size: 2, 4, 8, 16 or 32 voxels; 0: the default, 4, or larger
+ * for a volume of more than 2^31 values. Another size gives
  * STRATUS_INVALID_ARGUMENT. */
 STRATUS_EXPERIMENTAL stratus_status stratus_value_range_create(
   stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** ranges);

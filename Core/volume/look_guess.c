@@ -2,6 +2,7 @@
  * Guesses a transfer function from the frequencies of values and the kind of the variable. */
 #include "look_sample.h"
 #include "look_shapes.h"
+#include "volume_kept.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -315,6 +316,11 @@ stratus_status stratus_look_guess(
   const double edge = voxel_edge(volumes), all = (double)stratus_volume_count(volumes);
   stratus_look_sample sample = { .memory = NULL };
   stratus_status status = STRATUS_OK;
+  if (samples && stratus_kept_is_possible(volumes)) { /* the copy is taken while all values are read for these */
+    stratus_value_range* ranges = NULL;
+    TRY(stratus_value_range_create(context, volumes, 0, &ranges));
+    stratus_value_range_destroy(ranges);
+  }
   if (samples) {
     TRY(stratus_look_sample_make(context, volumes, &sample));
     volumes = &sample.view;

@@ -6,6 +6,7 @@
 #include "look_sample.h"
 #include "value_range_kept.h"
 #include "volume.h"
+#include "volume_kept.h"
 #include "volume_device.h"
 
 #include <float.h>
@@ -13,6 +14,10 @@
 #include <string.h>
 
 #define BLOCK_SIZE_DEFAULT 4
+#define BLOCK_SIZE_MOST 32
+/* Eight octant maps of a byte a block. With value ranges, blocks then take at most half a GiB, which leaves a volume that is larger than
+ * memory most of it; and traversal addresses the maps with one int. */
+#define MAP_BYTES_MOST 0x1p28
 #define LANES 16
 #define ROW_BYTES 8 /* bytes of the widest value or extreme */
 
@@ -306,6 +311,22 @@ static void reduce_whole(stratus_context* context, stratus_value_range* ranges)
   ranges->whole_hi = hi;
 }
 
+int stratus_value_range_block_size(const stratus_volume* volume, int wanted)
+{
+  int size = wanted ? wanted : BLOCK_SIZE_DEFAULT;
+  while (size < BLOCK_SIZE_MOST) {
+    double bytes = 8.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      bytes *= ceil((double)volume->dimensions[axis] / size + (axis == 0 ? 64.0 : 0.0));
+    }
+    if (bytes < MAP_BYTES_MOST) {
+      break;
+    }
+    size *= 2;
+  }
+  return size;
+}
+
 static stratus_status check_block_size(stratus_context* context, int block_size)
 {
   if (block_size < 2 || block_size > 32 || (block_size & (block_size - 1)) != 0) {
@@ -343,7 +364,7 @@ static stratus_status reduce(stratus_context* context, const stratus_volume* vol
   }
   /* What is kept of a large volume for later is taken now that all its values are read. */
   stratus_look_sample sample = { .memory = NULL };
-  if (volume->identity != 0 && !volume->point_ghosts && !volume->cell_ghosts && stratus_look_samples(volume)) {
+  if (stratus_kept_is_possible(volume) && stratus_look_samples(volume)) {
     TRY(stratus_look_sample_begin(context, volume, &sample));
   }
   const stratus_status status = reduce_on_host(context, volume, ranges, sample.memory ? &sample : NULL);
@@ -354,53 +375,124 @@ static stratus_status reduce(stratus_context* context, const stratus_volume* vol
   return status;
 }
 
-stratus_status stratus_value_range_create(stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
+/* Sets ranges by those of smaller blocks, of which a whole number are in each block. */
+static void join_blocks(const stratus_value_range* small, stratus_value_range* ranges)
+{
+  const int64_t factor = ranges->block_size / small->block_size, count = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
+  ranges->bias = small->bias;
+  ranges->whole_lo = small->whole_lo;
+  ranges->whole_hi = small->whole_hi;
+  for (int64_t b = 0; b < count; ++b) {
+    ranges->lo[b] = INFINITY;
+    ranges->hi[b] = -INFINITY;
+    ranges->gaps[b] = 0;
+  }
+  int64_t from = 0;
+  for (int64_t k = 0; k < small->blocks[2]; ++k) {
+    for (int64_t j = 0; j < small->blocks[1]; ++j) {
+      const int64_t row = (k / factor * ranges->blocks[1] + j / factor) * ranges->blocks[0];
+      for (int64_t i = 0; i < small->blocks[0]; ++i, ++from) {
+        const int64_t to = row + i / factor;
+        ranges->lo[to] = small->lo[from] < ranges->lo[to] ? small->lo[from] : ranges->lo[to];
+        ranges->hi[to] = small->hi[from] > ranges->hi[to] ? small->hi[from] : ranges->hi[to];
+        ranges->gaps[to] |= small->gaps[from];
+      }
+    }
+  }
+}
+
+/* Finds the ranges by all values. */
+static stratus_status find_ranges(stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges)
+{
+  uint8_t* hidden = NULL;
+  ranges->bias = stratus_volume_bias(volume);
+  stratus_status status = stratus_volume_hidden_cells(context, volume, &hidden);
+  if (status == STRATUS_OK) {
+    status = reduce(context, volume, ranges);
+  }
+  if (status == STRATUS_OK) {
+    if (hidden) {
+      flag_hidden(volume, hidden, ranges);
+    }
+    reduce_whole(context, ranges);
+    status = stratus_volume_check_missing(context, volume);
+  }
+  stratus_release(context, hidden);
+  return status;
+}
+
+static stratus_status make(stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
 {
   stratus_status status = STRATUS_OK;
-  stratus_value_range* ranges = NULL;
-  uint8_t* hidden = NULL;
   void* memory;
+  TRY(stratus_allocate_zero(context, 1, sizeof(stratus_value_range), &memory));
+  stratus_value_range *ranges = memory, *small = NULL;
+  ranges->context = context;
+  ranges->block_size = block_size;
+  ranges->wide = stratus_type_is_wide(volume->type);
+  ranges->integer = stratus_type_is_integer(volume->type);
+  TRY_CLEANUP(allocate_blocks(context, volume, ranges));
+  if (!stratus_value_range_recall(volume, ranges)) {
+    /* All values of a large file are read once, for the blocks that rays skip. */
+    const int least = stratus_value_range_block_size(volume, 0);
+    if (block_size > least && stratus_kept_is_possible(volume)) {
+      TRY_CLEANUP(make(context, volume, least, &small));
+      join_blocks(small, ranges);
+    } else {
+      TRY_CLEANUP(find_ranges(context, volume, ranges));
+    }
+    stratus_value_range_keep(volume, ranges);
+  }
+  *out = ranges;
+  ranges = NULL;
+cleanup:
+  stratus_value_range_destroy(small);
+  stratus_value_range_destroy(ranges);
+  return status;
+}
 
+stratus_value_range* stratus_value_range_find_kept(stratus_context* context, const stratus_volume* volume)
+{
+  void* memory;
+  if (stratus_allocate_zero(context, 1, sizeof(stratus_value_range), &memory) != STRATUS_OK) {
+    return NULL;
+  }
+  stratus_value_range* const ranges = memory;
+  ranges->context = context;
+  ranges->block_size = stratus_value_range_block_size(volume, 0);
+  ranges->wide = stratus_type_is_wide(volume->type);
+  ranges->integer = stratus_type_is_integer(volume->type);
+  if (allocate_blocks(context, volume, ranges) == STRATUS_OK && stratus_value_range_recall(volume, ranges)) {
+    return ranges;
+  }
+  stratus_value_range_destroy(ranges);
+  return NULL;
+}
+
+stratus_status stratus_value_range_create(stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
+{
+  stratus_value_range* ranges = NULL;
   if (!context) {
     return STRATUS_INVALID_ARGUMENT;
   }
   if (!out) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "ranges is NULL");
   }
-  block_size = block_size ? block_size : BLOCK_SIZE_DEFAULT;
-  TRY(check_block_size(context, block_size));
   TRY(stratus_volume_check(context, volume));
-  TRY(stratus_allocate_zero(context, 1, sizeof *ranges, &memory));
-  ranges = memory;
-  ranges->context = context;
-  ranges->block_size = block_size;
-  ranges->wide = stratus_type_is_wide(volume->type);
-  ranges->integer = stratus_type_is_integer(volume->type);
-
+  block_size = block_size ? block_size : stratus_value_range_block_size(volume, 0);
+  TRY(check_block_size(context, block_size));
   const stratus_stage stage = stratus_stage_begin(context);
-  TRY_CLEANUP(stratus_progress(context, "value ranges", 0.0));
-  TRY_CLEANUP(allocate_blocks(context, volume, ranges));
-  if (!stratus_value_range_recall(volume, ranges)) {
-    ranges->bias = stratus_volume_bias(volume);
-    TRY_CLEANUP(stratus_volume_hidden_cells(context, volume, &hidden));
-    TRY_CLEANUP(reduce(context, volume, ranges));
-    if (hidden) {
-      flag_hidden(volume, hidden, ranges);
-    }
-    reduce_whole(context, ranges);
-    TRY_CLEANUP(stratus_volume_check_missing(context, volume));
-    stratus_value_range_keep(volume, ranges);
-  }
+  TRY(stratus_progress(context, "value ranges", 0.0));
+  TRY(make(context, volume, block_size, &ranges));
   stratus_stage_end(context, &stage, "value ranges",
     (size_t)(ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2]) * (sizeof *ranges->lo + sizeof *ranges->hi + sizeof *ranges->gaps));
-  TRY_CLEANUP(stratus_progress(context, "value ranges", 1.0));
+  const stratus_status status = stratus_progress(context, "value ranges", 1.0);
+  if (status != STRATUS_OK) {
+    stratus_value_range_destroy(ranges);
+    return status;
+  }
   *out = ranges;
-  ranges = NULL;
-
-cleanup:
-  stratus_release(context, hidden);
-  stratus_value_range_destroy(ranges);
-  return status;
+  return STRATUS_OK;
 }
 
 void stratus_value_range_destroy(stratus_value_range* ranges)

@@ -82,6 +82,11 @@ struct stratus_value_range {
   float whole_hi;
 };
 
+/* Returns the size of blocks that rays skip: `wanted`, or 4 for 0, or larger if the maps of a large volume would take much memory. */
+int stratus_value_range_block_size(const stratus_volume* volume, int wanted);
+/* Returns the ranges of blocks of that size that are kept of the volume; NULL if none are. No value is read. */
+stratus_value_range* stratus_value_range_find_kept(stratus_context* context, const stratus_volume* volume);
+
 static inline stratus_fetching stratus_value_range_fetching(const stratus_value_range* ranges)
 {
   return (stratus_fetching){ .bias = ranges->bias, .wide = ranges->wide, .integer = ranges->integer };

@@ -25,9 +25,10 @@ typedef struct header {
   uint64_t key, hash; /* of the bytes behind the header */
 } header;
 
-static bool is_kept(const stratus_volume* volume)
+bool stratus_kept_is_possible(const stratus_volume* volume)
 {
-  return volume->identity != 0 && !volume->point_ghosts && !volume->cell_ghosts;
+  char folder[STRATUS_CACHE_PATH];
+  return volume->identity != 0 && !volume->point_ghosts && !volume->cell_ghosts && stratus_cache_find(folder);
 }
 
 static uint64_t key_of(const stratus_volume* volume, int64_t number)
@@ -51,7 +52,7 @@ uint8_t* stratus_kept_recall(stratus_context* context, const stratus_volume* vol
 {
   char folder[STRATUS_CACHE_PATH], name[64], path[STRATUS_CACHE_PATH + 64];
   header h;
-  if (!is_kept(volume)) {
+  if (!stratus_kept_is_possible(volume)) {
     return NULL;
   }
   const uint64_t key = key_of(volume, number);
@@ -127,7 +128,7 @@ static void remove_old(const char* folder, const char* kind, const char* newest)
 void stratus_kept_keep(const stratus_volume* volume, const char* kind, int64_t number, const void* bytes, size_t size)
 {
   char folder[STRATUS_CACHE_PATH], name[64];
-  if (!is_kept(volume)) {
+  if (!stratus_kept_is_possible(volume)) {
     return;
   }
   const uint64_t key = key_of(volume, number);

@@ -100,6 +100,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
     core.dimensions[a] = source.Dimensions[a] * (a == 0 ? source.Components : 1);
     core.brick[a] = source.Brick[a] * (a == 0 ? source.Components : 1);
   }
+  core.identity = source.Identity;
   core.read = &ReadBox;
   core.release = &Release;
   core.user = new vtkStratusBrickSource(source);
@@ -133,4 +134,9 @@ vtkTypeInt64 vtkStratusGetBrickMemory()
 vtkTypeInt64 vtkStratusGetBrickMemoryUsed()
 {
   return static_cast<vtkTypeInt64>(ThePool().Report().resident);
+}
+
+vtkTypeInt64 vtkStratusGetBrickBytesRead()
+{
+  return static_cast<vtkTypeInt64>(ThePool().Report().bytes_read);
 }

@@ -32,5 +32,7 @@ VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtk
 VTK_STRATUS_PRIVATE void vtkStratusSetBrickMemory(vtkTypeInt64 bytes);
 VTK_STRATUS_PRIVATE vtkTypeInt64 vtkStratusGetBrickMemory();
 VTK_STRATUS_PRIVATE vtkTypeInt64 vtkStratusGetBrickMemoryUsed();
+// The bytes that were read into such arrays so far.
+VTK_STRATUS_PRIVATE vtkTypeInt64 vtkStratusGetBrickBytesRead();
 
 #endif

@@ -64,8 +64,8 @@ public:
       strides[a] = stride;
       stride *= size[a];
     }
-    const std::lock_guard<std::recursive_mutex> lock(vtkStratusNetCDFLock());
-    return this->File->Read(*this->Variable, start, count);
+    std::unique_lock<std::recursive_mutex> lock(vtkStratusNetCDFLock());
+    return this->File->Read(*this->Variable, start, count, &lock);
   }
 
   // Copies a box, x fastest, along the array's axes.

@@ -353,8 +353,8 @@ std::vector<size_t> vtkStratusNetCDFFile::ChunksOf(const Variable& variable) con
   return status == NC_NOERR && storage == NC_CHUNKED ? chunks : std::vector<size_t>();
 }
 
-vtkSmartPointer<vtkDataArray> vtkStratusNetCDFFile::Read(
-  const Variable& variable, const std::vector<size_t>& start, const std::vector<size_t>& count) const
+vtkSmartPointer<vtkDataArray> vtkStratusNetCDFFile::Read(const Variable& variable, const std::vector<size_t>& start,
+  const std::vector<size_t>& count, std::unique_lock<std::recursive_mutex>* lock) const
 {
   std::vector<size_t> from = start, many = count;
   if (count.empty()) {
@@ -364,7 +364,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusNetCDFFile::Read(
     }
   }
   int status = NC_NOERR;
-  const vtkSmartPointer<vtkDataArray> array = this->ValuesOf(variable).Read(from, many, status);
+  const vtkSmartPointer<vtkDataArray> array = this->ValuesOf(variable).Read(from, many, status, lock);
   this->Check(status, "variable '" + variable.Name + "' cannot be read");
   array->SetName(variable.Name.c_str());
   return array;

@@ -77,8 +77,9 @@ public:
 
   // Reads a block of values; empty start and count: all. Missing values are NaN, the others are unpacked, by the rules at
   // vtkStratusNetCDFValues. The array is float if floats represent all of the variable's values exactly, otherwise double.
-  vtkSmartPointer<vtkDataArray> Read(
-    const Variable& variable, const std::vector<size_t>& start = {}, const std::vector<size_t>& count = {}) const;
+  // lock: null, or a lock of vtkStratusNetCDFLock(), which is released when libnetcdf is done.
+  vtkSmartPointer<vtkDataArray> Read(const Variable& variable, const std::vector<size_t>& start = {}, const std::vector<size_t>& count = {},
+    std::unique_lock<std::recursive_mutex>* lock = nullptr) const;
   // Returns "; ..." for attributes of values that are ignored, "" if there is none.
   std::string DescribeValues(const Variable& variable) const;
   // Reads all values of integers or reals, in doubles; one that is missing is an error that names `what`.

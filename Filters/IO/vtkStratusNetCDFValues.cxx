@@ -298,9 +298,9 @@ template <class Stored> bool vtkStratusNetCDFValues::IsFloatEnough() const
   return largest < 1e38 && largest * std::numeric_limits<float>::epsilon() < 0.5 * std::fabs(this->Scale);
 }
 
-template <class Stored, class Result> void vtkStratusNetCDFValues::Unpack(const Stored* stored, size_t count, Result* results) const
+template <class Stored, class Result>
+void vtkStratusNetCDFValues::Unpack(const Missing<Stored>& missing, const Stored* stored, size_t count, Result* results) const
 {
-  const Missing<Stored> missing = this->FindMissing<Stored>();
   const bool packed = this->IsPacked();
   for (size_t i = 0; i < count; ++i) {
     const Stored value = stored[i];
@@ -312,7 +312,7 @@ template <class Stored, class Result> void vtkStratusNetCDFValues::Unpack(const 
 
 template <class Stored, class Result>
 vtkSmartPointer<vtkDataArray> vtkStratusNetCDFValues::ReadAs(
-  const std::vector<size_t>& start, const std::vector<size_t>& count, int& status) const
+  const std::vector<size_t>& start, const std::vector<size_t>& count, int& status, std::unique_lock<std::recursive_mutex>* lock) const
 {
   const size_t total = std::accumulate(count.begin(), count.end(), static_cast<size_t>(1), std::multiplies<size_t>());
   using Array = std::conditional_t<std::is_same<Result, float>::value, vtkFloatArray, vtkDoubleArray>;
@@ -326,16 +326,20 @@ vtkSmartPointer<vtkDataArray> vtkStratusNetCDFValues::ReadAs(
   if (status != NC_NOERR) {
     return nullptr;
   }
-  this->Unpack(static_cast<const Stored*>(stored), total, results);
+  const Missing<Stored> missing = this->FindMissing<Stored>();
+  if (lock) {
+    lock->unlock();
+  }
+  this->Unpack(missing, static_cast<const Stored*>(stored), total, results);
   return array;
 }
 
 vtkSmartPointer<vtkDataArray> vtkStratusNetCDFValues::Read(
-  const std::vector<size_t>& start, const std::vector<size_t>& count, int& status) const
+  const std::vector<size_t>& start, const std::vector<size_t>& count, int& status, std::unique_lock<std::recursive_mutex>* lock) const
 {
   return WithType(this->Type, [&](auto value) {
     using Stored = decltype(value);
-    return this->IsFloatEnough<Stored>() ? this->ReadAs<Stored, float>(start, count, status)
-                                         : this->ReadAs<Stored, double>(start, count, status);
+    return this->IsFloatEnough<Stored>() ? this->ReadAs<Stored, float>(start, count, status, lock)
+                                         : this->ReadAs<Stored, double>(start, count, status, lock);
   });
 }

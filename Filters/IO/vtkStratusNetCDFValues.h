@@ -7,6 +7,7 @@
 #include "vtkDataArray.h"
 #include "vtkSmartPointer.h"
 
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,9 @@ public:
 
   // Reads a block. Missing values are NaN. Returns floats if floats represent all of the variable's values exactly, otherwise doubles. Sets
   // `status` to libnetcdf's status; unless it is NC_NOERR, nothing is returned.
-  vtkSmartPointer<vtkDataArray> Read(const std::vector<size_t>& start, const std::vector<size_t>& count, int& status) const;
+  // `lock` is released before values are unpacked, for which libnetcdf is not needed.
+  vtkSmartPointer<vtkDataArray> Read(const std::vector<size_t>& start, const std::vector<size_t>& count, int& status,
+    std::unique_lock<std::recursive_mutex>* lock = nullptr) const;
 
   // Returns "; ..." for each attribute that is ignored because it is text, or a limit that the packed type does not hold. "" for none.
   std::string Describe() const;
@@ -35,8 +38,10 @@ private:
   template <class Stored> struct Missing;
 
   template <class Stored, class Result>
-  vtkSmartPointer<vtkDataArray> ReadAs(const std::vector<size_t>& start, const std::vector<size_t>& count, int& status) const;
-  template <class Stored, class Result> void Unpack(const Stored* stored, size_t count, Result* results) const;
+  vtkSmartPointer<vtkDataArray> ReadAs(
+    const std::vector<size_t>& start, const std::vector<size_t>& count, int& status, std::unique_lock<std::recursive_mutex>* lock) const;
+  template <class Stored, class Result>
+  void Unpack(const Missing<Stored>& missing, const Stored* stored, size_t count, Result* results) const;
   template <class Stored> bool IsFloatEnough() const;
   template <class Stored> Missing<Stored> FindMissing() const;
   double ReadNumber(const char* attribute, double otherwise) const;

@@ -46,6 +46,11 @@ vtkTypeInt64 vtkStratusVariableReader::GetMemoryUsed()
   return vtkStratusGetBrickMemoryUsed();
 }
 
+vtkTypeInt64 vtkStratusVariableReader::GetBytesRead()
+{
+  return vtkStratusGetBrickBytesRead();
+}
+
 int vtkStratusVariableReader::FillInputPortInformation(int, vtkInformation*)
 {
   return 0;

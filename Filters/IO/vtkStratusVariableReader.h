@@ -88,6 +88,11 @@ public:
    */
   static vtkTypeInt64 GetMemoryUsed();
 
+  /**
+   * Get how many bytes were read into bricks since the process began, those that were read again, too.
+   */
+  static vtkTypeInt64 GetBytesRead();
+
   //@{
   /**
    * Get the variables that can be read, after UpdateInformation(): their number, all names, and the name, units, long name and standard

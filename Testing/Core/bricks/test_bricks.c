@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Arrays of bricks against the values that their source has: whatever the shapes, the limit of memory and the threads that read, and
  * which parts are read, dropped and kept. */
+#define _XOPEN_SOURCE 700
 #include "bricks.h"
+#include "remove_folder.h"
 #include "structures.h"
 #include "stratus.h"
 
@@ -396,6 +398,70 @@ static void pictures_are_the_same(void** state)
   free(plain);
 }
 
+/* Once value ranges are kept, bricks of one value are not read, and have that value. */
+static int read_layered(void* user, const int64_t lo[3], const int64_t size[3], void* values)
+{
+  const formula* f = user;
+  const int failed = read_formula(user, lo, size, values);
+  for (int64_t z = 0; z < size[2]; ++z) { /* all but layers 40..59 are 7 */
+    for (int64_t i = 0; (lo[2] + z < 40 || lo[2] + z > 59) && i < size[0] * size[1]; ++i) {
+      const int64_t to = z * size[0] * size[1] + i;
+      if (f->type == STRATUS_FLOAT32) {
+        ((float*)values)[to] = 7.0f;
+      } else if (f->type == STRATUS_INT16) {
+        ((int16_t*)values)[to] = -7;
+      } else {
+        ((uint8_t*)values)[to] = 7;
+      }
+    }
+  }
+  return failed;
+}
+
+static void bricks_of_one_value_are_not_read(void** state)
+{
+  static const stratus_type types[] = { STRATUS_FLOAT32, STRATUS_INT16, STRATUS_UINT8 };
+  char folder[] = "/tmp/stratus-bricks-XXXXXX";
+  (void)state;
+  assert_non_null(mkdtemp(folder));
+  setenv("STRATUS_CACHE_DIR", folder, 1);
+  for (size_t t = 0; t < sizeof types / sizeof *types; ++t) {
+    formula f = make_formula(types[t], 70, 90, 100, 20, 30, 10);
+    const size_t bytes = (size_t)count_of(&f) * stratus_type_size(types[t]);
+    char* values[2];
+    int calls[2];
+    for (int round = 0; round < 2; ++round) {
+      stratus_brick_pool* pool = make_pool(0);
+      stratus_bricks* bricks = NULL;
+      stratus_brick_source source = source_of(&f);
+      source.read = read_layered;
+      source.identity = 71 + t;
+      f.calls = 0;
+      assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_OK);
+      stratus_volume volume = stratus_volume_default();
+      volume.values = stratus_bricks_values(bricks);
+      volume.type = f.type;
+      volume.identity = source.identity;
+      memcpy(volume.dimensions, f.dimensions, sizeof volume.dimensions);
+      stratus_value_range* ranges = NULL;
+      assert_int_equal(stratus_value_range_create(host, &volume, 0, &ranges), STRATUS_OK);
+      stratus_value_range_destroy(ranges);
+      values[round] = malloc(bytes);
+      memcpy(values[round], volume.values, bytes);
+      calls[round] = f.calls;
+      stratus_bricks_destroy(bricks);
+      stratus_brick_pool_destroy(pool);
+    }
+    assert_memory_equal(values[0], values[1], bytes);
+    assert_int_equal(calls[0], 4 * 3 * 10);
+    assert_int_equal(calls[1], 4 * 3 * 3); /* two layers of bricks with other values, and the one below, whose last block touches them */
+    free(values[0]);
+    free(values[1]);
+  }
+  unsetenv("STRATUS_CACHE_DIR");
+  remove_folder(folder);
+}
+
 static void faults_of_the_caller_are_told(void** state)
 {
   (void)state;
@@ -429,6 +495,6 @@ int test_bricks(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(values_are_the_sources), cmocka_unit_test(without_pages_all_is_read_at_once),
     cmocka_unit_test(only_parts_that_are_looked_at_are_read), cmocka_unit_test(memory_stays_within_its_limit),
     cmocka_unit_test(what_is_read_stays), cmocka_unit_test(values_that_cannot_be_read_are_counted), cmocka_unit_test(pictures_are_the_same),
-    cmocka_unit_test(faults_of_the_caller_are_told) };
+    cmocka_unit_test(bricks_of_one_value_are_not_read), cmocka_unit_test(faults_of_the_caller_are_told) };
   return cmocka_run_group_tests(tests, begin, end);
 }
