@@ -50,7 +50,7 @@ typedef struct stratus_brick_pool_report {
   uint64_t memory;        /* the limit, in bytes */
   uint64_t resident;      /* bytes of the bricks that are in memory */
   uint64_t resident_most; /* the most there were */
-  uint64_t parts_read;    /* of all arrays, those of arrays that were destroyed, too */
+  uint64_t parts_read;    /* of all arrays, including arrays that were destroyed */
   uint64_t bytes_read;
 } stratus_brick_pool_report;
 

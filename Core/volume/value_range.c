@@ -375,7 +375,7 @@ static stratus_status reduce(stratus_context* context, const stratus_volume* vol
   return status;
 }
 
-/* Sets ranges by those of smaller blocks, of which a whole number are in each block. */
+/* Sets ranges by the ranges of smaller blocks, whose size divides the size of the larger ones. */
 static void join_blocks(const stratus_value_range* small, stratus_value_range* ranges)
 {
   const int64_t factor = ranges->block_size / small->block_size, count = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
