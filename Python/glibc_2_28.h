@@ -8,3 +8,7 @@ __asm__(".symver fmod, fmod@GLIBC_2.2.5");
 __asm__(".symver log, log@GLIBC_2.2.5");
 __asm__(".symver log2, log2@GLIBC_2.2.5");
 __asm__(".symver pow, pow@GLIBC_2.2.5");
+/* glibc 2.32 and 2.34 moved these from the library of threads, unchanged. */
+__asm__(".symver pthread_create, pthread_create@GLIBC_2.2.5");
+__asm__(".symver pthread_join, pthread_join@GLIBC_2.2.5");
+__asm__(".symver pthread_sigmask, pthread_sigmask@GLIBC_2.2.5");

@@ -52,9 +52,6 @@ INLINE vmask several_mesh_mix(const several_mesh* m, several_mesh_rays* rays, co
   return mask;
 }
 
-/* Whether the rates of a mesh's pieces are those of whole pieces, which are not integrated between values: of components and of labels. */
-INLINE int several_mesh_is_mixed(const several_mesh* m) { return m->a->media.components | m->a->media.labels; }
-
 /* The function of a label. */
 typedef struct several_label {
   GLOBAL const int* sums;
