@@ -18,7 +18,8 @@ namespace {
 struct Pool {
   stratus_context* Context = nullptr;
   stratus_brick_pool* Bricks = nullptr;
-  std::mutex Lock; // of the map, and of the context
+  bool HasMemory = false; // the limit was set
+  std::mutex Lock;        // of the map, and of the context
   std::map<void*, stratus_bricks*> Arrays;
 
   Pool()
@@ -123,7 +124,13 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
 
 void vtkStratusSetBrickMemory(vtkTypeInt64 bytes)
 {
+  ThePool().HasMemory = bytes > 0;
   stratus_brick_pool_set_memory(ThePool().Bricks, static_cast<uint64_t>(std::max<vtkTypeInt64>(bytes, 0)));
+}
+
+bool vtkStratusHasBrickMemory()
+{
+  return ThePool().HasMemory;
 }
 
 vtkTypeInt64 vtkStratusGetBrickMemory()

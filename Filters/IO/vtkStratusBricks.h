@@ -31,6 +31,8 @@ VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtk
 // The bytes that all such arrays of the process take at most. 0: half of the memory that was free at the first call.
 VTK_STRATUS_PRIVATE void vtkStratusSetBrickMemory(vtkTypeInt64 bytes);
 VTK_STRATUS_PRIVATE vtkTypeInt64 vtkStratusGetBrickMemory();
+// Whether the limit was set to a number.
+VTK_STRATUS_PRIVATE bool vtkStratusHasBrickMemory();
 VTK_STRATUS_PRIVATE vtkTypeInt64 vtkStratusGetBrickMemoryUsed();
 // The bytes that were read into such arrays so far.
 VTK_STRATUS_PRIVATE vtkTypeInt64 vtkStratusGetBrickBytesRead();

@@ -268,7 +268,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusImageReader::Map(int64_t first, int64_t 
   if (error) {
     return nullptr;
   }
-  if (bytes > vtkStratusGetBrickMemory()) {
+  if (vtkStratusHasBrickMemory() && bytes > vtkStratusGetBrickMemory()) { // else the system forgets pages where memory is short
     const int64_t sizes[3] = { this->WholeExtent[1] + 1, this->WholeExtent[3] + 1, this->WholeExtent[5] + 1 };
     const vtkSmartPointer<vtkDataArray> bricks =
       vtkStratusMakeRawBricks(file.Files[0], begin + first * size, file.ArrayName.c_str(), file.Type, this->Components, sizes);

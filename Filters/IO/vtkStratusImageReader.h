@@ -21,8 +21,8 @@
  * numbered.
  *
  * MapFile is on by default: values that are in the file as the program needs them stay there: uncompressed, in the machine's order of
- * bytes, not scaled, in one piece. If they are more than the memory limit, they are bricks; otherwise what a program writes into the array
- * stays in memory.
+ * bytes, not scaled, in one piece. If a memory limit is set and they are more, they are bricks; otherwise what a program writes into the
+ * array stays in memory.
  *
  * A file is an error if it has less data than its header says, or needs an unsupported feature: the message names it. docs/command-line.md
  * has a table of supported features.

@@ -70,7 +70,7 @@ typedef struct several_mesh {
   CONSTANT stratus_several_places* places;
 } several_mesh;
 
-/* Whether the rates of a mesh's pieces are those of whole pieces, which are not integrated between values: of components and of labels. */
+/* Whether a mesh has components or labels: their rates are constant in a piece, and are not integrated between values. */
 INLINE int several_mesh_is_mixed(const several_mesh* m) { return m->a->media.components | m->a->media.labels; }
 
 typedef struct several_mesh_rays {
