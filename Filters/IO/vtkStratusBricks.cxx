@@ -81,12 +81,16 @@ void Release(void* user)
 void Free(void* values)
 {
   Pool& pool = ThePool();
-  const std::lock_guard<std::mutex> lock(pool.Lock);
-  const auto found = pool.Arrays.find(values);
-  if (found != pool.Arrays.end()) {
-    stratus_bricks_destroy(found->second);
-    pool.Arrays.erase(found);
+  stratus_bricks* bricks = nullptr;
+  {
+    const std::lock_guard<std::mutex> lock(pool.Lock);
+    const auto found = pool.Arrays.find(values);
+    if (found != pool.Arrays.end()) {
+      bricks = found->second;
+      pool.Arrays.erase(found);
+    }
   }
+  stratus_bricks_destroy(bricks); // a source may take a lock of its own, with which others make arrays
 }
 } // namespace
 
