@@ -97,7 +97,7 @@ check("the least limit", Reader.GetMemoryLimit() == LIMIT)
 paged = reader_of(write("plain.nc", chunksizes=(1, 32, 32, 32), zlib=True, complevel=1), True)
 if not paged.GetMapped():
     print("SKIPPED: this system offers no pages that stop their readers")
-    done()
+    sys.exit(77)
 check("nothing is read before something looks", Reader.GetMemoryUsed() == 0)
 one = values_of(paged)[(80 * NY + 100) * NX + 50]
 check("a value", one == FIELD[80, 100, 50])
