@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Arrays whose parts are read when something first reads their values. The kernel stops a thread that reads a page that is not there, and
- * tells one of the pool's threads (userfaultfd), which reads the part of the page and lets the thread go on. So everything that reads
+ * notifies one of the pool's threads (userfaultfd), which reads the part of the page and lets the thread go on. So everything that reads
  * values reads bricks, and what is in memory costs nothing.
  *
  * Each array is a file in memory that is mapped for its readers. Parts are written to the file, and their pages are shown to the readers
@@ -47,6 +47,31 @@ static uint64_t limit_of(uint64_t memory)
   return limit < MEMORY_LEAST ? MEMORY_LEAST : limit;
 }
 
+/* Puts the runs of a part from the room into the array. Returns how many bytes could not be written, for want of memory. */
+static uint64_t store_part(const stratus_bricks* bricks, int64_t part, const stratus_brick_room* room)
+{
+  const int64_t runs = room->bytes ? stratus_brick_runs(bricks, part) : 0;
+  const char* from = room->bytes;
+  uint64_t missing = 0;
+  for (int64_t r = 0; r < runs; ++r) {
+    const stratus_brick_run run = stratus_brick_run_at(bricks, part, r);
+    if (bricks->memory < 0) {
+      memcpy(bricks->values + run.begin, from, run.end - run.begin);
+      from += run.end - run.begin;
+    }
+    for (size_t at = run.begin; bricks->memory >= 0 && at < run.end;) {
+      const ssize_t wrote = pwrite(bricks->memory, from, run.end - at, (off_t)at);
+      if (wrote < 0 && errno != EINTR) {
+        missing += run.end - at;
+      }
+      const size_t done = wrote > 0 ? (size_t)wrote : wrote < 0 && errno == EINTR ? 0 : run.end - at;
+      from += done;
+      at += done;
+    }
+  }
+  return missing;
+}
+
 /* ------------------------------------------------------------------------------------------------ pages */
 #ifdef STRATUS_PAGED
 
@@ -82,7 +107,7 @@ static void show_part(const stratus_bricks* bricks, int64_t part)
   }
 }
 
-/* Returns the bytes of the pages that the part fills alone. *edges: bytes of those that it shares. */
+/* Returns the bytes of the pages that hold only this part. *edges: bytes of the pages that it shares. */
 static uint64_t bytes_of(const stratus_bricks* bricks, int64_t part, uint64_t* edges)
 {
   const size_t page = bricks->pool->page;
@@ -145,27 +170,6 @@ static void make_room(stratus_brick_pool* pool, const stratus_bricks* keeper, in
   }
 }
 
-/* Writes the runs of a part from the room to the array's file. Returns how many bytes could not be written. */
-static uint64_t write_part(const stratus_bricks* bricks, int64_t part, const stratus_brick_room* room)
-{
-  const int64_t runs = room->bytes ? stratus_brick_runs(bricks, part) : 0;
-  const char* from = room->bytes;
-  uint64_t missing = 0;
-  for (int64_t r = 0; r < runs; ++r) {
-    const stratus_brick_run run = stratus_brick_run_at(bricks, part, r);
-    for (size_t at = run.begin; at < run.end;) {
-      const ssize_t wrote = pwrite(bricks->memory, from, run.end - at, (off_t)at);
-      if (wrote < 0 && errno != EINTR) {
-        missing += run.end - at;
-      }
-      const size_t done = wrote > 0 ? (size_t)wrote : wrote < 0 && errno == EINTR ? 0 : run.end - at;
-      from += done;
-      at += done;
-    }
-  }
-  return missing;
-}
-
 /* Reads a part, with the pool's lock on entry and on return, but not while the source reads. Room is made before. */
 static void read_part(stratus_bricks* bricks, int64_t part, stratus_brick_room* room)
 {
@@ -178,17 +182,15 @@ static void read_part(stratus_bricks* bricks, int64_t part, stratus_brick_room* 
   pool->resident_most = pool->resident > pool->resident_most ? pool->resident : pool->resident_most;
   pthread_mutex_unlock(&pool->lock);
   uint64_t missing = stratus_brick_part_read(bricks, part, room);
-  missing += missing == stratus_brick_part_bytes(bricks, part) ? 0 : write_part(bricks, part, room);
+  missing += missing == stratus_brick_part_bytes(bricks, part) ? 0 : store_part(bricks, part, room);
   pthread_mutex_lock(&pool->lock);
   set_state(bricks, part, STRATUS_PART_HERE);
   bricks->report.parts_here += 1;
-  bricks->report.parts_read += 1;
   pool->parts_read += 1;
   pool->bytes_read += stratus_brick_part_bytes(bricks, part) - missing;
   bricks->report.bytes_read += stratus_brick_part_bytes(bricks, part) - missing;
-  bricks->report.missing += missing;
-  __atomic_store_n(&bricks->reads, bricks->report.parts_read, __ATOMIC_RELEASE);
-  __atomic_store_n(&bricks->missing, bricks->report.missing, __ATOMIC_RELEASE);
+  (void)__atomic_add_fetch(&bricks->report.parts_read, 1, __ATOMIC_RELEASE); /* others read these two without the lock */
+  (void)__atomic_add_fetch(&bricks->report.missing, missing, __ATOMIC_RELEASE);
   show_part(bricks, part);
   pthread_cond_broadcast(&pool->read);
 }
@@ -259,7 +261,7 @@ static void* serve_faults(void* user)
   return NULL;
 }
 
-/* Opens what the kernel tells faults by. Returns -1 where it does not. */
+/* Opens the handle on which the kernel reports faults. Returns -1 where it does not. */
 static int open_faults(void)
 {
   const int handle = (int)syscall(SYS_userfaultfd, O_CLOEXEC | O_NONBLOCK | UFFD_USER_MODE_ONLY);
@@ -466,23 +468,15 @@ static stratus_status read_all(stratus_context* context, stratus_bricks* bricks)
   stratus_status status = STRATUS_OK;
   for (int64_t part = 0; part < bricks->parts && status == STRATUS_OK; ++part) {
     bricks->report.missing += stratus_brick_part_read(bricks, part, &room);
-    const int64_t runs = room.bytes ? stratus_brick_runs(bricks, part) : 0;
-    const char* from = room.bytes;
-    for (int64_t r = 0; r < runs; ++r) {
-      const stratus_brick_run run = stratus_brick_run_at(bricks, part, r);
-      memcpy(bricks->values + run.begin, from, run.end - run.begin);
-      from += run.end - run.begin;
-    }
+    (void)store_part(bricks, part, &room);
     status = room.bytes ? stratus_progress(context, "bricks", (double)part / (double)bricks->parts)
                         : stratus_fail(context, STRATUS_OUT_OF_MEMORY, "out of memory for a part of %llu bytes",
                             (unsigned long long)stratus_brick_part_bytes(bricks, part));
   }
   free(room.bytes);
   TRY(status);
-  bricks->missing = bricks->report.missing;
-  bricks->reads = (uint64_t)bricks->parts;
   bricks->report.parts_here = bricks->report.parts_read = (uint64_t)bricks->parts;
-  bricks->report.bytes_read = bricks->bytes - bricks->missing;
+  bricks->report.bytes_read = bricks->bytes - bricks->report.missing;
   return STRATUS_OK;
 }
 
@@ -556,12 +550,12 @@ const void* stratus_bricks_values(const stratus_bricks* bricks)
 
 const uint64_t* stratus_bricks_missing(const stratus_bricks* bricks)
 {
-  return bricks ? &bricks->missing : NULL;
+  return bricks ? &bricks->report.missing : NULL;
 }
 
 const uint64_t* stratus_bricks_reads(const stratus_bricks* bricks)
 {
-  return bricks ? &bricks->reads : NULL;
+  return bricks ? &bricks->report.parts_read : NULL;
 }
 
 void stratus_bricks_get_report(stratus_bricks* bricks, stratus_bricks_report* report)

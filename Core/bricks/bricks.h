@@ -26,13 +26,12 @@ struct stratus_bricks {
   size_t bytes, row; /* of all values, and of a row along x */
   /* Paged: a mapping of `memory`, where a page that is not shown yet stops its readers. */
   char* values;
-  size_t mapped;           /* bytes: whole pages */
-  int memory;              /* the file of the mapping, which parts are written to; -1 if not paged */
-  int64_t rows, layers;    /* of a part, along y and z */
-  int64_t across, parts;   /* parts along y, and in all */
-  uint8_t* state;          /* of each part */
-  uint64_t missing, reads; /* as in the report; others read them without the lock */
-  float* only;             /* of each brick the one value that all of its values are, or NaN; NULL: nothing is known */
+  size_t mapped;         /* bytes: whole pages */
+  int memory;            /* the file of the mapping, which parts are written to; -1 if not paged */
+  int64_t rows, layers;  /* of a part, along y and z */
+  int64_t across, parts; /* parts along y, and in all */
+  uint8_t* state;        /* of each part */
+  float* only;           /* of each brick the one value that all of its values are, or NaN; NULL: nothing is known */
   stratus_bricks_report report;
 };
 
@@ -50,7 +49,7 @@ struct stratus_brick_pool {
   stratus_bricks* first;
   stratus_bricks* hand; /* of the clock, at its part number hand_part */
   int64_t hand_part;
-  int faults, quit; /* where the kernel tells of pages that are read, and what ends the threads; -1: not paged */
+  int faults, quit; /* where the kernel reports pages that are read, and the handle that ends the threads; -1: not paged */
   size_t page;
   pthread_t threads[64];
   int thread_count;
@@ -69,7 +68,7 @@ int64_t stratus_brick_runs(const stratus_bricks* bricks, int64_t part);
 stratus_brick_run stratus_brick_run_at(const stratus_bricks* bricks, int64_t part, int64_t run);
 /* Gives the part of the row of values (y,z) that a byte of the array is in. */
 int64_t stratus_brick_part_of(const stratus_bricks* bricks, size_t byte);
-/* Gives the pages that a run fills alone, as a range of bytes: empty if there is none. */
+/* Gives the pages that hold only this run, as a range of bytes: empty if there is none. */
 stratus_brick_run stratus_brick_inner(const stratus_bricks* bricks, size_t page, stratus_brick_run run);
 /* Returns the bytes of a part's values. */
 uint64_t stratus_brick_part_bytes(const stratus_bricks* bricks, int64_t part);

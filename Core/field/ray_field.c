@@ -14,11 +14,6 @@ static bool same_data(const stratus_ray_field* field, const stratus_volume* volu
     stratus_volume_components(old) == stratus_volume_components(volume);
 }
 
-int stratus_ray_block_size(const stratus_volume* volume)
-{
-  return stratus_value_range_block_size(volume, 0);
-}
-
 /* Makes value ranges, unless `same`, and hidden bytes. */
 static stratus_status make_ranges(stratus_ray_field* field, const stratus_volume* volume, const stratus_ray_cast_options* options,
   int block_size, int followed, bool by_value, bool same)

@@ -53,7 +53,5 @@ void stratus_ray_field_release(stratus_ray_field* field);
 bool stratus_ray_field_has_components(const stratus_ray_field* field);
 stratus_status stratus_ray_field_components(stratus_ray_field* field);
 const stratus_value_range* stratus_ray_range_of(const stratus_ray_field* field, int component);
-/* Returns the size of blocks where the user leaves it open. */
-int stratus_ray_block_size(const stratus_volume* volume);
 
 #endif

@@ -489,7 +489,7 @@ static stratus_status make_patches_by(stratus_ray_caster* caster, int block_size
 stratus_status stratus_ray_probe_rays(
   stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count, stratus_probe_classes* classes)
 {
-  const int size = stratus_ray_block_size(&caster->field.volume);
+  const int size = stratus_value_range_block_size(&caster->field.volume, 0);
   *count = 0;
   classes->of = NULL;
   return caster->field.ranges->block_size == size ? make_patches(caster, patches, count, classes)

@@ -362,7 +362,7 @@ static stratus_status reduce(stratus_context* context, const stratus_volume* vol
       return status;
     }
   }
-  /* What is kept of a large volume for later is taken now that all its values are read. */
+  /* The coarse copy of a large volume is taken now that all its values are read. */
   stratus_look_sample sample = { .memory = NULL };
   if (stratus_kept_is_possible(volume) && stratus_look_samples(volume)) {
     TRY(stratus_look_sample_begin(context, volume, &sample));
@@ -421,17 +421,30 @@ static stratus_status find_ranges(stratus_context* context, const stratus_volume
   return status;
 }
 
-static stratus_status make(stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
+/* Makes ranges of a size of blocks, whose values are not set. */
+static stratus_status begin(stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
 {
-  stratus_status status = STRATUS_OK;
   void* memory;
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_value_range), &memory));
-  stratus_value_range *ranges = memory, *small = NULL;
+  stratus_value_range* const ranges = memory;
   ranges->context = context;
   ranges->block_size = block_size;
   ranges->wide = stratus_type_is_wide(volume->type);
   ranges->integer = stratus_type_is_integer(volume->type);
-  TRY_CLEANUP(allocate_blocks(context, volume, ranges));
+  const stratus_status status = allocate_blocks(context, volume, ranges);
+  if (status != STRATUS_OK) {
+    stratus_value_range_destroy(ranges);
+    return status;
+  }
+  *out = ranges;
+  return STRATUS_OK;
+}
+
+static stratus_status make(stratus_context* context, const stratus_volume* volume, int block_size, stratus_value_range** out)
+{
+  stratus_status status = STRATUS_OK;
+  stratus_value_range *ranges = NULL, *small = NULL;
+  TRY(begin(context, volume, block_size, &ranges));
   if (!stratus_value_range_recall(volume, ranges)) {
     /* All values of a large file are read once, for the blocks that rays skip. */
     const int least = stratus_value_range_block_size(volume, 0);
@@ -453,16 +466,9 @@ cleanup:
 
 stratus_value_range* stratus_value_range_find_kept(stratus_context* context, const stratus_volume* volume)
 {
-  void* memory;
-  if (stratus_allocate_zero(context, 1, sizeof(stratus_value_range), &memory) != STRATUS_OK) {
-    return NULL;
-  }
-  stratus_value_range* const ranges = memory;
-  ranges->context = context;
-  ranges->block_size = stratus_value_range_block_size(volume, 0);
-  ranges->wide = stratus_type_is_wide(volume->type);
-  ranges->integer = stratus_type_is_integer(volume->type);
-  if (allocate_blocks(context, volume, ranges) == STRATUS_OK && stratus_value_range_recall(volume, ranges)) {
+  stratus_value_range* ranges = NULL;
+  if (begin(context, volume, stratus_value_range_block_size(volume, 0), &ranges) == STRATUS_OK &&
+    stratus_value_range_recall(volume, ranges)) {
     return ranges;
   }
   stratus_value_range_destroy(ranges);

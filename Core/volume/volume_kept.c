@@ -6,7 +6,6 @@
 
 #include "cache_folder.h"
 #include "hash.h"
-#include "volume_hash.h"
 
 #include <dirent.h>
 #include <inttypes.h>
@@ -25,12 +24,6 @@ typedef struct header {
   uint64_t key, hash; /* of the bytes behind the header */
 } header;
 
-bool stratus_kept_is_possible(const stratus_volume* volume)
-{
-  char folder[STRATUS_CACHE_PATH];
-  return volume->identity != 0 && !volume->point_ghosts && !volume->cell_ghosts && stratus_cache_find(folder);
-}
-
 static uint64_t key_of(const stratus_volume* volume, int64_t number)
 {
   uint64_t key = stratus_hash_finish(volume->identity);
@@ -42,21 +35,30 @@ static uint64_t key_of(const stratus_volume* volume, int64_t number)
   return key;
 }
 
-static bool name_of(const char* kind, uint64_t key, char folder[STRATUS_CACHE_PATH], char name[64])
+/* Gives the folder, if anything can be kept of the volume there. */
+static bool find_folder(const stratus_volume* volume, char folder[STRATUS_CACHE_PATH])
+{
+  return volume->identity != 0 && !volume->point_ghosts && !volume->cell_ghosts && stratus_cache_find(folder);
+}
+
+bool stratus_kept_is_possible(const stratus_volume* volume)
+{
+  char folder[STRATUS_CACHE_PATH];
+  return find_folder(volume, folder);
+}
+
+static bool name_of(const stratus_volume* volume, const char* kind, uint64_t key, char folder[STRATUS_CACHE_PATH], char name[64])
 {
   snprintf(name, 64, "%s-%016" PRIx64, kind, key);
-  return stratus_cache_find(folder);
+  return find_folder(volume, folder);
 }
 
 uint8_t* stratus_kept_recall(stratus_context* context, const stratus_volume* volume, const char* kind, int64_t number, size_t size)
 {
   char folder[STRATUS_CACHE_PATH], name[64], path[STRATUS_CACHE_PATH + 64];
   header h;
-  if (!stratus_kept_is_possible(volume)) {
-    return NULL;
-  }
   const uint64_t key = key_of(volume, number);
-  if (!name_of(kind, key, folder, name)) {
+  if (!name_of(volume, kind, key, folder, name)) {
     return NULL;
   }
   snprintf(path, sizeof path, "%s/%s", folder, name);
@@ -128,11 +130,8 @@ static void remove_old(const char* folder, const char* kind, const char* newest)
 void stratus_kept_keep(const stratus_volume* volume, const char* kind, int64_t number, const void* bytes, size_t size)
 {
   char folder[STRATUS_CACHE_PATH], name[64];
-  if (!stratus_kept_is_possible(volume)) {
-    return;
-  }
   const uint64_t key = key_of(volume, number);
-  if (size > BYTES_MOST || !name_of(kind, key, folder, name)) {
+  if (size > BYTES_MOST || !name_of(volume, kind, key, folder, name)) {
     return;
   }
   header h = { .key = key, .hash = stratus_hash(bytes, size, key) };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * What is known of a volume with an identity, kept in the cache's folder for later processes. */
+ * Facts of a volume with an identity, kept in the cache's folder for later processes. */
 #ifndef STRATUS_VOLUME_KEPT_H
 #define STRATUS_VOLUME_KEPT_H
 

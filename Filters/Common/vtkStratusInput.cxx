@@ -2,6 +2,7 @@
 #include "vtkStratusInput.h"
 
 #include "vtkStratusArrays.h"
+#include "vtkStratusCoreType.h"
 #include "vtkStratusMapped.h"
 
 #include "vtkCellData.h"
@@ -21,56 +22,6 @@
 #include <cmath>
 
 namespace {
-bool CoreType(int type, stratus_type& result)
-{
-  switch (type) {
-    case VTK_CHAR:
-      result = static_cast<char>(-1) < 0 ? STRATUS_INT8 : STRATUS_UINT8;
-      return true;
-    case VTK_SIGNED_CHAR:
-      result = STRATUS_INT8;
-      return true;
-    case VTK_UNSIGNED_CHAR:
-      result = STRATUS_UINT8;
-      return true;
-    case VTK_SHORT:
-      result = STRATUS_INT16;
-      return true;
-    case VTK_UNSIGNED_SHORT:
-      result = STRATUS_UINT16;
-      return true;
-    case VTK_INT:
-      result = STRATUS_INT32;
-      return true;
-    case VTK_UNSIGNED_INT:
-      result = STRATUS_UINT32;
-      return true;
-    case VTK_LONG:
-      result = sizeof(long) == 8 ? STRATUS_INT64 : STRATUS_INT32;
-      return true;
-    case VTK_UNSIGNED_LONG:
-      result = sizeof(long) == 8 ? STRATUS_UINT64 : STRATUS_UINT32;
-      return true;
-    case VTK_LONG_LONG:
-      result = STRATUS_INT64;
-      return true;
-    case VTK_UNSIGNED_LONG_LONG:
-      result = STRATUS_UINT64;
-      return true;
-    case VTK_ID_TYPE:
-      result = sizeof(vtkIdType) == 8 ? STRATUS_INT64 : STRATUS_INT32;
-      return true;
-    case VTK_FLOAT:
-      result = STRATUS_FLOAT32;
-      return true;
-    case VTK_DOUBLE:
-      result = STRATUS_FLOAT64;
-      return true;
-    default:
-      return false;
-  }
-}
-
 std::string ArrayName(vtkDataArray* array)
 {
   return array->GetName() ? std::string("'") + array->GetName() + "'" : std::string("without a name");
@@ -205,7 +156,7 @@ bool vtkStratusImageView::SetValues(
   vtkDataSet* image, vtkDataArray* array, bool cells, int mostComponents, int component, std::string& error)
 {
   stratus_volume& volume = this->Volume;
-  if (!CoreType(array->GetDataType(), volume.type)) {
+  if (!vtkStratusCoreType(array->GetDataType(), volume.type)) {
     error = "array " + ArrayName(array) + " is of type " + array->GetDataTypeAsString() +
       ", which is not supported: use char to unsigned long long, float or double";
     return false;

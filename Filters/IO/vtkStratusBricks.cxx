@@ -3,6 +3,7 @@
 
 #include "stratus/bricks.h"
 
+#include "vtkStratusCoreType.h"
 #include "vtkStratusMapped.h"
 
 #include "vtkDataArray.h"
@@ -45,25 +46,6 @@ Pool& ThePool()
   return *pool;
 }
 
-// VTK's type as the core's; false for another.
-bool CoreType(int type, stratus_type& core)
-{
-  constexpr struct {
-    int Type;
-    stratus_type Core;
-  } types[] = { { VTK_SIGNED_CHAR, STRATUS_INT8 }, { VTK_CHAR, STRATUS_INT8 }, { VTK_UNSIGNED_CHAR, STRATUS_UINT8 },
-    { VTK_SHORT, STRATUS_INT16 }, { VTK_UNSIGNED_SHORT, STRATUS_UINT16 }, { VTK_INT, STRATUS_INT32 }, { VTK_UNSIGNED_INT, STRATUS_UINT32 },
-    { VTK_LONG_LONG, STRATUS_INT64 }, { VTK_UNSIGNED_LONG_LONG, STRATUS_UINT64 }, { VTK_FLOAT, STRATUS_FLOAT32 },
-    { VTK_DOUBLE, STRATUS_FLOAT64 } };
-  for (const auto& one : types) {
-    if (one.Type == type) {
-      core = one.Core;
-      return true;
-    }
-  }
-  return false;
-}
-
 int ReadBox(void* user, const int64_t lo[3], const int64_t size[3], void* values)
 {
   const vtkStratusBrickSource& source = *static_cast<const vtkStratusBrickSource*>(user);
@@ -98,7 +80,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
 {
   Pool& pool = ThePool();
   stratus_brick_source core = {};
-  if (!pool.Bricks || !pool.Report().paged || !CoreType(source.Type, core.type)) {
+  if (!pool.Bricks || !pool.Report().paged || !vtkStratusCoreType(source.Type, core.type)) {
     return nullptr;
   }
   for (int a = 0; a < 3; ++a) {

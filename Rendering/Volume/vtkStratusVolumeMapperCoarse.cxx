@@ -39,8 +39,8 @@ void vtkStratusVolumeMapper::Internals::ChooseCoarse(vtkRenderer* renderer, cons
       this->CoarseCopy = nullptr;
     }
   }
-  const bool told = this->Mapper->HasObserver(vtkCommand::UpdateEvent) && !before;
-  this->ShowsCoarse = this->CoarseCopy && this->HasToRead && (moves || told);
+  const bool awaited = this->Mapper->HasObserver(vtkCommand::UpdateEvent) && !before;
+  this->ShowsCoarse = this->CoarseCopy && this->HasToRead && (moves || awaited);
 }
 
 stratus_ray_cast_input vtkStratusVolumeMapper::Internals::InputOf(const stratus_ray_cast_options& options)

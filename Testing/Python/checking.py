@@ -35,5 +35,16 @@ def ball(shape, center, radius, dtype=numpy.float32):
     return numpy.maximum(0, 1 - square / radius**2).astype(dtype)
 
 
+def errors_of(thing):
+    """The list to which the texts of a VTK object's errors are added from now on."""
+    errors = []
+
+    def keep(caller, event, text):
+        errors.append(text)
+    keep.CallDataType = "string0"
+    thing.AddObserver("ErrorEvent", keep)
+    return errors
+
+
 def done():
     sys.exit(1 if failures else 0)

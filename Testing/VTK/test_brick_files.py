@@ -5,7 +5,7 @@ import os
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Python"))
-from checking import check, done
+from checking import check, done, errors_of
 
 import netCDF4
 import numpy
@@ -50,16 +50,6 @@ def reader_of(name, bricks, step=0):
     reader.SetMapFile(bricks)
     reader.UpdateTimeStep(float(step))
     return reader
-
-
-def errors_of(algorithm):
-    errors = []
-
-    def keep(caller, event, text):
-        errors.append(text)
-    keep.CallDataType = "string0"
-    algorithm.AddObserver("ErrorEvent", keep)
-    return errors
 
 
 def values_of(reader):

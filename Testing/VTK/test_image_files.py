@@ -9,7 +9,7 @@ import sys
 import zlib
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Python"))
-from checking import check, done
+from checking import check, done, errors_of
 
 import numpy
 import vtk
@@ -46,22 +46,16 @@ def write(name, *parts):
     return name
 
 
-def errors_of(algorithm):
-    """The list to which the algorithm's errors are added from now on."""
-    errors = []
-
-    def keep(caller, event, text):
-        errors.append(text)
-    keep.CallDataType = "string0"
-    algorithm.AddObserver("ErrorEvent", keep)
+def all_errors_of(algorithm):
+    """The algorithm's errors, and none of its executive's on the terminal."""
     algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
-    return errors
+    return errors_of(algorithm)
 
 
 def read(name, time=None, maps=True):
     """Returns the image and the reader's errors. maps: values stay in the file, however few they are."""
     reader = stratus.vtkStratusImageReader()
-    errors = errors_of(reader)
+    errors = all_errors_of(reader)
     reader.SetMapFile(maps)
     reader.SetMappedBytesLeast(1)
     reader.SetFileName(name)
@@ -565,7 +559,7 @@ def test_mapping():
 def ranges_of(image):
     """The errors of a filter that reads all values."""
     values = stratus.vtkStratusDistanceMapFilter()
-    errors = errors_of(values)
+    errors = all_errors_of(values)
     values.SetInputData(image)
     values.Update()
     return "".join(errors)

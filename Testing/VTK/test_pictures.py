@@ -7,7 +7,7 @@ import struct
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Python"))
-from checking import check, done
+from checking import check, done, errors_of
 
 import numpy
 import vtk
@@ -20,17 +20,6 @@ os.makedirs(folder, exist_ok=True)
 if not hasattr(stratus, "vtkStratusEXRReader"):
     print("SKIPPED: built without OpenEXR")
     sys.exit(77)
-
-
-def errors_of(thing):
-    """Collects the object's errors."""
-    errors = []
-
-    def keep(caller, event, text):
-        errors.append(text)
-    keep.CallDataType = "string0"
-    thing.AddObserver("ErrorEvent", keep)
-    return errors
 
 
 KINDS = {numpy.dtype("u4"): 0, numpy.dtype("f2"): 1, numpy.dtype("f4"): 2}
