@@ -3,7 +3,7 @@
 set(STRATUS_BUILD_PROJ AUTO CACHE STRING "Project grids of netCDF files by PROJ, which needs libproj: ON, OFF, or AUTO (where it is found)")
 set_property(CACHE STRATUS_BUILD_PROJ PROPERTY STRINGS AUTO ON OFF)
 set(stratus_proj OFF)
-if (STRATUS_BUILD_PROJ AND stratus_netcdf)
+if (STRATUS_BUILD_PROJ)
   find_path(PROJ_INCLUDE_DIR proj.h)
   find_library(PROJ_LIBRARY proj)
   mark_as_advanced(PROJ_INCLUDE_DIR PROJ_LIBRARY)

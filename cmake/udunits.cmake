@@ -3,7 +3,7 @@
 set(STRATUS_BUILD_UDUNITS AUTO CACHE STRING "Read units of netCDF files by UDUNITS, which needs libudunits2: ON, OFF, or AUTO (where it is found)")
 set_property(CACHE STRATUS_BUILD_UDUNITS PROPERTY STRINGS AUTO ON OFF)
 set(stratus_udunits OFF)
-if (STRATUS_BUILD_UDUNITS AND stratus_netcdf)
+if (STRATUS_BUILD_UDUNITS)
   find_path(UDUNITS_INCLUDE_DIR udunits2.h PATH_SUFFIXES udunits2)
   find_library(UDUNITS_LIBRARY udunits2)
   mark_as_advanced(UDUNITS_INCLUDE_DIR UDUNITS_LIBRARY)

@@ -10,8 +10,8 @@
 #include "vtkDoubleArray.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
-#include <netcdf.h>
 
 namespace {
 bool IsOneOf(const std::string& word, std::initializer_list<const char*> words)
@@ -40,12 +40,12 @@ int AxisOfName(const std::string& name)
 }
 } // namespace
 
-bool vtkStratusCFGrid::IsVolume(const vtkStratusNetCDFFile& file, const Variable& variable)
+bool vtkStratusCFGrid::IsVolume(const vtkStratusNetCDFModel& file, const Variable& variable)
 {
-  return variable.Type != NC_CHAR && variable.Type < NC_STRING && vtkStratusNetCDFLayout(file, variable, [](int) { return -1; }).IsVolume();
+  return variable.HasNumbers() && vtkStratusNetCDFLayout(file, variable, [](int) { return -1; }).IsVolume();
 }
 
-vtkStratusCFGrid::vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable, bool on_earth)
+vtkStratusCFGrid::vtkStratusCFGrid(const vtkStratusNetCDFModel& file, const Variable& variable, bool on_earth)
     : File(file), Of(variable), OnEarth(on_earth), Mapping(vtkStratusProjection::FindMapping(file, variable)),
       Layout(file, variable, [this](int dimension) { return this->AxisOfDimension(dimension); }), Dimensions(Layout.GetAxes())
 {
@@ -53,9 +53,28 @@ vtkStratusCFGrid::vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Varia
     file.Fail("variable '" + variable.Name + "' has " + std::to_string(this->Layout.GetCount()) +
       " dimensions in space that are longer than 1, a volume has 3; its dimensions are " + file.DescribeDimensions(variable));
   }
+  this->CheckSize();
   this->FindCoordinates();
   this->ConvertUnits();
   this->Description += this->Layout.Describe();
+}
+
+// Checks the variable before memory is allocated for axes of its lengths, which a file can say without having as many values.
+void vtkStratusCFGrid::CheckSize() const
+{
+  constexpr double most = 1LL << 46; // values that a process can address
+  double count = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (this->GetLength(axis) > static_cast<size_t>(INT_MAX)) {
+      this->File.Fail("a dimension of " + std::to_string(this->GetLength(axis)) + " values is longer than VTK's grids, 2147483647");
+    }
+    count *= static_cast<double>(this->GetLength(axis));
+  }
+  if (count > most) {
+    this->File.Fail("'" + this->Of.Name + "' has " + vtkStratusNumberText(count) + " values, at most " + vtkStratusNumberText(most) +
+      " can be addressed");
+  }
+  this->File.CheckValues(this->Of);
 }
 
 int vtkStratusCFGrid::AxisOfDimension(int dimension) const
@@ -88,11 +107,10 @@ int vtkStratusCFGrid::AxisOf(const Variable& coordinate) const
 
 bool vtkStratusCFGrid::Fits(const Variable& variable) const
 {
-  return variable.Type != NC_CHAR && variable.Type < NC_STRING &&
-    std::all_of(variable.Dimensions.begin(), variable.Dimensions.end(), [this](int one) {
-      return one == this->Layout.GetTime() || this->Layout.IsFixed(one) || this->File.LengthOf(one) == 1 ||
-        std::find(this->Dimensions.begin(), this->Dimensions.end(), one) != this->Dimensions.end();
-    });
+  return variable.HasNumbers() && std::all_of(variable.Dimensions.begin(), variable.Dimensions.end(), [this](int one) {
+    return one == this->Layout.GetTime() || this->Layout.IsFixed(one) || this->File.LengthOf(one) == 1 ||
+      std::find(this->Dimensions.begin(), this->Dimensions.end(), one) != this->Dimensions.end();
+  });
 }
 
 bool vtkStratusCFGrid::Has(const Variable& variable, int axis) const
@@ -138,7 +156,7 @@ void vtkStratusCFGrid::FindCoordinates()
   for (size_t a = 0; a < 3; ++a) {
     const int dimension = this->Dimensions[a];
     const auto along = [dimension](const Variable* one) {
-      return one && one->Dimensions.size() == 1 && one->Dimensions[0] == dimension && one->Type != NC_CHAR && one->Type < NC_STRING;
+      return one && one->Dimensions.size() == 1 && one->Dimensions[0] == dimension && one->HasNumbers();
     };
     const Variable* own = this->File.CoordinateOf(dimension);
     const auto other = std::find_if(others.begin(), others.end(), along);
@@ -251,7 +269,7 @@ void vtkStratusCFGrid::FindHorizontal(const std::vector<const Variable*>& others
 bool vtkStratusCFGrid::FindWrfSpacing(const Variable& x, const Variable& y)
 {
   Variable global = x; // in the same group
-  global.Id = NC_GLOBAL;
+  global.Id = vtkStratusNetCDFModel::Global;
   for (const Variable* one : { &x, &y }) {
     const vtkSmartPointer<vtkDataArray> values = this->File.Read(*one);
     double range[2];
@@ -511,7 +529,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::MakeBricks(size_t step) const
     part.Lengths[a] = this->GetLength(static_cast<int>(a));
   }
   part.Flipped = this->Flipped;
-  return vtkStratusMakeNetCDFBricks(this->File, this->Of, part);
+  return this->File.MakeBricks(this->Of, part);
 }
 
 // Reads x or y of two or more dimensions in degrees or metres. Longitudes are made continuous. Values that are missing are NaN.

@@ -4,8 +4,8 @@
 #define vtkStratusCFGrid_h
 
 #include "vtkStratusCFVertical.h"
-#include "vtkStratusNetCDFFile.h"
 #include "vtkStratusNetCDFLayout.h"
+#include "vtkStratusNetCDFModel.h"
 #include "vtkStratusProjection.h"
 #include "vtkStratusUnits.h"
 #include "vtkStratusVariableReader.h"
@@ -29,14 +29,14 @@ struct vtkStratusCFField {
 class vtkStratusCFGrid
 {
 public:
-  using Variable = vtkStratusNetCDFFile::Variable;
+  using Variable = vtkStratusNetCDFModel::Variable;
 
   // Returns whether the variable has three dimensions in space, longer than 1, and numbers.
-  static bool IsVolume(const vtkStratusNetCDFFile& file, const Variable& variable);
+  static bool IsVolume(const vtkStratusNetCDFModel& file, const Variable& variable);
 
   // on_earth: horizontal coordinates are longitudes and latitudes of the Earth, whatever plane the file's own are on: two-dimensional ones
   // of the file, or those that its projection gives. A file that has neither is an error.
-  vtkStratusCFGrid(const vtkStratusNetCDFFile& file, const Variable& variable, bool on_earth = false); // throws vtkStratusReadError
+  vtkStratusCFGrid(const vtkStratusNetCDFModel& file, const Variable& variable, bool on_earth = false); // throws vtkStratusReadError
 
   bool IsCurved() const { return this->Horizontal[0] || !this->Places[0].empty() || this->Vertical->IsCurved(); }
   bool IsUniform() const;
@@ -58,7 +58,7 @@ public:
   bool IsSheet() const { return this->Flat && !this->Metres; } // x and y are in metres, and z is not
   int GetTime() const { return this->Layout.GetTime(); }       // a dimension, or -1
   const Variable& GetVariable() const { return this->Of; }
-  const vtkStratusNetCDFFile& GetFile() const { return this->File; }
+  const vtkStratusNetCDFModel& GetFile() const { return this->File; }
   int GetDimension(int axis) const { return this->Dimensions[static_cast<size_t>(axis)]; }
   size_t GetLength(int axis) const { return this->File.LengthOf(this->GetDimension(axis)); }
   const std::vector<double>& GetAxis(int axis) const { return this->Axes[axis]; } // ascending
@@ -79,6 +79,7 @@ public:
   vtkSmartPointer<vtkDataArray> ReadPoints(size_t step, std::vector<char>& hidden_points, std::vector<char>& hidden_cells) const;
 
 private:
+  void CheckSize() const;
   void FindCoordinates();
   void FindHorizontal(const std::vector<const Variable*>& others);
   bool FindWrfSpacing(const Variable& x, const Variable& y);
@@ -100,7 +101,7 @@ private:
   void HideTorn(const std::vector<double>& longitudes, const std::array<size_t, 3>& strides, std::vector<char>& hidden) const;
   void HideMissing(vtkDoubleArray* points, std::vector<char>& hidden) const;
 
-  const vtkStratusNetCDFFile& File;
+  const vtkStratusNetCDFModel& File;
   const Variable& Of;
   const bool OnEarth;
   const Variable* Mapping; // of the file's plane, nullptr: none

@@ -16,16 +16,15 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <climits>
 #include <set>
 
 vtkStandardNewMacro(vtkStratusCFReader);
 
 namespace {
-using Variable = vtkStratusNetCDFFile::Variable;
+using Variable = vtkStratusNetCDFModel::Variable;
 
 // The variables that others refer to as coordinates, bounds or terms of a height.
-std::set<const Variable*> FindReferred(const vtkStratusNetCDFFile& file)
+std::set<const Variable*> FindReferred(const vtkStratusNetCDFModel& file)
 {
   std::set<const Variable*> referred;
   for (const Variable& one : file.GetVariables()) {
@@ -39,13 +38,14 @@ std::set<const Variable*> FindReferred(const vtkStratusNetCDFFile& file)
 }
 
 // Throws an error that no variable is a volume, and lists the variables.
-[[noreturn]] void FailWithoutVolume(const vtkStratusNetCDFFile& file)
+[[noreturn]] void FailWithoutVolume(const vtkStratusNetCDFModel& file)
 {
   constexpr size_t most = 10;
   const std::vector<Variable>& all = file.GetVariables();
   std::string text;
   for (size_t i = 0; i < std::min(most, all.size()); ++i) {
-    text += (i > 0 ? "; '" : "'") + all[i].Name + "' has the dimensions " + file.DescribeDimensions(all[i]);
+    text += (i > 0 ? "; '" : "'") + all[i].Name + "' has the dimensions " + file.DescribeDimensions(all[i]) +
+      (all[i].HasNumbers() ? "" : " and " + file.WhyNoNumbers(all[i]));
   }
   file.Fail("there is no variable on a grid of three dimensions in space that are longer than 1; " + (text.empty() ? "it has none" : text) +
     (all.size() > most ? "; and " + std::to_string(all.size() - most) + " others" : ""));
@@ -92,7 +92,7 @@ double BuildSphere(const vtkStratusCFGrid& grid, size_t step, double factor, vtk
 }
 } // namespace
 
-std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
+std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFModel& file)
 {
   const std::set<const Variable*> referred = FindReferred(file);
   for (const Variable& one : file.GetVariables()) {
@@ -102,7 +102,8 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
   }
   const Variable* wanted = this->VariableName && *this->VariableName ? file.Find(this->VariableName) : nullptr;
   if (wanted && !vtkStratusCFGrid::IsVolume(file, *wanted)) {
-    vtkStratusCFGrid(file, *wanted); // fails with the reason
+    vtkStratusCFGrid(file, *wanted); // fails with the reason, unless that is the type
+    file.FailWithoutNumbers(*wanted);
   }
   if (this->Variables.empty()) {
     FailWithoutVolume(file);
@@ -110,14 +111,11 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
   const Variable& chosen = *file.Find(this->ChosenName());
   const vtkStratusCFGrid grid(file, chosen, this->Coordinates == SPHERE);
   for (int a = 0; a < 3; ++a) {
-    if (grid.GetLength(a) > static_cast<size_t>(INT_MAX)) {
-      file.Fail("a dimension of " + std::to_string(grid.GetLength(a)) + " values is longer than VTK's grids, 2147483647");
-    }
     this->WholeExtent[2 * a + 1] = static_cast<int>(grid.GetLength(a)) - 1;
   }
   this->Description = grid.Describe() + file.DescribeValues(chosen);
   if (grid.GetTime() >= 0) {
-    const vtkStratusNetCDFFile::TimeSteps steps = file.ReadTimes(grid.GetTime());
+    const vtkStratusNetCDFModel::TimeSteps steps = file.ReadTimes(grid.GetTime());
     this->Times = steps.Values;
     this->TimeUnits = steps.Units;
     this->TimeCalendar = steps.Calendar;
@@ -154,7 +152,7 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFFile& file)
   return grid.IsCurved() ? "vtkStructuredGrid" : grid.IsUniform() ? "vtkImageData" : "vtkRectilinearGrid";
 }
 
-void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
+void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFModel& file, size_t step, vtkDataSet* output)
 {
   const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName()), this->Coordinates == SPHERE);
   if (this->Coordinates == SPHERE) {

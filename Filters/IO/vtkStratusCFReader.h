@@ -64,8 +64,8 @@ protected:
   vtkStratusCFReader() = default;
   ~vtkStratusCFReader() override = default;
 
-  std::string InspectFile(const vtkStratusNetCDFFile& file) override;
-  void BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) override;
+  std::string InspectFile(const vtkStratusNetCDFModel& file) override;
+  void BuildFile(const vtkStratusNetCDFModel& file, size_t step, vtkDataSet* output) override;
 
 private:
   vtkStratusCFReader(const vtkStratusCFReader&) = delete;

@@ -14,7 +14,7 @@ class vtkStratusCFGrid;
 class vtkStratusCFVertical
 {
 public:
-  using Variable = vtkStratusNetCDFFile::Variable;
+  using Variable = vtkStratusNetCDFModel::Variable;
 
   // grid: its dimensions are known
   // levels: the coordinate along its third dimension, or nullptr
@@ -52,7 +52,7 @@ private:
   void ReadWrf(size_t step, double* to, size_t stride) const;
 
   const vtkStratusCFGrid& Grid;
-  const vtkStratusNetCDFFile& File;
+  const vtkStratusNetCDFModel& File;
   KindType Kind = Axis;
   const Variable* Source = nullptr; // levels or field
   std::string Units;                // of the source, as the file has them

@@ -129,7 +129,7 @@ std::map<std::string, std::string> vtkStratusFormula::ReadTerms(const std::strin
   return terms;
 }
 
-bool vtkStratusIsDown(const vtkStratusNetCDFFile& file, const vtkStratusNetCDFFile::Variable& variable)
+bool vtkStratusIsDown(const vtkStratusNetCDFModel& file, const vtkStratusNetCDFModel::Variable& variable)
 {
   const std::string positive = file.Text(variable, "positive"), way = vtkStratusLowerCase(vtkStratusTrimmed(positive));
   if (way == "down" || way == "up") {

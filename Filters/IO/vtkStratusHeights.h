@@ -4,7 +4,7 @@
 #ifndef vtkStratusHeights_h
 #define vtkStratusHeights_h
 
-#include "vtkStratusNetCDFFile.h"
+#include "vtkStratusNetCDFModel.h"
 #include "vtkStratusUnits.h"
 
 #include <map>
@@ -12,7 +12,7 @@
 
 // Returns whether a vertical coordinate counts downwards: by its attribute positive, else by its standard_name (depth), else by a name that
 // begins with "depth" over values that are not negative. Another value of positive than up and down, in any case, is an error.
-bool vtkStratusIsDown(const vtkStratusNetCDFFile& file, const vtkStratusNetCDFFile::Variable& variable);
+bool vtkStratusIsDown(const vtkStratusNetCDFModel& file, const vtkStratusNetCDFModel::Variable& variable);
 
 // The height in metres of a pressure in Pa, which must not be negative, in the standard atmosphere, and the temperature there in K.
 double vtkStratusHeightOfPressure(double pressure);

@@ -65,7 +65,7 @@ public:
       stride *= size[a];
     }
     std::unique_lock<std::recursive_mutex> lock(vtkStratusNetCDFLock());
-    return this->File->Read(*this->Variable, start, count, &lock);
+    return this->File->Read(*this->Variable, start, count, { &lock });
   }
 
   // Copies a box, x fastest, along the array's axes.

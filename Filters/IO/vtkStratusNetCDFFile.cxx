@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusNetCDFFile.h"
 
-#include "vtkStratusNetCDFValues.h"
+#include "vtkStratusNetCDFBricks.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <netcdf.h>
-#include <sstream>
 #include <system_error>
+
+static_assert(vtkStratusNetCDFInt8 == NC_BYTE && vtkStratusNetCDFChar == NC_CHAR && vtkStratusNetCDFInt16 == NC_SHORT &&
+    vtkStratusNetCDFInt32 == NC_INT && vtkStratusNetCDFFloat32 == NC_FLOAT && vtkStratusNetCDFFloat64 == NC_DOUBLE &&
+    vtkStratusNetCDFUInt8 == NC_UBYTE && vtkStratusNetCDFUInt16 == NC_USHORT && vtkStratusNetCDFUInt32 == NC_UINT &&
+    vtkStratusNetCDFInt64 == NC_INT64 && vtkStratusNetCDFUInt64 == NC_UINT64 && vtkStratusNetCDFText == NC_STRING &&
+    vtkStratusNetCDFModel::Global == NC_GLOBAL,
+  "numbers of libnetcdf");
 
 namespace {
 
@@ -47,28 +52,6 @@ std::recursive_mutex& vtkStratusNetCDFLock()
   return lock;
 }
 
-std::vector<std::string> vtkStratusWords(const std::string& text)
-{
-  std::vector<std::string> words;
-  std::istringstream stream(text);
-  for (std::string word; stream >> word;) {
-    words.push_back(word);
-  }
-  return words;
-}
-
-std::string vtkStratusNumberText(double value)
-{
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
-void vtkStratusNetCDFFile::Fail(const std::string& why) const
-{
-  throw vtkStratusReadError{ this->Path + ": " + why };
-}
-
 void vtkStratusNetCDFFile::Check(int status, const std::string& what) const
 {
   if (status != NC_NOERR) {
@@ -76,7 +59,7 @@ void vtkStratusNetCDFFile::Check(int status, const std::string& what) const
   }
 }
 
-vtkStratusNetCDFFile::vtkStratusNetCDFFile(const std::string& path, const std::string& selection) : Path(path)
+vtkStratusNetCDFFile::vtkStratusNetCDFFile(const std::string& path, const std::string& selection) : vtkStratusNetCDFModel(path)
 {
   this->Check(nc_open(path.c_str(), NC_NOWRITE, &this->Id), "no netCDF file that can be read");
   try {
@@ -132,37 +115,6 @@ void vtkStratusNetCDFFile::Load(int group, const std::string& path)
   }
 }
 
-void vtkStratusNetCDFFile::Select(const std::string& selection)
-{
-  std::istringstream stream(selection);
-  for (std::string part; std::getline(stream, part, ',');) {
-    const size_t equal = part.rfind('=');
-    const std::string name = part.substr(0, equal), number = equal == std::string::npos ? "" : part.substr(equal + 1);
-    if (name.empty() || number.empty() || number.size() > 18 || number.find_first_not_of("0123456789") != std::string::npos) {
-      this->Fail("the selection '" + part + "' is not NAME=INDEX, with a dimension's name and an index from 0");
-    }
-    const long long index = std::stoll(number);
-    std::string names;
-    bool found = false;
-    for (size_t i = 0; i < this->Names.size(); ++i) {
-      const std::string path = this->Paths[i] + this->Names[i];
-      names += (names.empty() ? "" : ", ") + path + " (" + std::to_string(this->Lengths[i]) + ")";
-      if (name != path && name != "/" + path && name != this->Names[i]) {
-        continue;
-      }
-      if (static_cast<size_t>(index) >= this->Lengths[i]) {
-        this->Fail("the selection '" + part + "' is out of range: '" + path + "' has " + std::to_string(this->Lengths[i]) + " values" +
-          (this->Lengths[i] > 0 ? ", the index must be 0 to " + std::to_string(this->Lengths[i] - 1) : ""));
-      }
-      this->Selected[i] = index;
-      found = true;
-    }
-    if (!found) {
-      this->Fail("there is no dimension '" + name + "' to select; those that are: " + (names.empty() ? "none" : names));
-    }
-  }
-}
-
 // libnetcdf reads zeros beyond the end of a truncated file of the classic formats. The file's minimum length is therefore computed from its
 // contents, by the format's specification. Other formats are checked by HDF5.
 void vtkStratusNetCDFFile::CheckLength() const
@@ -206,145 +158,6 @@ vtkStratusNetCDFFile::~vtkStratusNetCDFFile()
   nc_close(this->Id);
 }
 
-const vtkStratusNetCDFFile::Variable* vtkStratusNetCDFFile::Find(const std::string& name, const Variable* from) const
-{
-  const auto named = [this](const std::string& path) -> const Variable* {
-    const auto found =
-      std::find_if(this->Variables.begin(), this->Variables.end(), [&path](const Variable& one) { return one.Name == path; });
-    return found == this->Variables.end() ? nullptr : &*found;
-  };
-  if (!from || (!name.empty() && name[0] == '/')) {
-    return named(name.substr(name.find_first_not_of('/') == std::string::npos ? name.size() : name.find_first_not_of('/')));
-  }
-  std::string path = from->Name;
-  while (path.find('/') != std::string::npos) {
-    path.resize(path.rfind('/'));
-    if (const Variable* found = named(path + "/" + name)) {
-      return found;
-    }
-  }
-  if (const Variable* found = named(name)) {
-    return found;
-  }
-  const auto found =
-    std::find_if(this->Variables.begin(), this->Variables.end(), [&name](const Variable& one) { return one.BaseName() == name; });
-  return found == this->Variables.end() ? nullptr : &*found;
-}
-
-const vtkStratusNetCDFFile::Variable* vtkStratusNetCDFFile::CoordinateOf(int dimension) const
-{
-  const auto found = std::find_if(this->Variables.begin(), this->Variables.end(), [this, dimension](const Variable& one) {
-    return one.Dimensions.size() == 1 && one.Dimensions[0] == dimension && one.BaseName() == this->NameOf(dimension);
-  });
-  return found == this->Variables.end() ? nullptr : &*found;
-}
-
-std::string vtkStratusNetCDFFile::DescribeDimensions(const Variable& variable) const
-{
-  std::string text;
-  for (int dimension : variable.Dimensions) {
-    text += (text.empty() ? "" : ", ") + this->NameOf(dimension) + " (" + std::to_string(this->LengthOf(dimension)) + ")";
-  }
-  return text.empty() ? "none" : text;
-}
-
-std::string vtkStratusNetCDFFile::DescribeIndex(int dimension) const
-{
-  const std::string& name = this->NameOf(dimension);
-  return "; '" + name + "' at index " + std::to_string(this->IndexOf(dimension)) + " of 0.." +
-    std::to_string(this->LengthOf(dimension) - 1) + (this->IsSelected(dimension) ? "" : ", select " + name + "=INDEX for another");
-}
-
-int vtkStratusNetCDFFile::FindDimension(const std::string& name) const
-{
-  const auto found = std::find(this->Names.begin(), this->Names.end(), name);
-  return found == this->Names.end() ? -1 : static_cast<int>(found - this->Names.begin());
-}
-
-size_t vtkStratusNetCDFFile::CountOf(const Variable& variable) const
-{
-  size_t count = 1;
-  for (int dimension : variable.Dimensions) {
-    count *= this->LengthOf(dimension);
-  }
-  return count;
-}
-
-std::string vtkStratusNetCDFFile::Title(const Variable& variable) const
-{
-  constexpr size_t longest = 32;
-  std::string title = this->Text(variable, "long_name");
-  if (title.empty() || title.size() > longest) {
-    title = this->Text(variable, "standard_name");
-    std::replace(title.begin(), title.end(), '_', ' ');
-  }
-  if (title == "projection x coordinate" || title == "projection y coordinate") {
-    return title.substr(11, 1); // the letter says as much
-  }
-  return title;
-}
-
-std::string vtkStratusNetCDFFile::Text(const Variable& variable, const char* attribute) const
-{
-  nc_type type = NC_NAT;
-  size_t length = 0;
-  if (nc_inq_att(variable.Group, variable.Id, attribute, &type, &length) != NC_NOERR) {
-    return "";
-  }
-  std::string text;
-  if (type == NC_CHAR) {
-    text.resize(length);
-    this->Check(nc_get_att_text(variable.Group, variable.Id, attribute, &text[0]), "attribute");
-  } else if (type == NC_STRING && length > 0) {
-    std::vector<char*> strings(length);
-    this->Check(nc_get_att_string(variable.Group, variable.Id, attribute, strings.data()), "attribute");
-    text = strings[0] ? strings[0] : "";
-    nc_free_string(length, strings.data());
-  }
-  return text.substr(0, text.find('\0'));
-}
-
-bool vtkStratusNetCDFFile::Has(const Variable& variable, const char* attribute) const
-{
-  return nc_inq_att(variable.Group, variable.Id, attribute, nullptr, nullptr) == NC_NOERR;
-}
-
-std::vector<double> vtkStratusNetCDFFile::NumbersOf(const Variable& variable, const char* attribute) const
-{
-  nc_type type = NC_NAT;
-  size_t length = 0;
-  if (nc_inq_att(variable.Group, variable.Id, attribute, &type, &length) != NC_NOERR || type == NC_CHAR || type >= NC_STRING) {
-    return {};
-  }
-  std::vector<double> values(length);
-  this->Check(nc_get_att_double(variable.Group, variable.Id, attribute, values.data()), "attribute");
-  return values;
-}
-
-bool vtkStratusNetCDFFile::Number(const Variable& variable, const char* attribute, double& value) const
-{
-  const std::vector<double> values = this->NumbersOf(variable, attribute);
-  value = values.empty() ? value : values[0];
-  return !values.empty();
-}
-
-vtkStratusNetCDFValues vtkStratusNetCDFFile::ValuesOf(const Variable& variable) const
-{
-  if (variable.Type == NC_CHAR || variable.Type >= NC_STRING) {
-    this->Fail("variable '" + variable.Name + "' holds no numbers");
-  }
-  try {
-    return vtkStratusNetCDFValues(variable.Group, variable.Id, variable.Type, variable.Name);
-  } catch (const std::string& why) {
-    this->Fail(why);
-  }
-}
-
-std::string vtkStratusNetCDFFile::DescribeValues(const Variable& variable) const
-{
-  return this->ValuesOf(variable).Describe();
-}
-
 std::vector<size_t> vtkStratusNetCDFFile::ChunksOf(const Variable& variable) const
 {
   int storage = NC_CONTIGUOUS;
@@ -353,33 +166,83 @@ std::vector<size_t> vtkStratusNetCDFFile::ChunksOf(const Variable& variable) con
   return status == NC_NOERR && storage == NC_CHUNKED ? chunks : std::vector<size_t>();
 }
 
-vtkSmartPointer<vtkDataArray> vtkStratusNetCDFFile::Read(const Variable& variable, const std::vector<size_t>& start,
-  const std::vector<size_t>& count, std::unique_lock<std::recursive_mutex>* lock) const
+vtkStratusNetCDFFile::Attribute vtkStratusNetCDFFile::ReadAttribute(const Variable& variable, const char* name) const
 {
-  std::vector<size_t> from = start, many = count;
-  if (count.empty()) {
-    from.assign(variable.Dimensions.size(), 0);
-    for (int dimension : variable.Dimensions) {
-      many.push_back(this->LengthOf(dimension));
-    }
+  Attribute result;
+  nc_type type = NC_NAT;
+  if (nc_inq_att(variable.Group, variable.Id, name, &type, &result.Length) != NC_NOERR) {
+    return result;
   }
-  int status = NC_NOERR;
-  const vtkSmartPointer<vtkDataArray> array = this->ValuesOf(variable).Read(from, many, status, lock);
-  this->Check(status, "variable '" + variable.Name + "' cannot be read");
-  array->SetName(variable.Name.c_str());
-  return array;
+  const size_t length = result.Length;
+  result.Exists = true;
+  result.IsText = type == NC_CHAR || type >= NC_STRING;
+  if (type == NC_CHAR) {
+    result.Text.resize(length);
+    this->Check(nc_get_att_text(variable.Group, variable.Id, name, &result.Text[0]), "attribute");
+  } else if (type == NC_STRING && length > 0) {
+    std::vector<char*> strings(length, nullptr);
+    this->Check(nc_get_att_string(variable.Group, variable.Id, name, strings.data()), "attribute");
+    result.Text = strings[0] ? strings[0] : "";
+    nc_free_string(length, strings.data());
+  }
+  result.Text.resize(std::min(result.Text.size(), result.Text.find('\0')));
+  if (result.IsText) {
+    return result;
+  }
+  result.Reals.resize(length);
+  this->Check(nc_get_att_double(variable.Group, variable.Id, name, result.Reals.data()), "attribute");
+  if (type == NC_UINT64) {
+    std::vector<unsigned long long> bits(length);
+    this->Check(nc_get_att_ulonglong(variable.Group, variable.Id, name, bits.data()), "attribute");
+    std::transform(bits.begin(), bits.end(), std::back_inserter(result.Integers), [](auto one) { return static_cast<std::int64_t>(one); });
+  } else if (type != NC_FLOAT && type != NC_DOUBLE) {
+    std::vector<long long> integers(length);
+    this->Check(nc_get_att_longlong(variable.Group, variable.Id, name, integers.data()), "attribute");
+    result.Integers.assign(integers.begin(), integers.end());
+  }
+  return result;
 }
 
-std::vector<double> vtkStratusNetCDFFile::ReadComplete(const Variable& variable, const std::string& what) const
+bool vtkStratusNetCDFFile::HasDefaultFill(const Variable& variable) const
 {
-  const vtkSmartPointer<vtkDataArray> array = this->Read(variable);
-  std::vector<double> values(static_cast<size_t>(array->GetNumberOfTuples()));
-  for (size_t i = 0; i < values.size(); ++i) {
-    values[i] = array->GetComponent(static_cast<vtkIdType>(i), 0);
-    if (!std::isfinite(values[i])) {
-      this->Fail(what + " '" + variable.Name + "' has no value (a fill value, or not finite) at number " + std::to_string(i) +
-        ", all must be finite");
+  int none = 0;
+  return nc_inq_var_fill(variable.Group, variable.Id, &none, nullptr) == NC_NOERR && !none;
+}
+
+void vtkStratusNetCDFFile::ReadStored(
+  const Variable& variable, const std::vector<size_t>& start, const std::vector<size_t>& count, void* stored) const
+{
+  const size_t zero = 0, one = 1;
+  const int status =
+    nc_get_vara(variable.Group, variable.Id, start.empty() ? &zero : start.data(), count.empty() ? &one : count.data(), stored);
+  this->Check(status, "variable '" + variable.Name + "' cannot be read");
+}
+
+std::vector<std::string> vtkStratusNetCDFFile::ReadTexts(const Variable& variable) const
+{
+  std::vector<std::string> texts(this->LengthOf(variable.Dimensions[0]));
+  const std::string what = "variable '" + variable.Name + "' cannot be read";
+  if (variable.Type == NC_STRING) {
+    std::vector<char*> strings(texts.size(), nullptr);
+    this->Check(nc_get_var_string(variable.Group, variable.Id, strings.data()), what);
+    std::transform(strings.begin(), strings.end(), texts.begin(), [](const char* one) { return std::string(one ? one : ""); });
+    nc_free_string(strings.size(), strings.data());
+  } else {
+    const size_t length = this->LengthOf(variable.Dimensions[1]);
+    std::vector<char> all(texts.size() * length);
+    this->Check(nc_get_var_text(variable.Group, variable.Id, all.data()), what);
+    for (size_t i = 0; i < texts.size(); ++i) {
+      texts[i].assign(&all[i * length], length);
+      texts[i] = texts[i].substr(0, texts[i].find('\0'));
     }
   }
-  return values;
+  for (std::string& text : texts) {
+    text.resize(text.find_last_not_of(' ') + 1);
+  }
+  return texts;
+}
+
+vtkSmartPointer<vtkDataArray> vtkStratusNetCDFFile::MakeBricks(const Variable& variable, const vtkStratusNetCDFPart& part) const
+{
+  return vtkStratusMakeNetCDFBricks(*this, variable, part);
 }

@@ -1,131 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A netCDF file by libnetcdf: its dimensions, variables and attributes, and values with fills, scale and offset undone. Private to the
-// module.
+// A netCDF file by libnetcdf. Private to the module.
 #ifndef vtkStratusNetCDFFile_h
 #define vtkStratusNetCDFFile_h
 
-#include "vtkStratusReadError.h"
-
-#include "vtkDataArray.h"
-#include "vtkSmartPointer.h"
+#include "vtkStratusNetCDFModel.h"
 
 #include <map>
 #include <mutex>
 #include <string>
 #include <vector>
 
-class vtkStratusNetCDFValues;
-
-struct vtkStratusNetCDFVariable {
-  int Group, Id;               // numbers of libnetcdf
-  int Type;                    // nc_type
-  std::string Name;            // with the path of its group: "run1/rho", "rho" in the root group
-  std::vector<int> Dimensions; // numbers of dimensions, slowest first
-
-  std::string BaseName() const { return this->Name.substr(this->Name.rfind('/') + 1); }
-};
-
-class vtkStratusNetCDFFile
+class vtkStratusNetCDFFile : public vtkStratusNetCDFModel
 {
 public:
-  using Variable = vtkStratusNetCDFVariable;
-  struct TimeSteps {
-    std::vector<double> Values; // ascending
-    std::string Units;          // "hours since 2001-01-01", "" if the file does not say
-    std::string Note;           // "; ..." if steps are numbers because the file has no numbers for them, else ""
-    std::string Calendar = {};  // "noleap", "" if the file does not say
-  };
-
-  // selection: "NAME=INDEX,NAME=INDEX...", dimensions that are read at one index only; "": none.
-  explicit vtkStratusNetCDFFile(
-    const std::string& path, const std::string& selection = ""); // throws vtkStratusReadError, as all members do
-  ~vtkStratusNetCDFFile();
-  vtkStratusNetCDFFile(const vtkStratusNetCDFFile&) = delete;
-  void operator=(const vtkStratusNetCDFFile&) = delete;
-
-  const std::string& GetPath() const { return this->Path; }
-  const std::vector<Variable>& GetVariables() const { return this->Variables; }
-  // Returns the variable of a name, nullptr if there is none. A name without a path is looked up in the group of `from`, then in the groups
-  // above it, then in all groups.
-  const Variable* Find(const std::string& name, const Variable* from = nullptr) const;
-  // Returns the variable that has the dimension's name and this dimension only, nullptr if there is none.
-  const Variable* CoordinateOf(int dimension) const;
-  size_t LengthOf(int dimension) const { return this->Lengths[static_cast<size_t>(dimension)]; }
-  const std::string& NameOf(int dimension) const { return this->Names[static_cast<size_t>(dimension)]; } // without its group
-  bool IsUnlimited(int dimension) const { return this->Unlimited[static_cast<size_t>(dimension)] != 0; }
-  // Returns whether the selection names the dimension, and at which index it is read; 0 without selection.
-  bool IsSelected(int dimension) const { return this->Selected[static_cast<size_t>(dimension)] >= 0; }
-  size_t IndexOf(int dimension) const
-  {
-    return this->IsSelected(dimension) ? static_cast<size_t>(this->Selected[static_cast<size_t>(dimension)]) : 0;
-  }
-  // Returns whether a variable on the dimension has several values along it.
-  bool IsSpread(int dimension) const { return this->LengthOf(dimension) > 1 && !this->IsSelected(dimension); }
-  int FindDimension(const std::string& name) const; // -1 if there is none
-  size_t CountOf(const Variable& variable) const;   // values
+  // selection: as vtkStratusNetCDFModel::Select(). Throws vtkStratusReadError, as all members do.
+  explicit vtkStratusNetCDFFile(const std::string& path, const std::string& selection = "");
+  ~vtkStratusNetCDFFile() override;
 
   // Returns the lengths of the variable's chunks along its dimensions; empty for one that is in one piece, or in a classic file.
   std::vector<size_t> ChunksOf(const Variable& variable) const;
+  vtkSmartPointer<vtkDataArray> MakeBricks(const Variable& variable, const vtkStratusNetCDFPart& part) const override;
 
-  std::string Text(const Variable& variable, const char* attribute) const; // "" if there is none
-  // Returns the name of a coordinate in words: its long_name, unless that is a sentence, or its standard_name, or "".
-  std::string Title(const Variable& variable) const;
-  bool Has(const Variable& variable, const char* attribute) const;
-  // Returns the numbers of an attribute, none if there is none or it is text. Number: sets the first, returns whether there is one.
-  std::vector<double> NumbersOf(const Variable& variable, const char* attribute) const;
-  bool Number(const Variable& variable, const char* attribute, double& value) const;
-
-  // Reads a block of values; empty start and count: all. Missing values are NaN, the others are unpacked, by the rules at
-  // vtkStratusNetCDFValues. The array is float if floats represent all of the variable's values exactly, otherwise double.
-  // lock: null, or a lock of vtkStratusNetCDFLock(), which is released when libnetcdf is done.
-  vtkSmartPointer<vtkDataArray> Read(const Variable& variable, const std::vector<size_t>& start = {}, const std::vector<size_t>& count = {},
-    std::unique_lock<std::recursive_mutex>* lock = nullptr) const;
-  // Returns "; ..." for attributes of values that are ignored, "" if there is none.
-  std::string DescribeValues(const Variable& variable) const;
-  // Reads all values of integers or reals, in doubles; one that is missing is an error that names `what`.
-  std::vector<double> ReadComplete(const Variable& variable, const std::string& what) const;
-
-  // "time (12), lat (90), lon (180)"
-  std::string DescribeDimensions(const Variable& variable) const;
-  // "; 'number' at index 0 of 0..9, select number=INDEX for another"
-  std::string DescribeIndex(int dimension) const;
-
-  // Returns whether a dimension is a time: its variable is one, by units, standard_name, axis or name, or its own name is a time's. One
-  // that is selected is none.
-  bool IsTime(int dimension) const;
-  // Reads the steps of a dimension. Numbers must increase. Texts ("2020-06-01_12:00:00") become seconds since the first. Steps without
-  // either, and numbers that are no moments and do not increase (months), are counted from 0.
-  TimeSteps ReadTimes(int dimension) const;
-
-  [[noreturn]] void Fail(const std::string& why) const;
+protected:
+  Attribute ReadAttribute(const Variable& variable, const char* name) const override;
+  void ReadStored(
+    const Variable& variable, const std::vector<size_t>& start, const std::vector<size_t>& count, void* stored) const override;
+  std::vector<std::string> ReadTexts(const Variable& variable) const override;
+  bool HasDefaultFill(const Variable& variable) const override;
 
 private:
   void Check(int status, const std::string& what) const;
   void CheckLength() const;
   void Load(int group, const std::string& path);
-  void Select(const std::string& selection);
-  const Variable* TimeOf(int dimension) const;
-  const Variable* TextsOf(int dimension) const;
-  std::vector<std::string> ReadTexts(const Variable& variable) const;
-  vtkStratusNetCDFValues ValuesOf(const Variable& variable) const;
 
-  std::string Path;
   int Id = -1;
-  std::vector<std::string> Names;
-  std::vector<std::string> Paths; // of the dimensions' groups, with a slash behind
-  std::vector<size_t> Lengths;
-  std::vector<char> Unlimited;
-  std::vector<long long> Selected; // index, or -1
-  std::map<int, int> Numbers;      // of libnetcdf's numbers of dimensions
-  std::vector<Variable> Variables;
+  std::map<int, int> Numbers; // of libnetcdf's numbers of dimensions
 };
 
 // libnetcdf serves one thread at a time: readers hold this lock, and so does what reads bricks.
 std::recursive_mutex& vtkStratusNetCDFLock();
-
-// Splits at blanks.
-std::vector<std::string> vtkStratusWords(const std::string& text);
-// "12.5", the shortest text of the number.
-std::string vtkStratusNumberText(double value);
 
 #endif

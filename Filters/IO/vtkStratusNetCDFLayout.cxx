@@ -5,7 +5,7 @@
 #include <algorithm>
 
 vtkStratusNetCDFLayout::vtkStratusNetCDFLayout(
-  const vtkStratusNetCDFFile& file, const vtkStratusNetCDFFile::Variable& variable, const std::function<int(int dimension)>& axis_of)
+  const vtkStratusNetCDFModel& file, const vtkStratusNetCDFModel::Variable& variable, const std::function<int(int dimension)>& axis_of)
     : File(file), Of(variable)
 {
   this->FindTime();
@@ -39,7 +39,7 @@ bool vtkStratusNetCDFLayout::IsEnsemble(int dimension) const
 {
   static const std::vector<std::string> names = { "number", "member", "members", "ensemble", "ens", "realization", "realisation",
     "sample" };
-  const vtkStratusNetCDFFile::Variable* own = this->File.CoordinateOf(dimension);
+  const vtkStratusNetCDFModel::Variable* own = this->File.CoordinateOf(dimension);
   const std::string name = vtkStratusLowerCase(this->File.NameOf(dimension));
   return std::find(names.begin(), names.end(), name) != names.end() || name.compare(0, 8, "ensemble") == 0 ||
     (own && (this->File.Text(*own, "standard_name") == "realization" || this->File.Text(*own, "axis") == "E"));

@@ -3,7 +3,7 @@
 #ifndef vtkStratusNetCDFLayout_h
 #define vtkStratusNetCDFLayout_h
 
-#include "vtkStratusNetCDFFile.h"
+#include "vtkStratusNetCDFModel.h"
 
 #include <array>
 #include <functional>
@@ -20,7 +20,7 @@ public:
   // others is the time if the variable has no other time and this dimension no coordinates. All others, including an ensemble, are read at
   // index 0.
   vtkStratusNetCDFLayout(
-    const vtkStratusNetCDFFile& file, const vtkStratusNetCDFFile::Variable& variable, const std::function<int(int dimension)>& axis_of);
+    const vtkStratusNetCDFModel& file, const vtkStratusNetCDFModel::Variable& variable, const std::function<int(int dimension)>& axis_of);
 
   bool IsVolume() const { return this->Count == 3; }
   size_t GetCount() const { return this->Count; } // of axes; more than three are three
@@ -40,8 +40,8 @@ private:
   void LeaveThree(std::vector<int>& space, const std::function<int(int)>& axis_of);
   void Sort(const std::vector<int>& space, const std::function<int(int)>& axis_of);
 
-  const vtkStratusNetCDFFile& File;
-  const vtkStratusNetCDFFile::Variable& Of;
+  const vtkStratusNetCDFModel& File;
+  const vtkStratusNetCDFModel::Variable& Of;
   std::array<int, 3> Axes = { { -1, -1, -1 } };
   size_t Count = 0;
   int Time = -1;

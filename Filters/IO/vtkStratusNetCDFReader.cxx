@@ -2,7 +2,10 @@
 #include "vtkStratusNetCDFReader.h"
 #include "vtkStratusText.h"
 
+#ifdef STRATUS_NETCDF
 #include "vtkStratusNetCDFFile.h"
+#endif
+#include "vtkStratusNetCDFModel.h"
 
 #include "vtkDataSet.h"
 
@@ -25,7 +28,7 @@ bool EndsWith(const std::string& text, const std::string& end)
 }
 
 // Returns whether an attribute of another variable names this one: "area: cells volume: boxes".
-bool IsNamedBy(const vtkStratusNetCDFFile& file, const Variable& variable, const char* attribute)
+bool IsNamedBy(const vtkStratusNetCDFModel& file, const Variable& variable, const char* attribute)
 {
   return std::any_of(file.GetVariables().begin(), file.GetVariables().end(), [&](const Variable& one) {
     const std::vector<std::string> words = vtkStratusWords(file.Text(one, attribute));
@@ -34,7 +37,7 @@ bool IsNamedBy(const vtkStratusNetCDFFile& file, const Variable& variable, const
 }
 
 // Whether coordinates are computed from the variable, by standard_name, by models' names, and by its description.
-bool IsIngredient(const vtkStratusNetCDFFile& file, const Variable& variable)
+bool IsIngredient(const vtkStratusNetCDFModel& file, const Variable& variable)
 {
   static constexpr std::array<const char*, 18> standard = { "altitude", "height", "depth", "air_pressure", "sea_water_pressure",
     "geopotential", "geopotential_height", "height_above_geopotential_datum", "height_above_mean_sea_level",
@@ -53,7 +56,7 @@ bool IsIngredient(const vtkStratusNetCDFFile& file, const Variable& variable)
 }
 
 // On the faces, edges or corners of cells: WRF and ROMS name their dimensions by it.
-bool IsStaggered(const vtkStratusNetCDFFile& file, const Variable& variable)
+bool IsStaggered(const vtkStratusNetCDFModel& file, const Variable& variable)
 {
   const auto staggered = [&file](int dimension) {
     const std::string& name = file.NameOf(dimension);
@@ -62,7 +65,7 @@ bool IsStaggered(const vtkStratusNetCDFFile& file, const Variable& variable)
   return std::any_of(variable.Dimensions.begin(), variable.Dimensions.end(), staggered);
 }
 
-int RankOf(const vtkStratusNetCDFFile& file, const Variable& variable)
+int RankOf(const vtkStratusNetCDFModel& file, const Variable& variable)
 {
   if (IsIngredient(file, variable)) {
     return Ingredient;
@@ -76,9 +79,22 @@ int RankOf(const vtkStratusNetCDFFile& file, const Variable& variable)
     vtkStratusLowerCase(variable.BaseName()).find("mask") != std::string::npos || IsNamedBy(file, variable, "ancillary_variables");
   return mask ? Flag : IsStaggered(file, variable) ? Staggered : Field;
 }
+
+#ifdef STRATUS_NETCDF
+// A file with libnetcdf's lock, which is held before the file is opened and until it is closed.
+struct Locked {
+  std::lock_guard<std::recursive_mutex> Guard{ vtkStratusNetCDFLock() };
+};
+
+class LockedFile : private Locked, public vtkStratusNetCDFFile
+{
+public:
+  using vtkStratusNetCDFFile::vtkStratusNetCDFFile;
+};
+#endif
 } // namespace
 
-void vtkStratusNetCDFReader::AddVariable(const vtkStratusNetCDFFile& file, const Variable& variable, int place)
+void vtkStratusNetCDFReader::AddVariable(const vtkStratusNetCDFModel& file, const Variable& variable, int place)
 {
   this->Ranks.resize(this->Variables.size());
   const int rank = place * RankCount + RankOf(file, variable);
@@ -107,19 +123,27 @@ bool vtkStratusNetCDFReader::FindPlace(double longitude, double latitude, double
   return this->PlaceOnPlane && this->PlaceOnPlane(degrees, at);
 }
 
+std::unique_ptr<vtkStratusNetCDFModel> vtkStratusNetCDFReader::OpenFile()
+{
+#ifdef STRATUS_NETCDF
+  return std::make_unique<LockedFile>(this->FileName, this->Selection ? this->Selection : "");
+#else
+  throw vtkStratusReadError{ std::string(this->FileName) +
+    ": the module was built without libnetcdf (Debian: libnetcdf-dev), which reads netCDF files" };
+#endif
+}
+
 std::string vtkStratusNetCDFReader::Inspect()
 {
-  const std::lock_guard<std::recursive_mutex> lock(vtkStratusNetCDFLock());
-  const vtkStratusNetCDFFile file(this->FileName, this->Selection ? this->Selection : "");
+  const std::unique_ptr<vtkStratusNetCDFModel> file = this->OpenFile();
   this->SetPlaceOnPlane(nullptr, "");
-  return this->InspectFile(file);
+  return this->InspectFile(*file);
 }
 
 void vtkStratusNetCDFReader::Build(size_t step, vtkDataObject* output)
 {
-  const std::lock_guard<std::recursive_mutex> lock(vtkStratusNetCDFLock());
-  const vtkStratusNetCDFFile file(this->FileName, this->Selection ? this->Selection : "");
-  this->BuildFile(file, step, vtkDataSet::SafeDownCast(output));
+  const std::unique_ptr<vtkStratusNetCDFModel> file = this->OpenFile();
+  this->BuildFile(*file, step, vtkDataSet::SafeDownCast(output));
 }
 
 void vtkStratusNetCDFReader::PrintSelf(ostream& os, vtkIndent indent)

@@ -24,8 +24,9 @@
 #include "vtkStratusVariableReader.h"
 
 #include <functional>
+#include <memory>
 
-class vtkStratusNetCDFFile;
+class vtkStratusNetCDFModel;
 struct vtkStratusNetCDFVariable;
 
 class STRATUSFILTERSIO_EXPORT vtkStratusNetCDFReader : public vtkStratusVariableReader
@@ -94,13 +95,17 @@ protected:
   vtkStratusNetCDFReader() = default;
   ~vtkStratusNetCDFReader() override;
 
+#ifndef __VTK_WRAP__
+  /// Opens FileName with the dimensions of Selection. Throws vtkStratusReadError.
+  virtual std::unique_ptr<vtkStratusNetCDFModel> OpenFile();
+#endif
   /// Inspect() and Build() of the superclass, with the file open.
-  virtual std::string InspectFile(const vtkStratusNetCDFFile& file) = 0;
-  virtual void BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) = 0;
+  virtual std::string InspectFile(const vtkStratusNetCDFModel& file) = 0;
+  virtual void BuildFile(const vtkStratusNetCDFModel& file, size_t step, vtkDataSet* output) = 0;
 
   /// Lists a variable, ordered by `place`. Within one place the order is: fields of the cells, staggered fields, flags and masks, variables
   /// that coordinates are computed from (pressure, geopotential, thickness, area).
-  void AddVariable(const vtkStratusNetCDFFile& file, const vtkStratusNetCDFVariable& variable, int place = 0);
+  void AddVariable(const vtkStratusNetCDFModel& file, const vtkStratusNetCDFVariable& variable, int place = 0);
 
   std::string Inspect() override;
   void Build(size_t step, vtkDataObject* output) override;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The times of vtkStratusNetCDFFile: which dimensions are times, and their steps.
-#include "vtkStratusNetCDFFile.h"
+// The times of vtkStratusNetCDFModel: which dimensions are times, and their steps.
+#include "vtkStratusNetCDFModel.h"
 #include "vtkStratusText.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <netcdf.h>
 
 namespace {
 bool IsTimesName(const std::string& text)
@@ -59,11 +58,10 @@ std::vector<double> Counted(size_t count)
 } // namespace
 
 // The variable of numbers along a time, nullptr if there is none.
-const vtkStratusNetCDFFile::Variable* vtkStratusNetCDFFile::TimeOf(int dimension) const
+const vtkStratusNetCDFModel::Variable* vtkStratusNetCDFModel::TimeOf(int dimension) const
 {
-  const auto along = [dimension](const Variable& one) {
-    return one.Dimensions.size() == 1 && one.Dimensions[0] == dimension && one.Type != NC_CHAR && one.Type < NC_STRING;
-  };
+  const auto along = [dimension](
+                       const Variable& one) { return one.Dimensions.size() == 1 && one.Dimensions[0] == dimension && one.HasNumbers(); };
   const auto is_time = [this](const Variable& one) {
     return this->Text(one, "units").find(" since ") != std::string::npos || this->Text(one, "standard_name") == "time" ||
       this->Text(one, "axis") == "T";
@@ -78,17 +76,18 @@ const vtkStratusNetCDFFile::Variable* vtkStratusNetCDFFile::TimeOf(int dimension
 }
 
 // The variable of texts along a time, nullptr if there is none.
-const vtkStratusNetCDFFile::Variable* vtkStratusNetCDFFile::TextsOf(int dimension) const
+const vtkStratusNetCDFModel::Variable* vtkStratusNetCDFModel::TextsOf(int dimension) const
 {
   const auto found = std::find_if(this->Variables.begin(), this->Variables.end(), [this, dimension](const Variable& one) {
-    const bool texts = one.Dimensions.size() == (one.Type == NC_STRING ? 1 : 2) && (one.Type == NC_STRING || one.Type == NC_CHAR);
+    const bool texts = one.Dimensions.size() == (one.Type == vtkStratusNetCDFText ? 1 : 2) &&
+      (one.Type == vtkStratusNetCDFText || one.Type == vtkStratusNetCDFChar);
     return texts && one.Dimensions[0] == dimension &&
       (IsTimesName(one.BaseName()) || this->Text(one, "standard_name") == "time" || this->Text(one, "axis") == "T");
   });
   return found == this->Variables.end() ? nullptr : &*found;
 }
 
-bool vtkStratusNetCDFFile::IsTime(int dimension) const
+bool vtkStratusNetCDFModel::IsTime(int dimension) const
 {
   if (this->IsSelected(dimension)) {
     return false;
@@ -96,31 +95,7 @@ bool vtkStratusNetCDFFile::IsTime(int dimension) const
   return this->TimeOf(dimension) || this->TextsOf(dimension) || (!this->CoordinateOf(dimension) && IsTimesName(this->NameOf(dimension)));
 }
 
-std::vector<std::string> vtkStratusNetCDFFile::ReadTexts(const Variable& variable) const
-{
-  std::vector<std::string> texts(this->LengthOf(variable.Dimensions[0]));
-  const std::string what = "variable '" + variable.Name + "' cannot be read";
-  if (variable.Type == NC_STRING) {
-    std::vector<char*> strings(texts.size(), nullptr);
-    this->Check(nc_get_var_string(variable.Group, variable.Id, strings.data()), what);
-    std::transform(strings.begin(), strings.end(), texts.begin(), [](const char* one) { return std::string(one ? one : ""); });
-    nc_free_string(strings.size(), strings.data());
-  } else {
-    const size_t length = this->LengthOf(variable.Dimensions[1]);
-    std::vector<char> all(texts.size() * length);
-    this->Check(nc_get_var_text(variable.Group, variable.Id, all.data()), what);
-    for (size_t i = 0; i < texts.size(); ++i) {
-      texts[i].assign(&all[i * length], length);
-      texts[i] = texts[i].substr(0, texts[i].find('\0'));
-    }
-  }
-  for (std::string& text : texts) {
-    text.resize(text.find_last_not_of(' ') + 1);
-  }
-  return texts;
-}
-
-vtkStratusNetCDFFile::TimeSteps vtkStratusNetCDFFile::ReadTimes(int dimension) const
+vtkStratusNetCDFModel::TimeSteps vtkStratusNetCDFModel::ReadTimes(int dimension) const
 {
   const Variable* const time = this->TimeOf(dimension);
   const Variable* const texts = time ? nullptr : this->TextsOf(dimension);

@@ -1,32 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusNetCDFValues.h"
+
+#include "vtkStratusMakeArray.h"
 #include "vtkStratusText.h"
-
-#include "vtkStratusNetCDFFile.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkFloatArray.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <iterator>
 #include <limits>
-#include <netcdf.h>
-#include <numeric>
+#include <memory>
 #include <type_traits>
-
-// The numbers of an attribute. Integers of 64 bits stay exact.
-struct vtkStratusNetCDFValues::Attribute {
-  bool Exists = false, IsText = false;
-  std::vector<double> Reals;
-  std::vector<std::int64_t> Integers; // empty for reals; an unsigned one above the largest has its bits
-
-  // Converts number i to the stored type. Returns false if the type does not hold it.
-  template <class Stored> bool As(size_t i, Stored& value) const;
-};
+#include <utility>
 
 // Stored values that are missing: these, and all outside of Low..High.
 template <class Stored> struct vtkStratusNetCDFValues::Missing {
@@ -43,50 +28,28 @@ template <class Stored> struct vtkStratusNetCDFValues::Missing {
 
 namespace {
 constexpr struct {
-  int Signed, Unsigned, Bytes;
-} Pairs[] = { { NC_BYTE, NC_UBYTE, 1 }, { NC_SHORT, NC_USHORT, 2 }, { NC_INT, NC_UINT, 4 }, { NC_INT64, NC_UINT64, 8 } };
+  int Signed, Unsigned;
+} Pairs[] = { { vtkStratusNetCDFInt8, vtkStratusNetCDFUInt8 }, { vtkStratusNetCDFInt16, vtkStratusNetCDFUInt16 },
+  { vtkStratusNetCDFInt32, vtkStratusNetCDFUInt32 }, { vtkStratusNetCDFInt64, vtkStratusNetCDFUInt64 } };
 
-std::string ReadText(int file, int variable, const char* name)
-{
-  nc_type type = NC_NAT;
-  size_t length = 0;
-  if (nc_inq_att(file, variable, name, &type, &length) != NC_NOERR || (type != NC_CHAR && type != NC_STRING)) {
-    return "";
-  }
-  std::string text;
-  if (type == NC_CHAR) {
-    text.resize(length);
-    text.resize(nc_get_att_text(file, variable, name, &text[0]) == NC_NOERR ? length : 0);
-  } else if (length > 0) {
-    std::vector<char*> strings(length, nullptr);
-    if (nc_get_att_string(file, variable, name, strings.data()) == NC_NOERR) {
-      text = strings[0] ? strings[0] : "";
-      nc_free_string(length, strings.data());
-    }
-  }
-  return vtkStratusLowerCase(text.substr(0, text.find('\0')));
-}
-
-// The default fill value of a type in the file. Its bits are kept if `Stored` has the other sign.
-template <class Stored> Stored DefaultFill(int type)
+// The default fill value of a type in the file, by the format's specification. Its bits are kept if `Stored` has the other sign.
+template <class Stored> Stored DefaultFillOf(int type)
 {
   switch (type) {
-    case NC_SHORT:
-      return static_cast<Stored>(NC_FILL_SHORT);
-    case NC_USHORT:
-      return static_cast<Stored>(NC_FILL_USHORT);
-    case NC_INT:
-      return static_cast<Stored>(NC_FILL_INT);
-    case NC_UINT:
-      return static_cast<Stored>(NC_FILL_UINT);
-    case NC_INT64:
-      return static_cast<Stored>(NC_FILL_INT64);
-    case NC_UINT64:
-      return static_cast<Stored>(NC_FILL_UINT64);
-    case NC_FLOAT:
-      return static_cast<Stored>(NC_FILL_FLOAT);
-    default:
-      return static_cast<Stored>(NC_FILL_DOUBLE);
+    case vtkStratusNetCDFInt16:
+      return static_cast<Stored>(-32767);
+    case vtkStratusNetCDFUInt16:
+      return static_cast<Stored>(65535);
+    case vtkStratusNetCDFInt32:
+      return static_cast<Stored>(-2147483647);
+    case vtkStratusNetCDFUInt32:
+      return static_cast<Stored>(4294967295U);
+    case vtkStratusNetCDFInt64:
+      return static_cast<Stored>(INT64_C(-9223372036854775806));
+    case vtkStratusNetCDFUInt64:
+      return static_cast<Stored>(UINT64_C(18446744073709551614));
+    default: // 15 * 2^119, of floats and doubles
+      return static_cast<Stored>(9.9692099683868690e+36);
   }
 }
 
@@ -106,110 +69,92 @@ template <class Stored> bool Convert(double real, Stored& value)
   return true;
 }
 
-// Calls `work` with a value of the C type of an nc_type of numbers.
+// Calls `work` with a value of the C type of a stored type of numbers.
 template <class Work> auto WithType(int type, const Work& work)
 {
   switch (type) {
-    case NC_BYTE:
+    case vtkStratusNetCDFInt8:
       return work(std::int8_t());
-    case NC_UBYTE:
+    case vtkStratusNetCDFUInt8:
       return work(std::uint8_t());
-    case NC_SHORT:
+    case vtkStratusNetCDFInt16:
       return work(std::int16_t());
-    case NC_USHORT:
+    case vtkStratusNetCDFUInt16:
       return work(std::uint16_t());
-    case NC_INT:
+    case vtkStratusNetCDFInt32:
       return work(std::int32_t());
-    case NC_UINT:
+    case vtkStratusNetCDFUInt32:
       return work(std::uint32_t());
-    case NC_INT64:
+    case vtkStratusNetCDFInt64:
       return work(std::int64_t());
-    case NC_UINT64:
+    case vtkStratusNetCDFUInt64:
       return work(std::uint64_t());
-    case NC_FLOAT:
+    case vtkStratusNetCDFFloat32:
       return work(float());
     default:
       return work(double());
   }
 }
-} // namespace
 
-template <class Stored> bool vtkStratusNetCDFValues::Attribute::As(size_t i, Stored& value) const
+// Converts number i of an attribute to the stored type. Returns false if the type does not hold it.
+template <class Stored> bool As(const vtkStratusNetCDFAttribute& attribute, size_t i, Stored& value)
 {
-  if (!this->Integers.empty() && (std::is_floating_point<Stored>::value || sizeof(Stored) == sizeof(std::int64_t))) {
-    value = static_cast<Stored>(this->Integers[i]);
+  if (!attribute.Integers.empty() && (std::is_floating_point<Stored>::value || sizeof(Stored) == sizeof(std::int64_t))) {
+    value = static_cast<Stored>(attribute.Integers[i]);
     return true;
   }
-  return Convert(this->Reals[i], value);
+  return Convert(attribute.Reals[i], value);
 }
 
-vtkStratusNetCDFValues::Attribute vtkStratusNetCDFValues::ReadAttribute(const char* name) const
+template <class Value> constexpr int TypeOf()
 {
-  Attribute result;
-  nc_type type = NC_NAT;
-  size_t length = 0;
-  if (nc_inq_att(this->File, this->Variable, name, &type, &length) != NC_NOERR || length == 0) {
-    return result;
-  }
-  result.Exists = true;
-  result.IsText = type == NC_CHAR || type >= NC_STRING;
-  if (result.IsText) {
-    return result;
-  }
-  result.Reals.resize(length);
-  nc_get_att_double(this->File, this->Variable, name, result.Reals.data());
-  if (type == NC_UINT64) {
-    std::vector<unsigned long long> bits(length);
-    nc_get_att_ulonglong(this->File, this->Variable, name, bits.data());
-    std::transform(bits.begin(), bits.end(), std::back_inserter(result.Integers), [](auto one) { return static_cast<std::int64_t>(one); });
-  } else if (type != NC_FLOAT && type != NC_DOUBLE) {
-    std::vector<long long> integers(length);
-    nc_get_att_longlong(this->File, this->Variable, name, integers.data());
-    result.Integers.assign(integers.begin(), integers.end());
-  }
-  return result;
+  return std::is_same<Value, float>::value ? VTK_FLOAT
+    : std::is_same<Value, double>::value   ? VTK_DOUBLE
+    : sizeof(Value) == 1                   ? (std::is_signed<Value>::value ? VTK_SIGNED_CHAR : VTK_UNSIGNED_CHAR)
+    : sizeof(Value) == 2                   ? (std::is_signed<Value>::value ? VTK_SHORT : VTK_UNSIGNED_SHORT)
+    : sizeof(Value) == 4                   ? (std::is_signed<Value>::value ? VTK_INT : VTK_UNSIGNED_INT)
+                                           : (std::is_signed<Value>::value ? VTK_LONG_LONG : VTK_UNSIGNED_LONG_LONG);
 }
+} // namespace
 
-double vtkStratusNetCDFValues::ReadNumber(const char* attribute, double otherwise) const
+double vtkStratusNetCDFValues::NumberOf(const char* name, const Attribute& attribute, double otherwise) const
 {
-  const Attribute found = this->ReadAttribute(attribute);
-  if (!found.Exists) {
+  if (attribute.Length == 0) {
     return otherwise;
   }
-  if (found.IsText || found.Reals.size() != 1 || !std::isfinite(found.Reals[0])) {
-    throw std::string(attribute) + " of '" + this->Name + "' is " +
-      (found.IsText                 ? "text"
-          : found.Reals.size() != 1 ? std::to_string(found.Reals.size()) + " numbers"
-                                    : vtkStratusNumberText(found.Reals[0])) +
+  if (attribute.IsText || attribute.Reals.size() != 1 || !std::isfinite(attribute.Reals[0])) {
+    throw std::string(name) + " of '" + this->Name + "' is " +
+      (attribute.IsText                 ? "text"
+          : attribute.Reals.size() != 1 ? std::to_string(attribute.Reals.size()) + " numbers"
+                                        : vtkStratusNumberText(attribute.Reals[0])) +
       ", it must be one finite number";
   }
-  return found.Reals[0];
+  return attribute.Reals[0];
 }
 
-// The lower (index 0) or upper limit of valid values. valid_range comes before valid_min and valid_max.
-vtkStratusNetCDFValues::Attribute vtkStratusNetCDFValues::ReadLimit(size_t index, std::string& name) const
+vtkStratusNetCDFValues::vtkStratusNetCDFValues(
+  const std::function<Attribute(const char* name)>& attributes, int type, const std::string& name, bool default_fill, bool keeps_integers)
+    : FileType(type), Type(type), Name(name), Fill(attributes("_FillValue")), MissingValue(attributes("missing_value")),
+      DefaultFill(default_fill)
 {
-  name = "valid_range";
-  Attribute range = this->ReadAttribute("valid_range");
-  if (range.IsText || range.Reals.size() != 2) {
-    name = index == 0 ? "valid_min" : "valid_max";
-    range = this->ReadAttribute(name.c_str());
-    return range.Reals.size() == 1 ? range : Attribute();
+  this->Scale = this->NumberOf("scale_factor", attributes("scale_factor"), 1.0);
+  this->Offset = this->NumberOf("add_offset", attributes("add_offset"), 0.0);
+  // valid_range comes before valid_min and valid_max.
+  const Attribute range = attributes("valid_range");
+  const Attribute ends[] = { attributes("valid_min"), attributes("valid_max") };
+  for (size_t i = 0; i < 2; ++i) {
+    const bool one = range.IsText || range.Reals.size() != 2;
+    this->LimitNames[i] = !one ? "valid_range" : i == 0 ? "valid_min" : "valid_max";
+    if (one && ends[i].Reals.size() == 1) {
+      this->Limits[i] = ends[i];
+    } else if (!one) {
+      this->Limits[i].Reals = { range.Reals[i] };
+      this->Limits[i].Integers = range.Integers.empty() ? range.Integers : std::vector<std::int64_t>{ range.Integers[i] };
+    }
   }
-  range.Reals = { range.Reals[index] };
-  range.Integers = range.Integers.empty() ? range.Integers : std::vector<std::int64_t>{ range.Integers[index] };
-  return range;
-}
-
-vtkStratusNetCDFValues::vtkStratusNetCDFValues(int file, int variable, int type, const std::string& name)
-    : File(file), Variable(variable), FileType(type), Type(type), Name(name)
-{
-  this->Scale = this->ReadNumber("scale_factor", 1.0);
-  this->Offset = this->ReadNumber("add_offset", 0.0);
-  const std::string is_unsigned = ReadText(file, variable, "_Unsigned");
-  std::string limit;
-  const Attribute upper = this->ReadLimit(1, limit);
-  const bool beyond = !upper.Reals.empty() && type == NC_BYTE && upper.Reals[0] > 127.0 && upper.Reals[0] <= 255.0;
+  const std::string is_unsigned = vtkStratusLowerCase(attributes("_Unsigned").Text);
+  const std::vector<double>& upper = this->Limits[1].Reals;
+  const bool beyond = !upper.empty() && type == vtkStratusNetCDFInt8 && upper[0] > 127.0 && upper[0] <= 255.0;
   for (const auto& pair : Pairs) {
     if (type == pair.Signed && (is_unsigned == "true" || (is_unsigned.empty() && beyond))) {
       this->Type = pair.Unsigned;
@@ -217,21 +162,25 @@ vtkStratusNetCDFValues::vtkStratusNetCDFValues(int file, int variable, int type,
       this->Type = pair.Signed;
     }
   }
+  const std::pair<const char*, const Attribute*> numbers[] = { { "_FillValue", &this->Fill }, { "missing_value", &this->MissingValue },
+    { "valid_range", &range }, { "valid_min", &ends[0] }, { "valid_max", &ends[1] } };
+  for (const auto& one : numbers) {
+    if (one.second->IsText && one.second->Length > 0) {
+      this->TextIgnored += std::string("; ") + one.first + " is text and ignored";
+    }
+  }
+  const bool is_integer = type != vtkStratusNetCDFFloat32 && type != vtkStratusNetCDFFloat64;
+  this->KeepsType = keeps_integers && is_integer && !this->IsPacked() && this->Fill.Reals.empty() && this->MissingValue.Reals.empty() &&
+    this->Limits[0].Reals.empty() && this->Limits[1].Reals.empty();
 }
 
 std::string vtkStratusNetCDFValues::Describe() const
 {
-  std::string text;
-  for (const char* name : { "_FillValue", "missing_value", "valid_range", "valid_min", "valid_max" }) {
-    if (this->ReadAttribute(name).IsText) {
-      text += std::string("; ") + name + " is text and ignored";
-    }
-  }
+  std::string text = this->TextIgnored;
   for (size_t i = 0; i < 2; ++i) {
-    std::string name;
-    const Attribute limit = this->ReadLimit(i, name);
+    const Attribute& limit = this->Limits[i];
     if (!limit.Reals.empty() && !this->IsUsed(limit)) {
-      text += "; " + name + " " + vtkStratusNumberText(limit.Reals[0]) + " is no packed value and ignored";
+      text += "; " + this->LimitNames[i] + " " + vtkStratusNumberText(limit.Reals[0]) + " is no packed value and ignored";
     }
   }
   return text;
@@ -240,7 +189,7 @@ std::string vtkStratusNetCDFValues::Describe() const
 // Limits are of packed values. One that the packed type does not hold was meant otherwise.
 bool vtkStratusNetCDFValues::IsUsed(const Attribute& limit) const
 {
-  return !this->IsPacked() || WithType(this->Type, [&limit](auto value) { return limit.As(0, value); });
+  return !this->IsPacked() || WithType(this->Type, [&limit](auto value) { return As(limit, 0, value); });
 }
 
 // Looks up which stored values are missing.
@@ -252,28 +201,25 @@ template <class Stored> vtkStratusNetCDFValues::Missing<Stored> vtkStratusNetCDF
     result.Low = -limits::infinity();
     result.High = limits::infinity();
   }
-  const Attribute fill = this->ReadAttribute("_FillValue");
-  for (const Attribute& values : { fill, this->ReadAttribute("missing_value") }) {
-    for (size_t i = 0; i < values.Reals.size(); ++i) {
+  for (const Attribute* values : { &this->Fill, &this->MissingValue }) {
+    for (size_t i = 0; i < values->Reals.size(); ++i) {
       Stored value = 0;
-      if (values.As(i, value)) {
+      if (As(*values, i, value)) {
         result.Values.push_back(value);
       }
     }
   }
-  int none = 0;
-  if (fill.Reals.empty() && sizeof(Stored) > 1 && nc_inq_var_fill(this->File, this->Variable, &none, nullptr) == NC_NOERR && !none) {
-    result.Values.push_back(DefaultFill<Stored>(this->FileType));
+  if (this->DefaultFill && this->Fill.Reals.empty() && sizeof(Stored) > 1) {
+    result.Values.push_back(DefaultFillOf<Stored>(this->FileType));
   }
   for (size_t i = 0; i < 2; ++i) {
-    std::string name;
-    const Attribute limit = this->ReadLimit(i, name);
+    const Attribute& limit = this->Limits[i];
     if (limit.Reals.empty() || !this->IsUsed(limit)) {
       continue;
     }
     Stored& bound = i == 0 ? result.Low : result.High;
     Stored value = 0;
-    if (limit.As(0, value)) {
+    if (As(limit, 0, value)) {
       bound = value;
     } else { // of an integer that is not packed: between two values, or beyond all
       const double real = i == 0 ? std::ceil(limit.Reals[0]) : std::floor(limit.Reals[0]);
@@ -298,9 +244,14 @@ template <class Stored> bool vtkStratusNetCDFValues::IsFloatEnough() const
   return largest < 1e38 && largest * std::numeric_limits<float>::epsilon() < 0.5 * std::fabs(this->Scale);
 }
 
-template <class Stored, class Result>
-void vtkStratusNetCDFValues::Unpack(const Missing<Stored>& missing, const Stored* stored, size_t count, Result* results) const
+template <class Stored, class Result> void vtkStratusNetCDFValues::ReadAs(size_t count, const Reader& read, Result* results) const
 {
+  constexpr bool in_place = std::is_same<Stored, Result>::value;
+  const std::unique_ptr<Stored[]> apart(in_place ? nullptr : new Stored[count]);
+  void* const buffer = in_place ? static_cast<void*>(results) : static_cast<void*>(apart.get());
+  read(buffer);
+  const Stored* const stored = static_cast<const Stored*>(buffer);
+  const Missing<Stored> missing = this->FindMissing<Stored>();
   const bool packed = this->IsPacked();
   for (size_t i = 0; i < count; ++i) {
     const Stored value = stored[i];
@@ -310,36 +261,33 @@ void vtkStratusNetCDFValues::Unpack(const Missing<Stored>& missing, const Stored
   }
 }
 
-template <class Stored, class Result>
-vtkSmartPointer<vtkDataArray> vtkStratusNetCDFValues::ReadAs(
-  const std::vector<size_t>& start, const std::vector<size_t>& count, int& status, std::unique_lock<std::recursive_mutex>* lock) const
+int vtkStratusNetCDFValues::GetResultType() const
 {
-  const size_t total = std::accumulate(count.begin(), count.end(), static_cast<size_t>(1), std::multiplies<size_t>());
-  using Array = std::conditional_t<std::is_same<Result, float>::value, vtkFloatArray, vtkDoubleArray>;
-  const vtkSmartPointer<Array> array = vtkSmartPointer<Array>::New();
-  array->SetNumberOfValues(static_cast<vtkIdType>(total));
-  Result* results = array->GetPointer(0);
-  const size_t zero = 0, one = 1;
-  std::vector<Stored> apart(std::is_same<Stored, Result>::value ? 0 : total); // reals are unpacked in place
-  void* stored = std::is_same<Stored, Result>::value ? static_cast<void*>(results) : static_cast<void*>(apart.data());
-  status = nc_get_vara(this->File, this->Variable, start.empty() ? &zero : start.data(), count.empty() ? &one : count.data(), stored);
-  if (status != NC_NOERR) {
-    return nullptr;
-  }
-  const Missing<Stored> missing = this->FindMissing<Stored>();
-  if (lock) {
-    lock->unlock();
-  }
-  this->Unpack(missing, static_cast<const Stored*>(stored), total, results);
-  return array;
+  return WithType(this->Type, [this](auto value) {
+    using Stored = decltype(value);
+    return this->KeepsType ? TypeOf<Stored>() : this->IsFloatEnough<Stored>() ? VTK_FLOAT : VTK_DOUBLE;
+  });
 }
 
-vtkSmartPointer<vtkDataArray> vtkStratusNetCDFValues::Read(
-  const std::vector<size_t>& start, const std::vector<size_t>& count, int& status, std::unique_lock<std::recursive_mutex>* lock) const
+void vtkStratusNetCDFValues::ReadInto(size_t count, const Reader& read, void* results) const
 {
-  return WithType(this->Type, [&](auto value) {
+  if (this->KeepsType) {
+    read(results);
+    return;
+  }
+  WithType(this->Type, [&](auto value) {
     using Stored = decltype(value);
-    return this->IsFloatEnough<Stored>() ? this->ReadAs<Stored, float>(start, count, status, lock)
-                                         : this->ReadAs<Stored, double>(start, count, status, lock);
+    if (this->IsFloatEnough<Stored>()) {
+      this->ReadAs<Stored>(count, read, static_cast<float*>(results));
+    } else {
+      this->ReadAs<Stored>(count, read, static_cast<double*>(results));
+    }
   });
+}
+
+vtkSmartPointer<vtkDataArray> vtkStratusNetCDFValues::Read(size_t count, const Reader& read) const
+{
+  const vtkSmartPointer<vtkDataArray> array = vtkStratusMakeArray(this->GetResultType(), 1, static_cast<vtkIdType>(count));
+  this->ReadInto(count, read, array->GetVoidPointer(0));
+  return array;
 }

@@ -4,10 +4,13 @@
 #ifndef vtkStratusNetCDFValues_h
 #define vtkStratusNetCDFValues_h
 
+#include "vtkStratusNetCDFModel.h"
+
 #include "vtkDataArray.h"
 #include "vtkSmartPointer.h"
 
-#include <mutex>
+#include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,39 +23,45 @@
 class vtkStratusNetCDFValues
 {
 public:
-  // file, variable: numbers of libnetcdf. type: nc_type of numbers. name: the variable's, for errors.
-  // Throws std::string, which says what is wrong, for a scale_factor or add_offset that is not one number.
-  vtkStratusNetCDFValues(int file, int variable, int type, const std::string& name);
+  using Attribute = vtkStratusNetCDFAttribute;
 
-  // Reads a block. Missing values are NaN. Returns floats if floats represent all of the variable's values exactly, otherwise doubles. Sets
-  // `status` to libnetcdf's status; unless it is NC_NOERR, nothing is returned.
-  // `lock` is released before values are unpacked, for which libnetcdf is not needed.
-  vtkSmartPointer<vtkDataArray> Read(const std::vector<size_t>& start, const std::vector<size_t>& count, int& status,
-    std::unique_lock<std::recursive_mutex>* lock = nullptr) const;
+  // attributes: returns the variable's attribute of a name; the object keeps none of it. type: vtkStratusNetCDFType of numbers. name: the
+  // variable's, for errors. default_fill: whether values without _FillValue are missing if they equal netCDF's default. keeps_integers:
+  // whether integers none of which can be missing, and that are not packed, keep their type.
+  // Throws std::string, which says what is wrong, for a scale_factor or add_offset that is not one number.
+  vtkStratusNetCDFValues(const std::function<Attribute(const char* name)>& attributes, int type, const std::string& name, bool default_fill,
+    bool keeps_integers);
+
+  // Returns the type of VTK of unpacked values: float if floats represent all of the variable's values exactly, otherwise double; or the
+  // integers' own.
+  int GetResultType() const;
+  // Lets `read` write `count` stored values, and unpacks them into `results`. Missing values are NaN. `read` may throw.
+  using Reader = std::function<void(void* stored)>;
+  void ReadInto(size_t count, const Reader& read, void* results) const;
+  // Returns the same values as an array.
+  vtkSmartPointer<vtkDataArray> Read(size_t count, const Reader& read) const;
 
   // Returns "; ..." for each attribute that is ignored because it is text, or a limit that the packed type does not hold. "" for none.
   std::string Describe() const;
 
 private:
-  struct Attribute;
   template <class Stored> struct Missing;
 
-  template <class Stored, class Result>
-  vtkSmartPointer<vtkDataArray> ReadAs(
-    const std::vector<size_t>& start, const std::vector<size_t>& count, int& status, std::unique_lock<std::recursive_mutex>* lock) const;
-  template <class Stored, class Result>
-  void Unpack(const Missing<Stored>& missing, const Stored* stored, size_t count, Result* results) const;
+  template <class Stored, class Result> void ReadAs(size_t count, const Reader& read, Result* results) const;
   template <class Stored> bool IsFloatEnough() const;
   template <class Stored> Missing<Stored> FindMissing() const;
-  double ReadNumber(const char* attribute, double otherwise) const;
-  Attribute ReadAttribute(const char* name) const;
-  Attribute ReadLimit(size_t index, std::string& name) const;
+  double NumberOf(const char* name, const Attribute& attribute, double otherwise) const;
   bool IsUsed(const Attribute& limit) const;
   bool IsPacked() const { return this->Scale != 1.0 || this->Offset != 0.0; }
 
-  int File, Variable, FileType, Type; // Type: with the sign that _Unsigned says
+  int FileType, Type; // Type: with the sign that _Unsigned says
   std::string Name;
   double Scale = 1.0, Offset = 0.0;
+  Attribute Fill, MissingValue;
+  std::array<Attribute, 2> Limits; // the least and the greatest valid value
+  std::array<std::string, 2> LimitNames;
+  bool DefaultFill, KeepsType = false;
+  std::string TextIgnored;
 };
 
 #endif

@@ -79,7 +79,7 @@ constexpr std::array<Ellipsoid, 12> Ellipsoids = { { { "airy 1830", "airy" }, { 
 class Text
 {
 public:
-  Text(const vtkStratusNetCDFFile& file, const Variable& mapping, const std::string& what) : File(file), From(mapping), What(what) {}
+  Text(const vtkStratusNetCDFModel& file, const Variable& mapping, const std::string& what) : File(file), From(mapping), What(what) {}
 
   void Add(const std::string& key, double value) { this->All += " +" + key + "=" + vtkStratusNumberText(value); }
   void Add(const std::string& word) { this->All += " +" + word; }
@@ -163,14 +163,14 @@ public:
   }
 
 private:
-  const vtkStratusNetCDFFile& File;
+  const vtkStratusNetCDFModel& File;
   const Variable& From;
   const std::string& What;
   std::string All;
 };
 
 // The instrument's axis that sweeps: x if the other one is fixed along y.
-std::string SweepOf(const vtkStratusNetCDFFile& file, const Variable& mapping)
+std::string SweepOf(const vtkStratusNetCDFModel& file, const Variable& mapping)
 {
   const std::string sweep = vtkStratusLowerCase(vtkStratusTrimmed(file.Text(mapping, "sweep_angle_axis"))),
                     fixed = vtkStratusLowerCase(vtkStratusTrimmed(file.Text(mapping, "fixed_angle_axis")));
@@ -179,7 +179,7 @@ std::string SweepOf(const vtkStratusNetCDFFile& file, const Variable& mapping)
 
 // The text for PROJ.
 std::string TextOf(
-  const vtkStratusNetCDFFile& file, const Variable& mapping, double metres, const std::string& name, const std::string& what)
+  const vtkStratusNetCDFModel& file, const Variable& mapping, double metres, const std::string& name, const std::string& what)
 {
   std::string names;
   for (const Mapping& one : Mappings) {
@@ -214,7 +214,7 @@ std::string TextOf(
 }
 } // namespace
 
-const Variable* vtkStratusProjection::FindMapping(const vtkStratusNetCDFFile& file, const Variable& variable)
+const Variable* vtkStratusProjection::FindMapping(const vtkStratusNetCDFModel& file, const Variable& variable)
 {
   // "crs", or "crs: x y other: lat lon"
   for (std::string word : vtkStratusWords(file.Text(variable, "grid_mapping"))) {
@@ -230,7 +230,7 @@ const Variable* vtkStratusProjection::FindMapping(const vtkStratusNetCDFFile& fi
   return nullptr;
 }
 
-double vtkStratusProjection::MetresPerRadian(const vtkStratusNetCDFFile& file, const Variable& mapping)
+double vtkStratusProjection::MetresPerRadian(const vtkStratusNetCDFModel& file, const Variable& mapping)
 {
   double height = 0.0;
   return file.Text(mapping, "grid_mapping_name") == Geostationary && file.Number(mapping, Height.Attribute, height) ? height : 0.0;
@@ -262,7 +262,7 @@ struct vtkStratusProjection::Proj {
 };
 #endif
 
-vtkStratusProjection::vtkStratusProjection(const vtkStratusNetCDFFile& file, const Variable& mapping, double metres)
+vtkStratusProjection::vtkStratusProjection(const vtkStratusNetCDFModel& file, const Variable& mapping, double metres)
     : Library(std::make_unique<Proj>())
 {
   const std::string name = vtkStratusTrimmed(file.Text(mapping, "grid_mapping_name"));

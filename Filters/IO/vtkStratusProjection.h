@@ -3,7 +3,7 @@
 #ifndef vtkStratusProjection_h
 #define vtkStratusProjection_h
 
-#include "vtkStratusNetCDFFile.h"
+#include "vtkStratusNetCDFModel.h"
 
 #include <memory>
 #include <string>
@@ -11,17 +11,17 @@
 class vtkStratusProjection
 {
 public:
-  using Variable = vtkStratusNetCDFFile::Variable;
+  using Variable = vtkStratusNetCDFModel::Variable;
 
   // Returns the variable of attributes that the attribute grid_mapping of a variable names. nullptr if there is none, or if it is one of
   // longitudes and latitudes, which need no projection.
-  static const Variable* FindMapping(const vtkStratusNetCDFFile& file, const Variable& variable);
+  static const Variable* FindMapping(const vtkStratusNetCDFModel& file, const Variable& variable);
   // Metres of a radian of the coordinates of a geostationary view, which are angles of the instrument; 0 for other mappings.
-  static double MetresPerRadian(const vtkStratusNetCDFFile& file, const Variable& mapping);
+  static double MetresPerRadian(const vtkStratusNetCDFModel& file, const Variable& mapping);
 
   // metres: of a unit of the projection coordinates, in which the file has the false easting and northing.
   // Throws vtkStratusReadError for a mapping that is unknown or incomplete, and where the module is built without PROJ.
-  vtkStratusProjection(const vtkStratusNetCDFFile& file, const Variable& mapping, double metres);
+  vtkStratusProjection(const vtkStratusNetCDFModel& file, const Variable& mapping, double metres);
   ~vtkStratusProjection();
   vtkStratusProjection(const vtkStratusProjection&) = delete;
   void operator=(const vtkStratusProjection&) = delete;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <netcdf.h>
 
 namespace {
 bool IsOneOf(const std::string& word, std::initializer_list<const char*> words)
@@ -146,8 +145,8 @@ bool vtkStratusUgridLayers::IsLevels(const Variable& one) const
 {
   const std::string name = this->File.Text(one, "standard_name");
   const vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(one, "units"));
-  const bool shaped = one.Dimensions.size() == 1 && one.Type != NC_CHAR && one.Type < NC_STRING && this->Mesh.FindTime(one) < 0 &&
-    !this->Mesh.IsOnNodes(one) && !this->Mesh.IsOnFaces(one);
+  const bool shaped = one.Dimensions.size() == 1 && one.HasNumbers() && this->Mesh.FindTime(one) < 0 && !this->Mesh.IsOnNodes(one) &&
+    !this->Mesh.IsOnFaces(one);
   return shaped &&
     (unit.IsLength() || unit.IsPressure() || IsOneOf(name, { "altitude", "height", "depth" }) || EndsWith(one.BaseName(), "_layer_z") ||
       EndsWith(one.BaseName(), "_interface_z") || !this->File.Text(one, "positive").empty() ||
@@ -169,7 +168,7 @@ bool vtkStratusUgridLayers::FindLevels()
   const Variable* levels = nullptr;
   for (const Variable& one : this->File.GetVariables()) {
     const int dimension = this->Mesh.IsOnNodes(one) != this->Mesh.IsOnFaces(one) ? this->Mesh.FindLayers(one) : -1;
-    levels = levels || dimension < 0 || one.Type == NC_CHAR || one.Type >= NC_STRING ? levels : along(dimension);
+    levels = levels || dimension < 0 || !one.HasNumbers() ? levels : along(dimension);
   }
   if (!levels) {
     return false;

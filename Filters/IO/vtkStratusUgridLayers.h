@@ -12,7 +12,7 @@
 class vtkStratusUgridLayers
 {
 public:
-  using Variable = vtkStratusNetCDFFile::Variable;
+  using Variable = vtkStratusNetCDFModel::Variable;
 
   explicit vtkStratusUgridLayers(const vtkStratusUgridMesh& mesh); // throws vtkStratusReadError
 
@@ -53,7 +53,7 @@ private:
   void FindDry(size_t step, const std::vector<char>& none, std::vector<char>& dry) const;
 
   const vtkStratusUgridMesh& Mesh;
-  const vtkStratusNetCDFFile& File;
+  const vtkStratusNetCDFModel& File;
   KindType Kind = Flat;
   size_t Count = 1;
   int LayerDimension = -1, BorderDimension = -1;

@@ -8,14 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <netcdf.h>
 #include <numeric>
 
 namespace {
 constexpr size_t MostCorners = 64; // of a face; a shorter dimension of a connectivity counts corners
 } // namespace
 
-const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindTopology(const vtkStratusNetCDFFile& file)
+const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindTopology(const vtkStratusNetCDFModel& file)
 {
   const Variable* found = nullptr;
   for (const Variable& one : file.GetVariables()) {
@@ -28,7 +27,7 @@ const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindTopology(const vtk
   return found;
 }
 
-vtkStratusUgridMesh::vtkStratusUgridMesh(const vtkStratusNetCDFFile& file) : File(file)
+vtkStratusUgridMesh::vtkStratusUgridMesh(const vtkStratusNetCDFModel& file) : File(file)
 {
   const Variable* topology = FindTopology(file);
   if (!topology) {

@@ -3,7 +3,7 @@
 #ifndef vtkStratusUgridMesh_h
 #define vtkStratusUgridMesh_h
 
-#include "vtkStratusNetCDFFile.h"
+#include "vtkStratusNetCDFModel.h"
 
 #include <array>
 #include <map>
@@ -25,10 +25,10 @@ struct vtkStratusUgridValues {
 class vtkStratusUgridMesh
 {
 public:
-  using Variable = vtkStratusNetCDFFile::Variable;
+  using Variable = vtkStratusNetCDFModel::Variable;
 
-  static const Variable* FindTopology(const vtkStratusNetCDFFile& file); // or FVCOM's nv; nullptr
-  explicit vtkStratusUgridMesh(const vtkStratusNetCDFFile& file);        // throws vtkStratusReadError
+  static const Variable* FindTopology(const vtkStratusNetCDFModel& file); // or FVCOM's nv; nullptr
+  explicit vtkStratusUgridMesh(const vtkStratusNetCDFModel& file);        // throws vtkStratusReadError
 
   size_t GetNodes() const { return this->X.size(); }
   size_t GetFaces() const { return this->Offsets.size() - 1; }
@@ -69,7 +69,7 @@ public:
   vtkStratusUgridValues Read(const Variable& variable, size_t step) const;
   // Reads values without layers, at nodes: values at faces are averaged over those around the node that have one.
   std::vector<double> ReadAtNodes(const Variable& variable, size_t step) const;
-  const vtkStratusNetCDFFile& GetFile() const { return this->File; }
+  const vtkStratusNetCDFModel& GetFile() const { return this->File; }
 
 private:
   bool IsTime(int dimension) const;
@@ -83,7 +83,7 @@ private:
   double TurnsAround(size_t face) const;
   void TurnFaces();
 
-  const vtkStratusNetCDFFile& File;
+  const vtkStratusNetCDFModel& File;
   int NodeDimension = -1, FaceDimension = -1;
   std::array<int, 2> Layers = { { -1, -1 } };
   size_t LayerCount = 0; // 0: unknown

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusUgridReader.h"
 
+#include "vtkStratusNetCDFFile.h"
 #include "vtkStratusUgridLayers.h"
 #include "vtkStratusUgridMesh.h"
 #include "vtkStratusSphere.h"
@@ -17,18 +18,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <netcdf.h>
 
 vtkStandardNewMacro(vtkStratusUgridReader);
 
 namespace {
-using Variable = vtkStratusNetCDFFile::Variable;
+using Variable = vtkStratusNetCDFModel::Variable;
 
 bool IsValues(const vtkStratusUgridMesh& mesh, const vtkStratusUgridLayers& layers, const Variable& one)
 {
   const bool placed = mesh.IsOnNodes(one) != mesh.IsOnFaces(one); // what has both dimensions is a table of neighbours
   const bool layered = mesh.FindLayers(one) == -1 || layers.IsOnLayers(one) || layers.IsOnBorders(one);
-  return placed && layered && !mesh.IsCoordinate(one) && !layers.Uses(one) && one.Type != NC_CHAR && one.Type < NC_STRING;
+  return placed && layered && !mesh.IsCoordinate(one) && !layers.Uses(one) && one.HasNumbers();
 }
 
 // The points of all borders of layers, in doubles, because coordinates of maps have seven digits before the point.
@@ -129,6 +129,7 @@ double Between(const vtkStratusUgridValues& values, const vtkStratusUgridLayers&
 bool vtkStratusUgridReader::CanReadFile(const char* name)
 {
   try {
+    const std::lock_guard<std::recursive_mutex> lock(vtkStratusNetCDFLock());
     const vtkStratusNetCDFFile file(name ? name : "");
     return vtkStratusUgridMesh::FindTopology(file) != nullptr;
   } catch (const vtkStratusReadError&) {
@@ -136,7 +137,7 @@ bool vtkStratusUgridReader::CanReadFile(const char* name)
   }
 }
 
-std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
+std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFModel& file)
 {
   vtkStratusUgridMesh mesh(file);
   const vtkStratusUgridLayers layers(mesh);
@@ -176,7 +177,7 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
   }
   const int time = mesh.FindTime(chosen) >= 0 ? mesh.FindTime(chosen) : layers.GetTime();
   if (time >= 0) {
-    const vtkStratusNetCDFFile::TimeSteps steps = file.ReadTimes(time);
+    const vtkStratusNetCDFModel::TimeSteps steps = file.ReadTimes(time);
     this->Times = steps.Values;
     this->TimeUnits = steps.Units;
     this->TimeCalendar = steps.Calendar;
@@ -185,7 +186,7 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFFile& file)
   return "vtkUnstructuredGrid";
 }
 
-void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output)
+void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFModel& file, size_t step, vtkDataSet* output)
 {
   vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(output);
   vtkStratusUgridMesh mesh(file);

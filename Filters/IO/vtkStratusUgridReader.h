@@ -56,8 +56,8 @@ protected:
   vtkStratusUgridReader() = default;
   ~vtkStratusUgridReader() override = default;
 
-  std::string InspectFile(const vtkStratusNetCDFFile& file) override;
-  void BuildFile(const vtkStratusNetCDFFile& file, size_t step, vtkDataSet* output) override;
+  std::string InspectFile(const vtkStratusNetCDFModel& file) override;
+  void BuildFile(const vtkStratusNetCDFModel& file, size_t step, vtkDataSet* output) override;
 
 private:
   vtkStratusUgridReader(const vtkStratusUgridReader&) = delete;
