@@ -3,7 +3,7 @@
 include(CheckLanguage)
 
 # Named one by one: a bare find of Debian's VTK wants Qt. The first list is for consumers, the second for tests and programs.
-set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonTransforms FiltersGeometry ImagingCore ImagingMath IOCore IOImage
+set(stratus_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonTransforms FiltersGeometry ImagingCore ImagingMath IOCore IOImage jsoncpp lz4
   RenderingCore RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2)
 set(stratus_vtk_programs ChartsCore CommonColor CommonSystem FiltersCore FiltersGeneral FiltersSources ImagingSources InteractionStyle
   IOEnSight IOExportGL2PS IOGeometry IOHDF IOLegacy IOXML IOXMLParser RenderingAnnotation
@@ -36,6 +36,7 @@ include(cmake/openexr.cmake)
 include(cmake/netcdf.cmake)
 include(cmake/udunits.cmake)
 include(cmake/proj.cmake)
+include(cmake/codecs.cmake)
 include(cmake/openvdb.cmake)
 include(cmake/tetgen.cmake)
 include(cmake/precompile.cmake)

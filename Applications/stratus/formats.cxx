@@ -4,18 +4,19 @@
 #include "support.h"
 #include "vectors.h"
 
-#ifdef STRATUS_NETCDF
 #include "vtkStratusCFReader.h"
-#include "vtkStratusNetCDFReader.h"
-#include "vtkStratusUgridReader.h"
-#endif
 #include "vtkStratusImageReader.h"
+#include "vtkStratusNetCDFReader.h"
 #include "vtkStratusTIFFFile.h"
 #include "vtkStratusTetGenReader.h"
+#ifdef STRATUS_NETCDF
+#include "vtkStratusUgridReader.h"
+#endif
 #ifdef STRATUS_VDB
 #include "vtkStratusVDBReader.h"
 #endif
 #include "vtkStratusVariableReader.h"
+#include "vtkStratusZarrReader.h"
 
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
@@ -93,6 +94,14 @@ made netcdf(const std::string& path)
   throw cli::failure(
     "cannot read '" + path + "': this program was built without libnetcdf (Debian: libnetcdf-dev), which reads netCDF files");
 #endif
+}
+
+made zarr(const std::string& path)
+{
+  auto reader = vtkSmartPointer<vtkStratusZarrReader>::New();
+  reader->SetFileName(path.c_str());
+  reader->MapFileOn(); // as of netCDF
+  return reader;
 }
 
 made vdb(const std::string& path)
@@ -258,6 +267,11 @@ bool is_tetgen(const std::string& path)
   return extension == ".node" || extension == ".ele" || extension == ".face" || extension == ".edge" || extension == ".neigh";
 }
 
+bool is_zarr(const std::string& path)
+{
+  return vtkStratusZarrReader::CanReadFile(path.c_str());
+}
+
 bool is_collection(const std::string& path)
 {
   return extension_of(path) == ".pvd";
@@ -271,6 +285,9 @@ file_format choose_format(const std::string& path, const std::string& raw)
   }
   if (extension == ".raw") {
     throw usage("'" + path + "' does not describe itself: give --raw NXxNYxNZ:TYPE[:big][:DX,DY,DZ][:+BYTES BEFORE]");
+  }
+  if (is_zarr(path)) {
+    return { zarr(path), "" };
   }
   for (const auto& known : formats) {
     if (extension == known.extension) {
@@ -392,31 +409,25 @@ void set_memory(double bytes)
 
 void select_indices(vtkAlgorithm* reader, const std::string& select)
 {
-#ifdef STRATUS_NETCDF
   if (vtkStratusNetCDFReader* const by_name = vtkStratusNetCDFReader::SafeDownCast(reader)) {
     by_name->SetSelection(select.c_str());
     return;
   }
-#endif
-  throw usage("--select " + select + ": only netCDF has dimensions with names to select from");
+  throw usage("--select " + select + ": only netCDF and Zarr have dimensions with names to select from");
 }
 
 void place_on_globe(vtkAlgorithm* reader, double factor)
 {
-#ifdef STRATUS_NETCDF
   if (vtkStratusNetCDFReader* const earth = vtkStratusNetCDFReader::SafeDownCast(reader)) {
     earth->SetCoordinatesToSphere();
     earth->SetHeightFactor(factor);
     return;
   }
-#endif
-  (void)factor;
-  throw usage("--globe: only a netCDF file has longitudes and latitudes");
+  throw usage("--globe: only netCDF and Zarr have longitudes and latitudes");
 }
 
 std::function<bool(const double degrees[2], double at[2])> place_on_plane(vtkAlgorithm* reader, std::string& why_not)
 {
-#ifdef STRATUS_NETCDF
   if (vtkStratusNetCDFReader* const plane = vtkStratusNetCDFReader::SafeDownCast(reader)) {
     why_not = plane->GetReasonWithoutPlaces();
     if (plane->HasPlaces()) {
@@ -424,21 +435,13 @@ std::function<bool(const double degrees[2], double at[2])> place_on_plane(vtkAlg
       return [kept](const double degrees[2], double at[2]) { return kept->FindPlace(degrees[0], degrees[1], at); };
     }
   }
-#endif
-  (void)reader;
-  (void)why_not;
   return nullptr;
 }
 
 double height_factor_of(vtkAlgorithm* reader)
 {
-#ifdef STRATUS_NETCDF
-  if (vtkStratusNetCDFReader* const earth = vtkStratusNetCDFReader::SafeDownCast(reader)) {
-    return earth->GetUsedHeightFactor();
-  }
-#endif
-  (void)reader;
-  return 0.0;
+  vtkStratusNetCDFReader* const earth = vtkStratusNetCDFReader::SafeDownCast(reader);
+  return earth ? earth->GetUsedHeightFactor() : 0.0;
 }
 
 std::vector<variable_entry> list_variables(vtkAlgorithm* reader, double time)

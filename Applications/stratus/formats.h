@@ -33,6 +33,8 @@ struct axis_about {
 std::string extension_of(const std::string& path);
 // Returns whether the name has an extension of TetGen: .node, .ele, .face, .edge, .neigh.
 bool is_tetgen(const std::string& path);
+// Returns whether the path is a folder of Zarr, or a file of its metadata.
+bool is_zarr(const std::string& path);
 // Returns whether the name has the extension of a list of files over time: .pvd.
 bool is_collection(const std::string& path);
 
@@ -63,7 +65,7 @@ std::string time_units_of(vtkAlgorithm* reader);
 std::string time_calendar_of(vtkAlgorithm* reader);
 std::string description_of(vtkAlgorithm* reader);
 std::string choice_of(vtkAlgorithm* reader);
-// Whether a reader of variables reads netCDF.
+// Whether a reader of variables reads netCDF, or Zarr in the same way.
 bool is_netcdf(vtkAlgorithm* reader);
 std::string axis_name_of(vtkAlgorithm* reader, int axis);
 // The file's own numbers along an axis, for labels; those of a reader of whole files are coordinates without a name.

@@ -60,7 +60,7 @@ INPUT is a volume file or a scene's name.
   For render and info also:
   - rectilinear grids (.vtr .pvtr);
   - grids of cells, which are divided into tetrahedra: unstructured (.vtu .pvtu .vtk .hdf, TetGen's .node .ele), curvilinear (.vts .pvts),
-    netCDF (.nc), multi-block (.vtm .vtmb), time series (.pvd), OpenFOAM (.foam, system/controlDict), EnSight (.case);
+    netCDF (.nc), folders of Zarr, multi-block (.vtm .vtmb), time series (.pvd), OpenFOAM (.foam, system/controlDict), EnSight (.case);
   - AMR (.vthb .vth): the finest cell at each place is drawn.
 
 Data and appearance
@@ -70,7 +70,7 @@ Data and appearance
   --raw NXxNYxNZ:TYPE     layout of a headerless file (.raw), x fastest. TYPE: int8, uint8, int16, uint16, int32, uint32, float32 or
                           float64. Optional, each after a colon: big (default little), a spacing DX,DY,DZ, +N for N bytes to skip at
                           the start
-  --select NAME=INDEX     netCDF: read a dimension at one index only, counted from 0, such as an ensemble's member. Separate several by
+  --select NAME=INDEX     netCDF, Zarr: read a dimension at one index only, from 0, such as an ensemble's member. Separate several by
                           commas, or repeat --select (default: 0 for dimensions that are neither space nor time, which info lists)
   --time T                the time step: first, last, step:N (from 0), a time in the file's units, or a duration with its unit (3h, 90min,
                           "2 d") since the file's reference time, or with + before it since its first step. The nearest step is used

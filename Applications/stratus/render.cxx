@@ -263,7 +263,7 @@ void cli::render(const options& given)
   std::unique_ptr<cloud> water;
   if (o.globe && (is_scene(o.source) || !o.companions.empty())) {
     throw usage(
-      is_scene(o.source) ? "--globe: only a netCDF file has longitudes and latitudes" : "--globe shows one INPUT: leave out the others");
+      is_scene(o.source) ? "--globe: only netCDF and Zarr have longitudes and latitudes" : "--globe shows one INPUT: leave out the others");
   }
   if (is_scene(o.source)) {
     if (!o.time.empty() || !o.frames.empty()) {

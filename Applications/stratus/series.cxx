@@ -98,8 +98,8 @@ void check_file(const std::string& path)
   }
   const bool folder = fstat(fileno(file), &status) == 0 && S_ISDIR(status.st_mode);
   std::fclose(file);
-  if (folder) {
-    throw cli::failure("cannot read '" + path + "': it is a folder");
+  if (folder && !cli::is_zarr(path)) {
+    throw cli::failure("cannot read '" + path + "': it is a folder, and none of Zarr");
   }
 }
 
@@ -180,7 +180,7 @@ void series::open()
       throw usage("--select " + this->Select + ": '" + path + "' is a list of files, which has no dimensions with names");
     }
     if (this->Globe) {
-      throw usage("--globe: '" + path + "' is a list of files, only a netCDF file has longitudes and latitudes");
+      throw usage("--globe: '" + path + "' is a list of files, only netCDF and Zarr have longitudes and latitudes");
     }
     this->Parts = read_collection(path);
     for (const collection_step& step : this->Parts) {
@@ -191,7 +191,7 @@ void series::open()
   const file_format found = choose_format(path, this->Raw);
   if (!found.reader) {
     throw failure("'" + path + "' is no image file that VTK reads (.vti .vtk .mha .mhd .nrrd .nhdr .nii .tif .png ...) " +
-      "and no grid (.nc .vdb .vtr .vts .vtu .vtm .vthb .pvd .vtk .vtkhdf .foam .case .node .ele ...)");
+      "and no grid (.nc .zarr .vdb .vtr .vts .vtu .vtm .vthb .pvd .vtk .vtkhdf .foam .case .node .ele ...)");
   }
   this->Units = found.time_units;
   this->Reader = found.reader;

@@ -296,6 +296,9 @@ int vtkStratusVariableReader::RequestData(vtkInformation*, vtkInformationVector*
     const auto after = std::upper_bound(this->Times.begin(), this->Times.end(), time);
     step = after == this->Times.begin() ? 0 : static_cast<size_t>(after - this->Times.begin()) - 1;
   }
+  if (vtkFieldData* points = output->GetAttributesAsFieldData(vtkDataObject::POINT)) {
+    points->Initialize(); // an image keeps the values of another variable, of other sizes perhaps
+  }
   try {
     this->Build(step, output);
     this->SetUnits(output);

@@ -111,7 +111,7 @@ with netCDF4.Dataset("flat.nc", "w") as file:
         file[axis].units = "m"
     file.createVariable("q", "f4", ("z", "y", "x"))[:] = 1
 expect(1, "has no longitudes and latitudes of the Earth", "render", "flat.nc", "--globe", "-o", "no.png")
-expect(2, "--globe: only a netCDF file has longitudes and latitudes", "render", "cloud", "--globe", "-o", "no.png")
+expect(2, "--globe: only netCDF and Zarr have longitudes and latitudes", "render", "cloud", "--globe", "-o", "no.png")
 expect(2, "leave out the others", "render", "world.nc", "region.nc", "--globe", "-o", "no.png")
 
 # coastlines are where the coast is: Cape Agulhas in the south of Africa, in the middle of the picture, and none in the Pacific
