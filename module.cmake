@@ -34,6 +34,7 @@ vtk_module_find_modules(stratus_module_files_rendering "${CMAKE_CURRENT_SOURCE_D
 list(APPEND stratus_module_files ${stratus_module_files_rendering})
 include(cmake/openexr.cmake)
 include(cmake/netcdf.cmake)
+include(cmake/hdf5.cmake)
 include(cmake/udunits.cmake)
 include(cmake/proj.cmake)
 include(cmake/codecs.cmake)

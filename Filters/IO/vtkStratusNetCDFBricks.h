@@ -17,7 +17,7 @@ struct vtkStratusNetCDFPart {
 };
 
 // Returns the array, x fastest, with values as vtkStratusNetCDFFile::Read() gives them; null where it can't be made. The file is opened
-// anew, for as long as the array has its values.
+// anew, for as long as the array has its values: by libhdf5, if that reads the chunks in several threads, or by libnetcdf, in one.
 vtkSmartPointer<vtkDataArray> vtkStratusMakeNetCDFBricks(
   const vtkStratusNetCDFFile& file, const vtkStratusNetCDFVariable& variable, const vtkStratusNetCDFPart& part);
 

@@ -46,12 +46,6 @@ size_t BytesOfAttributes(int file, int variable, int count)
 }
 } // namespace
 
-std::recursive_mutex& vtkStratusNetCDFLock()
-{
-  static std::recursive_mutex lock;
-  return lock;
-}
-
 void vtkStratusNetCDFFile::Check(int status, const std::string& what) const
 {
   if (status != NC_NOERR) {

@@ -6,7 +6,6 @@
 #include "vtkStratusNetCDFModel.h"
 
 #include <map>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -20,11 +19,12 @@ public:
   // Returns the lengths of the variable's chunks along its dimensions; empty for one that is in one piece, or in a classic file.
   std::vector<size_t> ChunksOf(const Variable& variable) const;
   vtkSmartPointer<vtkDataArray> MakeBricks(const Variable& variable, const vtkStratusNetCDFPart& part) const override;
+  using vtkStratusNetCDFModel::ValuesOf;
+  void ReadStored(
+    const Variable& variable, const std::vector<size_t>& start, const std::vector<size_t>& count, void* stored) const override;
 
 protected:
   Attribute ReadAttribute(const Variable& variable, const char* name) const override;
-  void ReadStored(
-    const Variable& variable, const std::vector<size_t>& start, const std::vector<size_t>& count, void* stored) const override;
   std::vector<std::string> ReadTexts(const Variable& variable) const override;
   bool HasDefaultFill(const Variable& variable) const override;
 
@@ -36,8 +36,5 @@ private:
   int Id = -1;
   std::map<int, int> Numbers; // of libnetcdf's numbers of dimensions
 };
-
-// libnetcdf serves one thread at a time: readers hold this lock, and so does what reads bricks.
-std::recursive_mutex& vtkStratusNetCDFLock();
 
 #endif

@@ -185,7 +185,7 @@ std::string vtkStratusNetCDFModel::DescribeValues(const Variable& variable) cons
 }
 
 vtkSmartPointer<vtkDataArray> vtkStratusNetCDFModel::Read(
-  const Variable& variable, const std::vector<size_t>& start, const std::vector<size_t>& count, const vtkStratusNetCDFAccess& access) const
+  const Variable& variable, const std::vector<size_t>& start, const std::vector<size_t>& count) const
 {
   std::vector<size_t> from = start, many = count;
   if (count.empty()) {
@@ -198,17 +198,8 @@ vtkSmartPointer<vtkDataArray> vtkStratusNetCDFModel::Read(
   for (size_t one : many) {
     total *= one;
   }
-  const vtkSmartPointer<vtkDataArray> array = this->ValuesOf(variable).Read(total, [&](void* stored) {
-    if (!access.Read) {
-      this->ReadStored(variable, from, many, stored);
-    }
-    if (access.Lock) {
-      access.Lock->unlock();
-    }
-    if (access.Read && !access.Read(from.data(), many.data(), stored)) {
-      this->Fail("variable '" + variable.Name + "' cannot be read");
-    }
-  });
+  const vtkSmartPointer<vtkDataArray> array =
+    this->ValuesOf(variable).Read(total, [&](void* stored) { this->ReadStored(variable, from, many, stored); });
   array->SetName(variable.Name.c_str());
   return array;
 }

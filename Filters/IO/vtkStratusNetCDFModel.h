@@ -10,8 +10,6 @@
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
-#include <functional>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -52,14 +50,6 @@ struct vtkStratusNetCDFAttribute {
   std::string Text;  // the first one
   std::vector<double> Reals;
   std::vector<std::int64_t> Integers; // empty for reals; an unsigned one above the largest has its bits
-};
-
-// How values of a variable are read by several threads.
-struct vtkStratusNetCDFAccess {
-  // Null, or the lock of the file's library, which is released when the library is not needed any more.
-  std::unique_lock<std::recursive_mutex>* Lock = nullptr;
-  // Null, or writes the stored values of a box without the library, and returns false if they cannot be read.
-  std::function<bool(const size_t* start, const size_t* count, void* stored)> Read = nullptr;
 };
 
 class vtkStratusNetCDFModel
@@ -110,9 +100,8 @@ public:
 
   // Reads a block of values; empty start and count: all. Missing values are NaN, the others are unpacked, by the rules at
   // vtkStratusNetCDFValues. The array is float if floats represent all of the variable's values exactly, otherwise double.
-  // access: how bricks read values.
-  vtkSmartPointer<vtkDataArray> Read(const Variable& variable, const std::vector<size_t>& start = {}, const std::vector<size_t>& count = {},
-    const vtkStratusNetCDFAccess& access = {}) const;
+  vtkSmartPointer<vtkDataArray> Read(
+    const Variable& variable, const std::vector<size_t>& start = {}, const std::vector<size_t>& count = {}) const;
   // Returns "; ..." for attributes of values that are ignored, "" if there is none.
   std::string DescribeValues(const Variable& variable) const;
   // Reads all values of integers or reals, in doubles; one that is missing is an error that names `what`.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusUgridReader.h"
 
+#include "vtkStratusHDF5Lock.h"
 #include "vtkStratusNetCDFFile.h"
 #include "vtkStratusUgridLayers.h"
 #include "vtkStratusUgridMesh.h"
@@ -129,7 +130,7 @@ double Between(const vtkStratusUgridValues& values, const vtkStratusUgridLayers&
 bool vtkStratusUgridReader::CanReadFile(const char* name)
 {
   try {
-    const std::lock_guard<std::recursive_mutex> lock(vtkStratusNetCDFLock());
+    const std::lock_guard<std::recursive_mutex> lock(vtkStratusHDF5Lock());
     const vtkStratusNetCDFFile file(name ? name : "");
     return vtkStratusUgridMesh::FindTopology(file) != nullptr;
   } catch (const vtkStratusReadError&) {
