@@ -19,10 +19,22 @@ template <class Stored> struct vtkStratusNetCDFValues::Missing {
   Stored Low, High;
   bool All = false;
 
-  bool Has(Stored value) const
+  // Sets for each of `count` values whether it is missing. Returns whether one is.
+  bool Find(const Stored* values, size_t count, unsigned char* is_missing) const
   {
-    return this->All || value < this->Low || value > this->High ||
-      std::find(this->Values.begin(), this->Values.end(), value) != this->Values.end();
+    unsigned char any = 0;
+    for (size_t i = 0; i < count; ++i) {
+      is_missing[i] = static_cast<unsigned char>(this->All | (values[i] < this->Low) | (values[i] > this->High));
+    }
+    for (const Stored value : this->Values) {
+      for (size_t i = 0; i < count; ++i) {
+        is_missing[i] |= static_cast<unsigned char>(values[i] == value);
+      }
+    }
+    for (size_t i = 0; i < count; ++i) {
+      any |= is_missing[i];
+    }
+    return any != 0;
   }
 };
 
@@ -244,20 +256,33 @@ template <class Stored> bool vtkStratusNetCDFValues::IsFloatEnough() const
   return largest < 1e38 && largest * std::numeric_limits<float>::epsilon() < 0.5 * std::fabs(this->Scale);
 }
 
+// Values are unpacked in parts that are short enough for a cache, by loops without branches.
 template <class Stored, class Result> void vtkStratusNetCDFValues::ReadAs(size_t count, const Reader& read, Result* results) const
 {
+  constexpr size_t most = 1024;
   constexpr bool in_place = std::is_same<Stored, Result>::value;
   const std::unique_ptr<Stored[]> apart(in_place ? nullptr : new Stored[count]);
   void* const buffer = in_place ? static_cast<void*>(results) : static_cast<void*>(apart.get());
   read(buffer);
   const Stored* const stored = static_cast<const Stored*>(buffer);
   const Missing<Stored> missing = this->FindMissing<Stored>();
-  const bool packed = this->IsPacked();
-  for (size_t i = 0; i < count; ++i) {
-    const Stored value = stored[i];
-    results[i] = missing.Has(value) ? static_cast<Result>(NAN)
-      : packed                      ? static_cast<Result>(static_cast<double>(value) * this->Scale + this->Offset)
-                                    : static_cast<Result>(value);
+  const double scale = this->Scale, offset = this->Offset;
+  unsigned char is_missing[most];
+  for (size_t first = 0; first < count; first += most) {
+    const Stored* const from = stored + first;
+    Result* const to = results + first;
+    const size_t part = std::min(most, count - first);
+    const bool any = missing.Find(from, part, is_missing);
+    if (this->IsPacked()) {
+      for (size_t i = 0; i < part; ++i) {
+        to[i] = static_cast<Result>(static_cast<double>(from[i]) * scale + offset);
+      }
+    } else if (!in_place) {
+      std::copy_n(from, part, to);
+    }
+    for (size_t i = 0; any && i < part; ++i) {
+      to[i] = is_missing[i] ? static_cast<Result>(NAN) : to[i];
+    }
   }
 }
 
