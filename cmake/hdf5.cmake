@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Finds libhdf5 and sets stratus_hdf5: whether several threads read chunks of netCDF-4 files at once.
+# Finds libhdf5 and sets stratus_hdf5: whether to build vtkStratusHDF5Reader, and to read chunks of netCDF-4 files in several threads.
 include(CheckSymbolExists)
 set(STRATUS_BUILD_HDF5 AUTO CACHE STRING "Read HDF5 files and chunks by libhdf5 1.10.3 or newer: ON, OFF, or AUTO (where it is found)")
 set_property(CACHE STRATUS_BUILD_HDF5 PROPERTY STRINGS AUTO ON OFF)
@@ -19,7 +19,7 @@ if (STRATUS_BUILD_HDF5)
   if (STRATUS_HDF5_HAS_CHUNKS)
     set(stratus_hdf5 ON)
   elseif (STRATUS_BUILD_HDF5 STREQUAL "AUTO")
-    message(STATUS "No libhdf5 1.10.3: chunks of netCDF-4 are read by one thread at a time (Debian: libhdf5-dev)")
+    message(STATUS "No libhdf5 1.10.3: building without vtkStratusHDF5Reader (Debian: libhdf5-dev)")
   else ()
     message(FATAL_ERROR "STRATUS_BUILD_HDF5 is ${STRATUS_BUILD_HDF5}, but libhdf5 1.10.3 was not found (Debian: libhdf5-dev)")
   endif ()

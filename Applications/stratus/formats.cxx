@@ -5,6 +5,9 @@
 #include "vectors.h"
 
 #include "vtkStratusCFReader.h"
+#ifdef STRATUS_HDF5
+#include "vtkStratusHDF5Reader.h"
+#endif
 #include "vtkStratusImageReader.h"
 #include "vtkStratusNetCDFReader.h"
 #include "vtkStratusTIFFFile.h"
@@ -104,6 +107,20 @@ made zarr(const std::string& path)
   return reader;
 }
 
+// Images by our reader, which leaves values in the file; other grids, and files that are damaged, by VTK's.
+made hdf(const std::string& path)
+{
+#ifdef STRATUS_HDF5
+  if (vtkStratusHDF5Reader::CanReadFile(path.c_str())) {
+    auto reader = vtkSmartPointer<vtkStratusHDF5Reader>::New();
+    reader->SetFileName(path.c_str());
+    reader->MapFileOn(); // as of netCDF
+    return reader;
+  }
+#endif
+  return reader_for<vtkHDFReader>(path);
+}
+
 made vdb(const std::string& path)
 {
 #ifdef STRATUS_VDB
@@ -199,8 +216,10 @@ constexpr struct {
   { ".vthb", refined },
   { ".vth", refined },
   { ".vtk", reader_for<vtkDataSetReader> },
-  { ".vtkhdf", reader_for<vtkHDFReader> },
-  { ".hdf", reader_for<vtkHDFReader> },
+  { ".vtkhdf", hdf },
+  { ".hdf", hdf },
+  { ".h5", hdf },
+  { ".hdf5", hdf },
   { ".nc", netcdf },
   { ".nc4", netcdf },
   { ".cdf", netcdf },

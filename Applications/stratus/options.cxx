@@ -55,7 +55,7 @@ std::string help()
   stratus --help
 
 INPUT is a volume file or a scene's name.
-  Volume images: .vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .hdr .tif .png .hdf .vtkhdf .vdb .nvdb, and others that VTK reads as an image.
+  Volume images: .vti .pvti .vtk .mha .mhd .nrrd .nhdr .nii .hdr .tif .png .hdf .vtkhdf .h5 .vdb .nvdb, and others that VTK reads.
   Scenes: cloud, plume, fog, haze, peak, voxel, bone, skin, stripes, shell, plate, labels, cumulus-rectilinear.
   For render and info also:
   - rectilinear grids (.vtr .pvtr);

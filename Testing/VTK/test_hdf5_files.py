@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Chunks of HDF5 that several threads read: whatever their filters, sizes and types, values are those that libnetcdf reads."""
+"""Chunks of HDF5 that several threads read: whatever their filters, sizes and types, values are those that libhdf5 reads, of netCDF-4, of
+images of VTKHDF and of plain HDF5. A damaged chunk is missing, and wrong files are refused."""
 import os
 import sys
 import threading
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Python"))
-from checking import check, done
+from checking import check, done, errors_of
 
 import warnings
 
 import netCDF4
 import numpy
+import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
 import stratus
@@ -25,6 +27,7 @@ chance = numpy.random.default_rng(5)
 FIELD = numpy.cumsum(chance.normal(size=SIZE), axis=2).astype("f4")
 NOISE = chance.integers(0, 2 ** 32, SIZE, dtype="u4").view("f4")  # bytes that do not deflate
 NOISE[~numpy.isfinite(NOISE)] = 1
+Reader = stratus.vtkStratusVariableReader
 
 
 def values_of(reader, cells=False):
@@ -114,5 +117,138 @@ for name in ("filled", "usual"):
         check(f"'{name}' at {step} is filled", numpy.array_equal(*got, equal_nan=True))
         check(f"'{name}' at {step} has {('some', 'no', 'some', 'all')[2 * (name == 'usual') + step]} values",
               numpy.isfinite(got[0]).sum() == {("filled", 1): 0, ("usual", 1): 24000}.get((name, step), 9 * 8 * 40))
+
+
+# ---- images of VTKHDF
+def write_image(name, arrays, extent=(0, NX - 1, 0, NY - 1, 0, NZ - 1), kind="ImageData", version=(1, 0), steps=(), **options):
+    """arrays: {"PointData/rho": values}. Files of netCDF-4 are HDF5 in which groups have attributes."""
+    with netCDF4.Dataset(name, "w") as file:
+        root = file.createGroup("VTKHDF")
+        root.Version, root.Type = numpy.array(version, "i8"), kind
+        root.WholeExtent = numpy.array(extent, "i8")
+        root.Origin, root.Spacing = numpy.array((1.0, 2, 3)), numpy.array((0.5, 1, 2))
+        root.Direction = numpy.array((0.0, 1, 0, -1, 0, 0, 0, 0, 1))
+        root.createGroup("PointData"), root.createGroup("CellData")
+        if steps:
+            group = root.createGroup("Steps")
+            group.NSteps = numpy.int64(len(steps))
+            arrays = {**arrays, "Steps/Values": numpy.array(steps)}
+        for path, values in arrays.items():
+            dimensions = []
+            for size in values.shape:
+                dimensions.append(f"n{size}")
+                if dimensions[-1] not in file.dimensions:
+                    file.createDimension(dimensions[-1], size)
+            how = options if values.ndim > 2 else {}
+            root.createVariable(path, values.dtype, dimensions, fill_value=False, **how)[:] = values
+    return name
+
+
+def image_of(name, variable=None, map_file=False, step=None):
+    reader = stratus.vtkStratusHDF5Reader()
+    reader.SetFileName(name), reader.SetVariableName(variable), reader.SetMapFile(map_file), reader.SetMappedBytesLeast(0)
+    heard = errors_of(reader)
+    reader.Update() if step is None else reader.UpdateTimeStep(step)
+    reader.heard = heard
+    return reader
+
+
+def by_vtk(name):
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(name), reader.UpdateInformation()
+    reader.GetCellDataArraySelection().DisableAllArrays()  # VTK 9.1 reads cells by the sizes of points
+    reader.Update()
+    return reader.GetOutputDataObject(0)
+
+
+def frame_of(image):
+    matrix = image.GetDirectionMatrix()
+    return image.GetExtent(), image.GetOrigin(), image.GetSpacing(), [matrix.GetElement(i, j) for i in range(3) for j in range(3)]
+
+
+CELLS = (chance.random((NZ - 1, NY - 1, NX - 1)) * 999).astype("i2")
+WIND = chance.random((*SIZE, 3))
+arrays = {"PointData/rho": FIELD, "PointData/wind": WIND, "CellData/mass": CELLS}
+for name, options in {"pieces.vtkhdf": {}, "chunks.vtkhdf": dict(zlib=True, fletcher32=True), "big.hdf": dict(endian="big")}.items():
+    expected = by_vtk(write_image(name, arrays, **options))
+    check(f"{name} can be read", stratus.vtkStratusHDF5Reader.CanReadFile(name) == 1)
+    for limit in (0, 16 << 20):
+        Reader.SetMemoryLimit(limit)
+        for map_file in (False, True):
+            for variable in ("rho", "wind", "mass"):
+                reader = image_of(name, variable, map_file)
+                output, cells = reader.GetOutputDataObject(0), variable == "mass"
+                check(f"{variable} of {name} is {'left in the file' if map_file else 'read'}", bool(reader.GetMapped()) == map_file)
+                check(f"{variable} of {name} has its frame", frame_of(output) == frame_of(expected))
+                reference = CELLS.ravel() if cells else vtk_to_numpy(expected.GetPointData().GetArray(variable))
+                check(f"{variable} of {name} has its values", same(in_two_threads(values_of(reader, cells)), reference))
+    check(f"variables of {name}", [reader.GetNameOfVariable(i) for i in range(3)] == ["rho", "wind", "mass"])
+
+large = write_image("large.hdf", {"PointData/rho": numpy.tile(FIELD, (40, 1, 1))}, (0, NX - 1, 0, NY - 1, 0, 40 * NZ - 1))
+used = Reader.GetBytesRead()
+reader = image_of(large, map_file=True)
+check("values in one piece that are larger than the limit", same(values_of(reader), numpy.tile(FIELD, (40, 1, 1)).ravel()))
+check("are in bricks", reader.GetMapped() and Reader.GetBytesRead() >= used + 40 * FIELD.nbytes and Reader.GetMemoryUsed() <= 16 << 20)
+Reader.SetMemoryLimit(0)
+
+# Time, blanks, a flat image, arrays that do not fit.
+ghosts = numpy.zeros(SIZE, "u1")
+ghosts[3, 4, 5] = 2
+write_image("steps.vtkhdf", {
+    "PointData/rho": numpy.stack([FIELD, 2 * FIELD]), "PointData/still": FIELD, "PointData/short": FIELD[1:], "PointData/vtkGhostType": ghosts,
+    "CellData/mass": numpy.stack([CELLS, CELLS + 1, CELLS + 2]), "CellData/still": CELLS,
+    "Steps/PointDataOffsets/rho": numpy.array((1, 0, 1))}, version=(2, 0), steps=(0.5, 1.0, 4.0), zlib=True)
+for map_file in (False, True):
+    for step, (time, factor) in enumerate(((0.5, 2), (1.0, 1), (4.0, 2))):
+        for variable, expected in (("rho", factor * FIELD), ("mass", CELLS + step), ("still", FIELD)):
+            reader = image_of("steps.vtkhdf", variable, map_file, time)
+            check(f"{variable} at {time}", same(values_of(reader, variable == "mass"), expected.astype(expected.dtype).ravel()))
+            blank = reader.GetOutputDataObject(0).GetPointData().GetArray("vtkGhostType")
+            check("blanked points", blank is not None and same(vtk_to_numpy(blank), ghosts.ravel()))
+for words in ("'short' of the size 39 x 51 x 61", "'still' of cells"):
+    check("an array that is left out", words in reader.GetDescription())
+flat = image_of(write_image("flat.vtkhdf", {"PointData/rho": FIELD[0]}, (0, NX - 1, 0, NY - 1, 3, 3)))
+check("a flat image", same(values_of(flat), FIELD[0].ravel()))
+many = image_of(write_image("negative.vtkhdf", arrays, (-7, NX - 8, -1, NY - 2, 4, NZ + 3)))
+check("an extent that does not begin at 0", many.GetOutputDataObject(0).GetExtent() == (-7, NX - 8, -1, NY - 2, 4, NZ + 3))
+check("has its values", same(values_of(many), FIELD.ravel()))
+
+# ---- any HDF5
+write("plain.h5", FIELD, chunksizes=(7, 16, 20), zlib=True)
+plain = image_of("plain.h5", "/run/rho", True)
+check("a data set by its path", same(values_of(plain), FIELD.ravel()) and plain.GetMapped())
+check("has a plain frame", frame_of(plain.GetOutputDataObject(0))[:3] == ((0, NX - 1, 0, NY - 1, 0, NZ - 1), (0, 0, 0), (1, 1, 1)))
+check("is the first", plain.GetNameOfVariable(0) == "/run/rho" and plain.GetNumberOfVariables() == 1)
+
+# ---- files that are wrong
+for name, words, options in (
+        ("later", "version of the VTKHDF file is 3", dict(version=(3, 0))), ("table", "'UnstructuredGrid'", dict(kind="UnstructuredGrid")),
+        ("small", "no array of numbers of its size", dict(extent=(0, 9, 0, 9, 0, 9))),
+        ("falls", "must rise", dict(extent=(9, 0, 0, 9, 0, 9)))):
+    reader = image_of(write_image(f"{name}.hdf", {"PointData/rho": FIELD}, **options))
+    check(f"an image that is {name}", any(words in text for text in reader.heard))
+check("another type is VTK's", stratus.vtkStratusHDF5Reader.CanReadFile("table.hdf") == 0)
+check("another name is refused", any("those that are: rho, wind, mass" in text for text in image_of("pieces.vtkhdf", "none").heard))
+with open("no.h5", "w") as file:
+    file.write("no HDF5 at all")
+check("another format is refused", any("no HDF5 file" in text for text in image_of("no.h5").heard))
+check("and is not ours", stratus.vtkStratusHDF5Reader.CanReadFile("no.h5") == 0)
+
+# A damaged chunk.
+size = os.path.getsize(write_image("damaged.hdf", {"PointData/rho": FIELD}, zlib=True, fletcher32=True, chunksizes=(5, 51, 61)))
+with open("damaged.hdf", "r+b") as file:
+    file.seek(size // 2), file.write(bytes(64))
+check("a damaged image is refused", any("cannot be read" in text for text in image_of("damaged.hdf").heard))
+damaged = image_of("damaged.hdf", map_file=True)
+missing = numpy.isnan(values_of(damaged))
+check("only a damaged chunk is missing", missing.sum() == 5 * NY * NX)
+check("others have their values", same(values_of(damaged)[~missing], FIELD.ravel()[~missing]))
+mapper, volume = stratus.vtkStratusVolumeMapper(), vtk.vtkVolume()
+mapper.SetInputDataObject(damaged.GetOutputDataObject(0)), volume.SetMapper(mapper)
+heard = errors_of(mapper)
+window, renderer = vtk.vtkRenderWindow(), vtk.vtkRenderer()
+window.SetOffScreenRendering(1), window.AddRenderer(renderer), renderer.AddVolume(volume), renderer.ResetCamera(), window.Render()
+check("the mapper reports it", any("missing" in text for text in heard))
+del missing, damaged, mapper, volume, renderer, window
 
 done()
