@@ -10,6 +10,7 @@
 #include "vtkStringArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <filesystem>
 #include <functional>
 
 namespace {
@@ -278,7 +279,8 @@ void test_bad(const std::string& folder)
 
 int main(int, char* argv[])
 {
-  const std::string folder = argv[1];
+  const std::string folder = std::string(argv[1]) + "/ugrid"; // the test of CF's reader has files of the same names
+  std::filesystem::create_directories(folder);
   test_delft(folder);
   test_dry(folder);
   test_levels(folder);
