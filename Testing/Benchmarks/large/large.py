@@ -2,23 +2,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Times and memory of first pictures of large files by the command line, against the limit of memory and against the disk.
 
-large.py make FOLDER KIND SIZE     writes FOLDER/KIND-SIZE.raw or .nc, layer by layer: clouds of which most blocks are empty
+large.py make FOLDER KIND SIZE     writes FOLDER/KIND-SIZE.raw, .nc or .zarr, layer by layer: clouds of which most blocks are empty
 large.py measure FILE OPTION...    draws it by `stratus render`, and prints rows scene,method,metric,value,unit
   --stratus PROGRAM   default: stratus of the path
   --memory SIZE       as of `stratus render`; default: none
   --repeats N         default 3
   --cold              drop the file's pages from memory before each picture
 
-KIND: raw (bytes), netcdf (floats, chunks of 64 along each axis, zlib at level 1), contiguous (floats, netCDF-4 in one piece).
+KIND: raw (bytes), netcdf (floats, chunks of 64 along each axis, zlib at level 1), contiguous (floats, netCDF-4 in one piece),
+zarr and zstd (floats, Zarr of chunks of 64 along each axis, by zlib or zstd at level 1).
 SIZE: NX,NY,NZ. Methods: first: with an empty cache folder; later: with the ranges that the first picture kept; dd: the file is only read.
 """
 import argparse
+import ctypes
+import ctypes.util
+import json
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
+import zlib
 
 import numpy
 
@@ -61,6 +66,9 @@ def make(folder, kind, size):
             for _, field in layers(nx, ny, nz, 16):
                 (255 * field).astype("u1").tofile(file)
         return name + ".raw"
+    if kind in ("zarr", "zstd"):
+        make_zarr(name + ".zarr", kind, size)
+        return name + ".zarr"
     import netCDF4
     with netCDF4.Dataset(name + ".nc", "w") as file:
         for axis, count in zip("zyx", (nz, ny, nx)):
@@ -74,8 +82,35 @@ def make(folder, kind, size):
     return name + ".nc"
 
 
+def by_zstd(data, codec=ctypes.CDLL(ctypes.util.find_library("zstd") or None)):
+    codec.ZSTD_compressBound.restype = codec.ZSTD_compress.restype = ctypes.c_size_t
+    room = ctypes.create_string_buffer(codec.ZSTD_compressBound(ctypes.c_size_t(len(data))))
+    count = codec.ZSTD_compress(room, ctypes.c_size_t(len(room)), data, ctypes.c_size_t(len(data)), 1)
+    return room[:count]
+
+
+def make_zarr(path, kind, size):
+    nx, ny, nz = size
+    os.makedirs(path)
+    with open(os.path.join(path, ".zarray"), "w") as file:
+        json.dump({"zarr_format": 2, "shape": (nz, ny, nx), "chunks": (64, 64, 64), "dtype": "<f4", "order": "C", "fill_value": 0, "filters": None,
+            "compressor": {"id": "zlib" if kind == "zarr" else "zstd", "level": 1}}, file)
+    for first, field in layers(nx, ny, nz, 64):
+        for y in range(0, ny, 64):
+            for x in range(0, nx, 64):
+                part = numpy.zeros((64, 64, 64), "f4")
+                box = field[:, y:y + 64, x:x + 64]
+                part[tuple(slice(0, n) for n in box.shape)] = box
+                with open(os.path.join(path, f"{first // 64}.{y // 64}.{x // 64}"), "wb") as file:
+                    file.write(zlib.compress(part.tobytes(), 1) if kind == "zarr" else by_zstd(part.tobytes()))
+
+
 def forget(path):
-    """Drops the file's pages from the system's memory."""
+    """Drops a file's pages, or those of a folder's files, from the system's memory."""
+    if os.path.isdir(path):
+        for name in os.listdir(path):
+            forget(os.path.join(path, name))
+        return
     handle = os.open(path, os.O_RDONLY)
     os.fsync(handle)
     os.posix_fadvise(handle, 0, 0, os.POSIX_FADV_DONTNEED)
@@ -110,7 +145,9 @@ def measure(path, options):
                 shutil.rmtree(options.cache, ignore_errors=True)
             if options.cold:
                 forget(path)
-            one = ["dd", "if=" + path, "of=/dev/null", "bs=1M", "status=none"] if method == "dd" else command
+            one = ["cat", *(os.path.join(path, name) for name in os.listdir(path))] if os.path.isdir(path) else ["dd", "if=" + path,
+                "of=/dev/null", "bs=1M", "status=none"]
+            one = one if method == "dd" else command
             results.append(run(one, dict(os.environ, STRATUS_CACHE_DIR=options.cache)))
         add(method, "seconds", [result[0] for result in results], "s")
         add(method, "processor_seconds", [result[1] for result in results], "s")
