@@ -32,7 +32,8 @@ bool EndsWith(const std::string& text, const std::string& end)
 bool IsNamedBy(const vtkStratusNetCDFModel& file, const Variable& variable, const char* attribute)
 {
   return std::any_of(file.GetVariables().begin(), file.GetVariables().end(), [&](const Variable& one) {
-    const std::vector<std::string> words = vtkStratusWords(file.Text(one, attribute));
+    const std::string text = file.Text(one, attribute);
+    const std::vector<std::string> words = text.empty() ? std::vector<std::string>() : vtkStratusWords(text);
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return file.Find(word, &one) == &variable; });
   });
 }

@@ -39,7 +39,7 @@ std::string Shown(const Json::Value& value)
   return text.size() > most ? text.substr(0, most) + "..." : text;
 }
 
-// Throws std::string with what is expected.
+// Throws std::string, which names the value and the values that are allowed.
 [[noreturn]] void Wrong(const char* what, const Json::Value& value, const std::string& expected)
 {
   throw std::string(what) + " is " + (value.isNull() ? "missing" : Shown(value)) + ", it must be " + expected;
@@ -391,8 +391,9 @@ void vtkStratusZarrArray::ReadCodecs3(const Json::Value& codecs, bool inner)
       this->ReadSharding(configuration);
       return;
     } else {
+      const size_t before = this->Codecs.size();
       this->AddCodec(name, configuration);
-      if (!is_bytes) {
+      if (!is_bytes && this->Codecs.size() > before) {
         throw "the codec '" + name + "' comes before 'bytes'";
       }
     }

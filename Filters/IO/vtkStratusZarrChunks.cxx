@@ -8,6 +8,7 @@
 #include "vtkSMPTools.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -15,7 +16,7 @@
 #include <mutex>
 #include <system_error>
 
-// What a thread needs to read a chunk. Memory of usual chunks is kept for the next one.
+// Memory in which a thread decodes a chunk. It is kept for the next chunk, unless it is large.
 struct vtkStratusZarrArray::Scratch {
   vtkStratusZarrBytes Bytes, Other;
 
@@ -299,26 +300,28 @@ void vtkStratusZarrArray::Read(
     total *= static_cast<vtkIdType>(many[a]);
   }
   std::mutex lock;
-  std::unique_ptr<vtkStratusReadError> error;
+  std::string fault; // the first one
+  std::atomic<bool> failed{ false };
+  const auto fail = [&](const std::string& why) {
+    const std::lock_guard<std::mutex> guard(lock);
+    fault = failed ? fault : why;
+    failed = true;
+  };
   auto read = [&](vtkIdType begin, vtkIdType end) {
     static thread_local Scratch scratch;
-    std::vector<size_t> chunk(rank);
-    for (vtkIdType i = begin; i < end; ++i) {
-      size_t rest = static_cast<size_t>(i);
-      for (size_t a = rank; a-- > 0; rest /= many[a]) {
-        chunk[a] = first[a] + rest % many[a];
-      }
-      try {
+    try {
+      std::vector<size_t> chunk(rank);
+      for (vtkIdType i = begin; i < end && !failed; ++i) {
+        size_t rest = static_cast<size_t>(i);
+        for (size_t a = rank; a-- > 0; rest /= many[a]) {
+          chunk[a] = first[a] + rest % many[a];
+        }
         this->ReadChunk(chunk, start, count, to, strides, scratch);
-      } catch (const vtkStratusReadError& why) {
-        const std::lock_guard<std::mutex> guard(lock);
-        error = error ? std::move(error) : std::make_unique<vtkStratusReadError>(why);
-        break;
-      } catch (const std::bad_alloc&) {
-        const std::lock_guard<std::mutex> guard(lock);
-        error = std::make_unique<vtkStratusReadError>(vtkStratusReadError{ "out of memory while a chunk was decoded" });
-        break;
       }
+    } catch (const vtkStratusReadError& why) {
+      fail(why.Text);
+    } catch (const std::bad_alloc&) {
+      fail("out of memory while a chunk was decoded");
     }
     scratch.Trim();
   };
@@ -327,8 +330,8 @@ void vtkStratusZarrArray::Read(
   } else {
     read(0, total);
   }
-  if (error) {
-    throw *error;
+  if (failed) {
+    throw vtkStratusReadError{ fault };
   }
 }
 

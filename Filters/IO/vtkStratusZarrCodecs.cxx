@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <new>
 
 #ifdef STRATUS_BLOSC
 #include <blosc.h>
@@ -46,7 +47,7 @@ uint32_t CRC32C(const char* bytes, size_t count)
   return ~sum;
 }
 
-// zlib's and gzip's headers are told apart by zlib.
+// zlib itself distinguishes its own headers from gzip's headers.
 void Inflate(const vtkStratusZarrBytes& from, size_t most, vtkStratusZarrBytes& to)
 {
   struct Stream : z_stream {
@@ -90,6 +91,9 @@ void DecodeZstd(const vtkStratusZarrBytes& from, size_t most, vtkStratusZarrByte
     void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
   };
   static thread_local const std::unique_ptr<ZSTD_DCtx, Free> context(ZSTD_createDCtx());
+  if (!context) {
+    throw std::bad_alloc();
+  }
   const size_t count = ZSTD_decompressDCtx(context.get(), to.Resize(most), most, from.Get(), from.Size());
   if (ZSTD_isError(count)) {
     throw std::string("zstd: ") + ZSTD_getErrorName(count);

@@ -2,6 +2,8 @@
 #include "vtkStratusZarrFile.h"
 
 #include "vtkStratusBricks.h"
+#include "vtkStratusIdentity.h"
+#include "vtkStratusMappedFile.h"
 #include "vtkStratusNetCDFBricks.h"
 #include "vtkStratusNetCDFValues.h"
 
@@ -16,8 +18,8 @@
 namespace {
 namespace files = std::filesystem;
 
-constexpr int MostDepth = 32;       // of groups
-constexpr size_t MostNodes = 20000; // arrays, and groups
+constexpr int MostDepth = 32;      // of groups
+constexpr size_t MostNodes = 4000; // arrays, and groups
 
 // "level2" comes before "level10".
 bool ComesBefore(const std::string& a, const std::string& b)
@@ -370,10 +372,11 @@ vtkStratusZarrFile::Attribute vtkStratusZarrFile::ReadAttribute(const Variable& 
   }
   const Source& source = this->SourceOf(variable);
   const Attribute found = in(source.Values ? source.Values->GetAttributes() : source.Attributes);
-  if (!found.Exists && source.Values && std::strcmp(name, "_FillValue") == 0 && !source.Values->GetMissing().isNull()) {
-    return AttributeOf(source.Values->GetMissing(), true);
-  }
-  return found;
+  // Images have no missing values, and coordinates of dimensions may not have any: there the fill value is a number as any other.
+  const bool filled = !found.Exists && source.Values && std::strcmp(name, "_FillValue") == 0 && !source.Values->GetMissing().isNull() &&
+    this->Images.count(static_cast<size_t>(variable.Id)) == 0 &&
+    (variable.Dimensions.size() != 1 || this->NameOf(variable.Dimensions[0]) != variable.BaseName());
+  return filled ? AttributeOf(source.Values->GetMissing(), true) : found;
 }
 
 std::vector<std::string> vtkStratusZarrFile::ReadTexts(const Variable& variable) const
@@ -427,19 +430,21 @@ vtkSmartPointer<vtkDataArray> vtkStratusZarrFile::MakeBricks(const Variable& var
   vtkStratusBrickSource source;
   source.Name = variable.Name;
   source.Type = values->GetResultType();
-  source.Identity = array->GetIdentity();
-  const auto mix = [&source](uint64_t number) {
-    source.Identity = source.Identity ? (source.Identity ^ number) * UINT64_C(0x9e3779b97f4a7c15) ^ source.Identity >> 29 : 0;
-  };
+  std::vector<uint64_t> numbers;
+  if (!this->Documents.empty()) {
+    numbers.push_back(vtkStratusIdentityOfFile(this->Folder + ".zmetadata", 0, -1));
+    numbers.push_back(vtkStratusIdentityOfFile(this->Folder + "zarr.json", 0, -1));
+  }
   for (size_t i = 0; i < part.Axes.size(); ++i) {
-    mix(static_cast<uint64_t>(part.Axes[i] + 1));
-    mix(part.Axes[i] < 0 ? part.Indices[i] : part.Flipped[static_cast<size_t>(part.Axes[i])]);
+    numbers.push_back(static_cast<uint64_t>(part.Axes[i] + 1));
+    numbers.push_back(part.Axes[i] < 0 ? part.Indices[i] : part.Flipped[static_cast<size_t>(part.Axes[i])]);
     if (part.Axes[i] >= 0) {
       const size_t a = static_cast<size_t>(part.Axes[i]);
       source.Dimensions[a] = static_cast<int64_t>(part.Lengths[a]);
       source.Brick[a] = std::min(static_cast<int64_t>(array->GetChunk()[i]), source.Dimensions[a]);
     }
   }
+  source.Identity = vtkStratusIdentityOfPart(array->GetIdentity(), variable.Name, numbers);
   source.Read = [array, values, part](const int64_t lo[3], const int64_t size[3], void* to) {
     std::vector<size_t> start = part.Indices, count(start.size(), 1);
     std::vector<int64_t> strides(start.size(), 0);

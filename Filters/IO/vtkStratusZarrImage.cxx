@@ -12,7 +12,7 @@ std::string TextOf(const Json::Value& object, const char* key)
   return object.isObject() && object[key].isString() ? object[key].asString() : "";
 }
 
-// What an axis without a type is, by its name.
+// Returns the type of an axis that has none, by its name.
 std::string KindOf(const std::string& name)
 {
   return name == "t" ? "time" : name == "c" ? "channel" : name == "x" || name == "y" || name == "z" ? "space" : "";

@@ -17,8 +17,8 @@
  *
  * Codecs: zlib, gzip, lz4, shuffle, bitround, crc32c, transpose and sharding_indexed; zstd and blosc if the module is built with libzstd
  * and libblosc. An array with another codec, or whose type is not of booleans, integers or reals, is an error that names it. Halves become
- * floats. A chunk without a file has the fill value. A chunk that cannot be decoded is an error; in bricks (SetMapFile()) its values, and
- * those of chunks that are read with it, are missing.
+ * floats. A chunk without a file has the fill value. A chunk that cannot be decoded is an error; in bricks (SetMapFile()) its values are
+ * missing, and so are the values of chunks that are read together with it.
  *
  * With SetMapFile() the bricks are chunks. Decoding is done by several threads at once.
  *

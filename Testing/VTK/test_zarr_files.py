@@ -229,6 +229,8 @@ if library("blosc"):
     check("'no-such' of the codec 'blosc' is not in libblosc" in Read("snappy").error, "a compressor that libblosc does not have")
 both(write3("summed", FIELD, CHUNKS, [LITTLE, codec3("gzip", level=1), codec3("crc32c")],
     lambda part: (lambda data: data + crc32c(data))(gzip.compress(part.tobytes(), 1))), FIELD)
+both(write3("rounded", FIELD, CHUNKS, [codec3("numcodecs.bitround", keepbits=23), LITTLE, codec3("numcodecs.zlib", level=1)],
+    lambda part: zlib.compress(part.tobytes())), FIELD)
 both(write3("turned", FIELD, CHUNKS, [codec3("transpose", order=[2, 0, 1]), codec3("transpose", order=[1, 0, 2]), LITTLE],
     lambda part: part.transpose(2, 0, 1).transpose(1, 0, 2).tobytes()), FIELD)
 for number, key in enumerate((("default", "."), ("v2", "."), ("v2", "/"))):
@@ -270,7 +272,7 @@ for fill, number in ((-3.5, -3.5), ("NaN", numpy.nan), ("-Infinity", -numpy.inf)
     both(write2(f"filled{fill}", FIELD, CHUNKS, fill=fill, leave={(0, 1, 1), (2, 2, 2)}), expected)
     both(write3(f"filled3{fill}", FIELD, CHUNKS, [LITTLE], lambda part: part.tobytes(), fill=fill or "0x00000000", leave={(0, 1, 1), (2, 2, 2)}), expected)
 
-# ---- chunks that are damaged: an error of what is read whole; in bricks, values that are missing
+# ---- damaged chunks: an error if the array is read whole, missing values in bricks
 def damage(path, change):
     with open(path, "rb") as file:
         data = file.read()
@@ -389,6 +391,7 @@ for version in (2, 3):
         rest = {key: value for key, value in attributes.items() if key != "_FillValue"}
         fill = attributes.get("_FillValue")
         if version == 2:
+            fill = 0 if name == "time" else fill  # which is the first hour nevertheless
             write2(f"{store}/{name}", values, chunks, fill="NaN" if fill is not None and fill != fill else fill, compressor={"id": "zlib", "level": 1},
                 encode=zlib.compress, attributes={**rest, "_ARRAY_DIMENSIONS": dimensions})
         else:
@@ -444,7 +447,8 @@ for version in (2, 3):
     for level in range(2):
         part = image[..., ::2**level, ::2**level]
         if version == 2:
-            write2(f"{store}/{level}", part, (1, 1, 5, 8, 10), separator="/", compressor={"id": "zlib", "level": 1}, encode=zlib.compress)
+            write2(f"{store}/{level}", part, (1, 1, 5, 8, 10), separator="/", compressor={"id": "zlib", "level": 1}, encode=zlib.compress,
+                attributes={"_ARRAY_DIMENSIONS": list("tczyx")})  # 0 is a value nevertheless
         else:
             write3(f"{store}/{level}", part, (1, 1, 5, 8, 10), [LITTLE], lambda one: one.tobytes(), names=list("tczyx"))
     for step, channel, level, bricks in itertools.product((0, 1), (0, 2), (0, 1), (False, True)):
