@@ -24,6 +24,7 @@
 #include <cmath>
 #include <memory>
 #include <new>
+#include <numeric>
 
 vtkStandardNewMacro(vtkStratusHDF5Reader);
 
@@ -312,7 +313,7 @@ size_t vtkStratusHDF5Reader::IndexOf(const vtkStratusHDF5File& file, const Array
   }
   if (!(index >= 0.0 && index < static_cast<double>(array.Sizes[0]))) {
     file.Fail("the values of step " + std::to_string(step) + " of '" + array.Name + "' are at index " + vtkStratusWriteNumber(index) +
-      ", must be 0 to " + std::to_string(array.Sizes[0] - 1));
+      ", must be from 0 to below " + std::to_string(array.Sizes[0]));
   }
   return static_cast<size_t>(index);
 }
@@ -326,6 +327,11 @@ vtkStratusHDF5Reader::Box vtkStratusHDF5Reader::OpenBox(const vtkStratusHDF5File
   }
   const std::vector<size_t> grid = this->GridOf(array.Cells);
   std::transform(grid.rbegin(), grid.rend(), box.Sizes, [](size_t n) { return static_cast<int64_t>(n); });
+  const double bytes = std::accumulate(array.Sizes.begin(), array.Sizes.end(), static_cast<double>(sizeof(double)),
+    [](double all, size_t n) { return all * static_cast<double>(n); });
+  if (bytes > static_cast<double>(VTK_ID_MAX)) {
+    file.Fail("'" + array.Path + "' has " + SizesText(array.Sizes) + " values, more than " + std::to_string(VTK_ID_MAX / sizeof(double)));
+  }
   box.Before = array.Timed ? 1 : 0;
   box.Axes = static_cast<size_t>(array.Axes);
   box.Index = array.Timed ? this->IndexOf(file, array, step) : 0;

@@ -227,6 +227,8 @@ for name, words, options in (
         ("falls", "must rise", dict(extent=(9, 0, 0, 9, 0, 9)))):
     reader = image_of(write_image(f"{name}.hdf", {"PointData/rho": FIELD}, **options))
     check(f"an image that is {name}", any(words in text for text in reader.heard))
+write_image("astray.hdf", {"PointData/rho": FIELD[None], "Steps/PointDataOffsets/rho": numpy.array((0, 1))}, version=(2, 0), steps=(0.0, 1.0))
+check("a step behind the end", any("index 1, must be from 0 to below 1" in text for text in image_of("astray.hdf", step=1.0).heard))
 check("another type is VTK's", stratus.vtkStratusHDF5Reader.CanReadFile("table.hdf") == 0)
 check("another name is refused", any("those that are: rho, wind, mass" in text for text in image_of("pieces.vtkhdf", "none").heard))
 with open("no.h5", "w") as file:
