@@ -46,7 +46,7 @@
  * Coordinates of one dimension that have missing values, values that are not finite, are repeated or not monotone are errors, and so are
  * terms of another quantity than their formula's, pressures below 0, and a time that does not increase.
  *
- * @sa vtkStratusUgridReader
+ * @sa vtkStratusUgridReader vtkStratusZarrReader
  */
 #ifndef vtkStratusCFReader_h
 #define vtkStratusCFReader_h

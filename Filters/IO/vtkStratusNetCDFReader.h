@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkStratusNetCDFReader
- * @brief   base class of the readers of netCDF files: attributes, variables, dimensions
+ * @brief   base class of the readers of netCDF files and of Zarr: attributes, variables, dimensions
  *
  * Values are read as the netCDF users' guide says. All these attributes are about stored values, before scale_factor and add_offset:
  * - _Unsigned "true" or "false" gives integers the other sign; bytes with a valid limit above 127 have no sign.
@@ -16,7 +16,7 @@
  * that coordinates are computed from, such as pressure, geopotential, height, thickness and area. Within each group they are in the file's
  * order.
  *
- * @sa vtkStratusCFReader vtkStratusUgridReader
+ * @sa vtkStratusCFReader vtkStratusUgridReader vtkStratusZarrReader
  */
 #ifndef vtkStratusNetCDFReader_h
 #define vtkStratusNetCDFReader_h

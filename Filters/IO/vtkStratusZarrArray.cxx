@@ -360,23 +360,18 @@ void vtkStratusZarrArray::ReadKeys3(const Json::Value& encoding)
 void vtkStratusZarrArray::ReadCodecs3(const Json::Value& codecs, bool inner)
 {
   bool is_bytes = false;
-  std::vector<vtkStratusZarrCodec> written;
   for (Json::ArrayIndex i = 0; codecs.isArray() && i < codecs.size(); ++i) {
     const Json::Value& configuration = codecs[i].isObject() ? codecs[i]["configuration"] : Json::Value::nullSingleton();
     const std::string name = codecs[i].isString() ? codecs[i].asString() : TextOf(codecs[i], "name");
     if (name == "transpose" && !is_bytes) {
       const std::vector<size_t> order = SizesOf("order of transpose", configuration["order"], 0), before = this->Order;
-      std::vector<size_t> sorted = order;
+      std::vector<size_t> sorted = order, all(before.size());
       std::sort(sorted.begin(), sorted.end());
-      for (size_t a = 0; a < order.size(); ++a) {
-        if (order.size() != before.size() || sorted[a] != a) {
-          Wrong("order of transpose", configuration["order"], "each dimension once");
-        }
-        this->Order[a] = before[order[a]];
-      }
-      if (order.size() != before.size()) {
+      std::iota(all.begin(), all.end(), 0);
+      if (sorted != all) {
         Wrong("order of transpose", configuration["order"], "each dimension once");
       }
+      std::transform(order.begin(), order.end(), this->Order.begin(), [&before](size_t a) { return before[a]; });
     } else if (name == "bytes" && !is_bytes) {
       const std::string endian = TextOf(configuration, "endian");
       if (endian != "little" && endian != "big" && this->StoredBytes > 1) {
