@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Writes into the folder that is named the grids that test_files.py has as image.vti and stretched.vtu: image.hdf and stretched.vtkhdf. */
+ * Writes into the folder that is named the grids that test_files.py has as image.vti and stretched.vtu: image.hdf and stretched.vtkhdf, and
+ * plain.h5, in which a data set has the values of image.hdf. */
 #include <hdf5.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -85,6 +86,16 @@ static void write_image(const char* folder, const float* qc)
   close_file(file, root);
 }
 
+static void write_data_set(const char* folder, const float* qc)
+{
+  char path[4096];
+  const hsize_t size[3] = { NZ, NY, NX };
+  snprintf(path, sizeof path, "%s/plain.h5", folder);
+  const hid_t file = must(H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)), group = make_group(file, "run");
+  put_values(group, "qc", H5T_NATIVE_FLOAT, 3, size, qc);
+  close_file(file, group);
+}
+
 /* Hexahedra on levels that stretch. */
 static void write_cells(const char* folder, const float* qc)
 {
@@ -130,5 +141,6 @@ int main(int argc, char* argv[])
   }
   write_image(folder, qc);
   write_cells(folder, qc);
+  write_data_set(folder, qc);
   return 0;
 }
