@@ -1,12 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Parts of an array of bricks: a row of bricks along x, or several. The values of a part are runs of bytes in the array, one for each layer
- * of values, or one in all if the part has whole layers. */
+ * Parts of an array of bricks. In the array itself a part is a row of bricks along x, or several: neighbours along x share pages of memory.
+ * Its values are runs of bytes, one for each layer of values, or one in all if the part has whole layers. A tile is a part of whole bricks
+ * whose values follow one another, so that it has pages of its own. */
 #include "bricks.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define RUN_LEAST ((size_t)64 << 10) /* bytes: pages that several parts share are then few */
+#define RUN_LEAST ((size_t)64 << 10)   /* bytes: pages that several parts share are then few */
+#define TILE_LEAST ((int64_t)64 << 10) /* bytes: what a fault costs is little next to reading them */
+#define TILE_ROW ((int64_t)64)         /* bytes of a row of a tile, where a source has no bricks: what memory moves at once */
+#define LAYERS_LEAST 16                /* of a part, where a source has no bricks */
 
 static int64_t least(int64_t a, int64_t b)
 {
@@ -20,57 +24,148 @@ static int64_t enough(int64_t step, int64_t all, size_t bytes)
   return steps >= (all + step - 1) / step ? all : steps * step;
 }
 
-void stratus_brick_parts_divide(stratus_bricks* bricks)
+static void count_parts(stratus_brick_view* view)
 {
-  const stratus_brick_source* s = &bricks->source;
-  bricks->rows = enough(least(s->brick[1], s->dimensions[1]), s->dimensions[1], bricks->row);
-  bricks->layers = least(s->brick[2], s->dimensions[2]);
-  if (bricks->rows == s->dimensions[1]) {
-    bricks->layers = enough(bricks->layers, s->dimensions[2], bricks->row * (size_t)bricks->rows);
+  view->parts = 1;
+  for (int a = 0; a < 3; ++a) {
+    view->across[a] = (view->bricks->source.dimensions[a] + view->side[a] - 1) / view->side[a];
+    view->parts *= view->across[a];
   }
-  bricks->across = (s->dimensions[1] + bricks->rows - 1) / bricks->rows;
-  bricks->parts = bricks->across * ((s->dimensions[2] + bricks->layers - 1) / bricks->layers);
 }
 
-/* The box of rows and layers of a part. */
+static size_t row_bytes(const stratus_brick_source* s)
+{
+  return (size_t)s->dimensions[0] * stratus_type_size(s->type);
+}
+
+/* Whether the source reads any box as well as another: its bricks are values, or some components of one. */
+static bool has_no_bricks(const stratus_brick_source* s)
+{
+  return s->brick[0] * (int64_t)stratus_type_size(s->type) <= TILE_ROW && s->brick[1] == 1 && s->brick[2] == 1;
+}
+
+void stratus_brick_rows_divide(stratus_brick_view* view)
+{
+  const stratus_brick_source* s = &view->bricks->source;
+  const size_t row = row_bytes(s);
+  view->side[0] = s->dimensions[0];
+  view->side[1] = enough(least(s->brick[1], s->dimensions[1]), s->dimensions[1], row);
+  view->side[2] = least(has_no_bricks(s) ? LAYERS_LEAST : s->brick[2], s->dimensions[2]);
+  if (view->side[1] == s->dimensions[1]) {
+    view->side[2] = enough(view->side[2], s->dimensions[2], row * (size_t)view->side[1]);
+  }
+  count_parts(view);
+}
+
+bool stratus_brick_tiles_divide(stratus_brick_view* view, size_t page)
+{
+  const stratus_brick_source* s = &view->bricks->source;
+  const int64_t value = (int64_t)stratus_type_size(s->type), *n = s->dimensions;
+  int64_t bytes = value;
+  for (int a = 0; a < 3; ++a) {
+    view->side[a] = least(s->brick[a], n[a]);
+    bytes *= view->side[a];
+  }
+  if (has_no_bricks(s)) {
+    view->side[0] = least(TILE_ROW / value / s->brick[0] * s->brick[0], n[0]);
+    bytes = value * view->side[0];
+  }
+  for (bool grows = true; grows && bytes < TILE_LEAST;) { /* double the shortest side that can grow */
+    int shortest = -1;
+    for (int a = 0; a < 3; ++a) {
+      if (view->side[a] < n[a] && (shortest < 0 || view->side[a] < view->side[shortest])) {
+        shortest = a;
+      }
+    }
+    grows = shortest >= 0;
+    if (grows) {
+      const int64_t side = view->side[shortest], longer = least(2 * side, n[shortest]);
+      view->side[shortest] = longer;
+      bytes = bytes / side * longer;
+    }
+  }
+  count_parts(view);
+  view->tile = ((size_t)bytes + page - 1) / page * page;
+  view->bytes = view->tile * (size_t)view->parts;
+  int64_t pitch = value, tiles = 1;
+  for (int a = 0; a < 3; ++a) {
+    const int64_t of_point = a == 0 && s->components > 1 ? s->components : 1, points = n[a] / of_point;
+    uint64_t* const at = malloc(((size_t)points + 1) * sizeof *at);
+    view->bricks->at[a] = at;
+    if (!at) {
+      return false;
+    }
+    for (int64_t i = 0; i <= points; ++i) {
+      const int64_t here = (i < points ? i : points - 1) * of_point; /* one more, for the cell behind the last value */
+      at[i] = (uint64_t)(here / view->side[a] * tiles) * view->tile + (uint64_t)(here % view->side[a] * pitch);
+    }
+    view->bricks->shown.at[a] = at;
+    view->bricks->shown.dimensions[a] = points;
+    pitch *= view->side[a];
+    tiles *= view->across[a];
+  }
+  return true;
+}
+
+/* A box of values. */
 typedef struct box {
-  int64_t y, z, rows, layers;
+  int64_t lo[3], size[3];
 } box;
 
-static box box_of(const stratus_bricks* bricks, int64_t part)
+static box box_of(const stratus_brick_view* view, int64_t part)
 {
-  const int64_t* n = bricks->source.dimensions;
-  const int64_t y = part % bricks->across * bricks->rows, z = part / bricks->across * bricks->layers;
-  return (box){ .y = y, .z = z, .rows = least(bricks->rows, n[1] - y), .layers = least(bricks->layers, n[2] - z) };
+  const int64_t at[3] = { part % view->across[0], part / view->across[0] % view->across[1], part / (view->across[0] * view->across[1]) };
+  box b;
+  for (int a = 0; a < 3; ++a) {
+    b.lo[a] = at[a] * view->side[a];
+    b.size[a] = least(view->side[a], view->bricks->source.dimensions[a] - b.lo[a]);
+  }
+  return b;
 }
 
-int64_t stratus_brick_runs(const stratus_bricks* bricks, int64_t part)
+/* Whether the values of a part are one run. */
+static bool is_one_run(const stratus_brick_view* view)
 {
-  return bricks->across == 1 ? 1 : box_of(bricks, part).layers;
+  return view->tiled || view->across[1] == 1;
 }
 
-uint64_t stratus_brick_part_bytes(const stratus_bricks* bricks, int64_t part)
+int64_t stratus_brick_runs(const stratus_brick_view* view, int64_t part)
 {
-  const box b = box_of(bricks, part);
-  return (uint64_t)(b.rows * b.layers) * bricks->row;
+  return is_one_run(view) ? 1 : box_of(view, part).size[2];
 }
 
-stratus_brick_run stratus_brick_run_at(const stratus_bricks* bricks, int64_t part, int64_t run)
+uint64_t stratus_brick_part_bytes(const stratus_brick_view* view, int64_t part)
 {
-  const box b = box_of(bricks, part);
-  const size_t begin = (size_t)((b.z + run) * bricks->source.dimensions[1] + b.y) * bricks->row;
-  return (stratus_brick_run){ begin, begin + (size_t)(bricks->across == 1 ? b.rows * b.layers : b.rows) * bricks->row };
+  const box b = box_of(view, part);
+  return (uint64_t)(b.size[0] * b.size[1] * b.size[2]) * stratus_type_size(view->bricks->source.type);
 }
 
-int64_t stratus_brick_part_of(const stratus_bricks* bricks, size_t byte)
+stratus_brick_run stratus_brick_run_at(const stratus_brick_view* view, int64_t part, int64_t run)
 {
-  const int64_t row = (int64_t)(byte / bricks->row), rows = bricks->source.dimensions[1];
-  return row / rows / bricks->layers * bricks->across + row % rows / bricks->rows;
+  const box b = box_of(view, part);
+  const size_t row = row_bytes(&view->bricks->source);
+  if (view->tiled) {
+    return (stratus_brick_run){ (size_t)part * view->tile, ((size_t)part + 1) * view->tile };
+  }
+  const size_t begin = (size_t)((b.lo[2] + run) * view->bricks->source.dimensions[1] + b.lo[1]) * row;
+  return (stratus_brick_run){ begin, begin + (size_t)(b.size[1] * (is_one_run(view) ? b.size[2] : 1)) * row };
 }
 
-stratus_brick_run stratus_brick_inner(const stratus_bricks* bricks, size_t page, stratus_brick_run run)
+int64_t stratus_brick_part_of(const stratus_brick_view* view, size_t byte, size_t* end)
 {
-  const size_t begin = (run.begin + page - 1) / page * page, end = run.end == bricks->bytes ? bricks->mapped : run.end / page * page;
+  if (view->tiled) {
+    *end = (byte / view->tile + 1) * view->tile;
+    return (int64_t)(byte / view->tile);
+  }
+  const size_t bytes = row_bytes(&view->bricks->source);
+  const int64_t row = (int64_t)(byte / bytes), rows = view->bricks->source.dimensions[1];
+  *end = ((size_t)row + 1) * bytes;
+  return row / rows / view->side[2] * view->across[1] + row % rows / view->side[1];
+}
+
+stratus_brick_run stratus_brick_inner(const stratus_brick_view* view, size_t page, stratus_brick_run run)
+{
+  const size_t begin = (run.begin + page - 1) / page * page, end = run.end == view->bytes ? view->mapped : run.end / page * page;
   return (stratus_brick_run){ begin, end < begin ? begin : end };
 }
 
@@ -172,14 +267,21 @@ static bool fill_with_one(const stratus_bricks* bricks, const int64_t lo[3], con
   return true;
 }
 
-/* Reads the box of a part that begins `y` rows and `z` layers into it, at x `x`. room: of the part. scratch: of a box that is not in the
- * room as the source writes it. Returns the bytes that are missing. */
-static uint64_t read_box(const stratus_bricks* bricks, const box* b, const int64_t at[3], const int64_t size[3], char* room, char* scratch)
+/* A part in the room: rows and layers of values are so many bytes apart. */
+typedef struct part_room {
+  char* bytes;
+  size_t row, layer;
+} part_room;
+
+/* Reads a box of values, `at` from the part's first. scratch: where the source writes it, if not as the room has it. Returns the bytes that
+ * are missing. */
+static uint64_t read_box(
+  const stratus_bricks* bricks, const box* part, const int64_t at[3], const int64_t size[3], const part_room* room, char* scratch)
 {
   const stratus_brick_source* s = &bricks->source;
   const size_t value = stratus_type_size(s->type), count = (size_t)(size[0] * size[1] * size[2]), row = (size_t)size[0] * value;
-  const int64_t lo[3] = { at[0], b->y + at[1], b->z + at[2] };
-  char* const place = room + (size_t)(at[2] * b->rows + at[1]) * bricks->row + (size_t)at[0] * value;
+  const int64_t lo[3] = { part->lo[0] + at[0], part->lo[1] + at[1], part->lo[2] + at[2] };
+  char* const place = room->bytes + (size_t)at[2] * room->layer + (size_t)at[1] * room->row + (size_t)at[0] * value;
   char* const to = scratch ? scratch : place;
   const int failed = fill_with_one(bricks, lo, size, to) ? 0 : s->read(s->user, lo, size, to);
   if (failed) {
@@ -187,36 +289,47 @@ static uint64_t read_box(const stratus_bricks* bricks, const box* b, const int64
   }
   for (int64_t z = 0; scratch && z < size[2]; ++z) {
     for (int64_t y = 0; y < size[1]; ++y) {
-      memcpy(place + (size_t)(z * b->rows + y) * bricks->row, scratch + (size_t)(z * size[1] + y) * row, row);
+      memcpy(place + (size_t)z * room->layer + (size_t)y * room->row, scratch + (size_t)(z * size[1] + y) * row, row);
     }
   }
   return failed ? count * value : 0;
 }
 
-uint64_t stratus_brick_part_read(const stratus_bricks* bricks, int64_t part, stratus_brick_room* room)
+uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, stratus_brick_room* room)
 {
+  const stratus_bricks* bricks = view->bricks;
   const stratus_brick_source* s = &bricks->source;
-  const box b = box_of(bricks, part);
-  const size_t bytes = (size_t)stratus_brick_part_bytes(bricks, part);
-  int64_t step[3] = { least(s->brick[0], s->dimensions[0]), least(s->brick[1], b.rows), least(s->brick[2], b.layers) };
-  const bool whole = step[0] == s->dimensions[0]; /* one call for all rows of some layers, which the room has as the source writes them */
-  step[1] = whole ? b.rows : step[1];
-  const size_t scratch = whole ? 0 : (size_t)(step[0] * step[1] * step[2]) * stratus_type_size(s->type);
+  const box b = box_of(view, part);
+  const size_t value = stratus_type_size(s->type), bytes = view->tiled ? view->tile : (size_t)stratus_brick_part_bytes(view, part);
+  /* a tile at the array's end is as wide as all others */
+  const int64_t wide = view->tiled ? view->side[0] : b.size[0], high = view->tiled ? view->side[1] : b.size[1];
+  int64_t step[3] = { least(s->brick[0], b.size[0]), least(s->brick[1], b.size[1]), least(s->brick[2], b.size[2]) };
+  if (has_no_bricks(s)) {
+    memcpy(step, b.size, sizeof step);
+  }
+  /* one call for all rows of some layers, which the room has as the source writes them */
+  const bool whole = step[0] == wide && b.size[1] == high;
+  step[1] = whole ? b.size[1] : step[1];
+  const size_t scratch = whole ? 0 : (size_t)(step[0] * step[1] * step[2]) * value;
   if (room->capacity < bytes + scratch) {
     free(room->bytes);
     room->bytes = malloc(bytes + scratch);
     room->capacity = room->bytes ? bytes + scratch : 0;
   }
   if (!room->bytes) {
-    return bytes;
+    return stratus_brick_part_bytes(view, part);
   }
+  const part_room at_hand = { .bytes = room->bytes, .row = (size_t)wide * value, .layer = (size_t)(wide * high) * value };
   uint64_t missing = 0;
-  for (int64_t z = 0; z < b.layers; z += step[2]) {
-    for (int64_t y = 0; y < b.rows; y += step[1]) {
-      for (int64_t x = 0; x < s->dimensions[0]; x += step[0]) {
+  if (view->tiled && bytes > stratus_brick_part_bytes(view, part)) {
+    memset(room->bytes, 0, bytes); /* what fills it up */
+  }
+  for (int64_t z = 0; z < b.size[2]; z += step[2]) {
+    for (int64_t y = 0; y < b.size[1]; y += step[1]) {
+      for (int64_t x = 0; x < b.size[0]; x += step[0]) {
         const int64_t at[3] = { x, y, z };
-        const int64_t size[3] = { least(step[0], s->dimensions[0] - x), least(step[1], b.rows - y), least(step[2], b.layers - z) };
-        missing += read_box(bricks, &b, at, size, room->bytes, whole ? NULL : room->bytes + bytes);
+        const int64_t size[3] = { least(step[0], b.size[0] - x), least(step[1], b.size[1] - y), least(step[2], b.size[2] - z) };
+        missing += read_box(bricks, &b, at, size, &at_hand, whole ? NULL : room->bytes + bytes);
       }
     }
   }

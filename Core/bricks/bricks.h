@@ -19,19 +19,35 @@ enum {
   STRATUS_PART_EDGES = 8 /* its pages that other parts share are counted */
 };
 
-struct stratus_bricks {
-  stratus_brick_pool* pool;
-  stratus_bricks* next; /* of the pool */
-  stratus_brick_source source;
-  size_t bytes, row; /* of all values, and of a row along x */
+/* The values in memory, in one of two layouts: x fastest through the whole array, or tile after tile. */
+typedef struct stratus_brick_view {
+  stratus_bricks* bricks;
+  struct stratus_brick_view* next; /* of the pool */
+  bool tiled;
+  size_t bytes; /* of all values, and what fills up tiles */
   /* Paged: a mapping of `memory`, where a page that is not shown yet stops its readers. */
   char* values;
-  size_t mapped;         /* bytes: whole pages */
-  int memory;            /* the file of the mapping, which parts are written to; -1 if not paged */
-  int64_t rows, layers;  /* of a part, along y and z */
-  int64_t across, parts; /* parts along y, and in all */
-  uint8_t* state;        /* of each part */
-  float* only;           /* of each brick the one value that all of its values are, or NaN; NULL: nothing is known */
+  size_t mapped;     /* bytes: whole pages */
+  int memory;        /* the file of the mapping, which parts are written to; -1 if not paged */
+  int64_t side[3];   /* values along each axis of a part, which is read and dropped as a whole */
+  int64_t across[3]; /* parts along each axis */
+  int64_t parts;     /* and in all */
+  size_t tile;       /* bytes from a tile to the next: whole pages */
+  uint8_t* state;    /* of each part */
+  int64_t ahead;     /* the part where the search for one to read ahead goes on */
+} stratus_brick_view;
+
+struct stratus_bricks {
+  stratus_brick_pool* pool;
+  stratus_brick_source source;
+  stratus_brick_view rows;  /* the array */
+  stratus_brick_view tiles; /* the same values for rays; no parts if the array fits in the pool's memory */
+  uint64_t* at[3];          /* offsets in `shown` */
+  stratus_tiles shown;
+  stratus_bricks* like; /* its parts are read ahead; NULL: none */
+  int threads;          /* of the pool that bring parts now; the array stays until there are none */
+  bool leaves;          /* it is to be destroyed */
+  float* only;          /* of each brick the one value that all of its values are, or NaN; NULL: nothing is known */
   stratus_bricks_report report;
 };
 
@@ -46,14 +62,43 @@ struct stratus_brick_pool {
   pthread_mutex_t lock;
   pthread_cond_t read; /* a part was read */
   uint64_t memory, resident, resident_most, parts_read, bytes_read;
-  stratus_bricks* first;
-  stratus_bricks* hand; /* of the clock, at its part number hand_part */
+  stratus_brick_view* first;
+  stratus_brick_view* hand; /* of the clock, at its part number hand_part */
   int64_t hand_part;
   int faults, quit; /* where the kernel reports pages that are read, and the handle that ends the threads; -1: not paged */
   size_t page;
   pthread_t threads[64];
   int thread_count;
+  pthread_t ahead; /* the thread that reads ahead */
+  bool reads_ahead, ending;
+  int serving;   /* threads that bring what something waits for */
+  double served; /* when the last of them did, by stratus_now_ms() */
 };
+
+/* ---- brick_pages.c: pages that stop their readers, where the system has them */
+
+/* Opens the system's handle for pages of a pool, and starts threads that serve it. Where there is none, pool->faults stays -1. */
+void stratus_brick_pages_start(stratus_brick_pool* pool, int threads);
+void stratus_brick_pages_stop(stratus_brick_pool* pool);
+/* Maps a view. Returns false if the system does not; stratus_brick_unmap() frees what there is. */
+bool stratus_brick_map(stratus_brick_view* view);
+void stratus_brick_unmap(stratus_brick_view* view);
+/* Puts the runs of a part from the room into the view. Returns how many bytes could not be written, for want of memory. */
+uint64_t stratus_brick_store_part(const stratus_brick_view* view, int64_t part, const stratus_brick_room* room);
+/* Reads a part that is absent, with the pool's lock on entry and on return, but not while the source reads. Other parts are dropped for it,
+ * but none of `spared`, unless that is NULL, and then none of its own array either: where that is not enough, returns false. */
+bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, const stratus_bricks* spared);
+/* Returns the bytes of a view's parts that are in memory, and of the pages that they share. */
+uint64_t stratus_brick_resident(const stratus_brick_view* view);
+
+/* Counts a thread that brings parts of an array, and no longer does. With the pool's lock. */
+void stratus_brick_enter(stratus_bricks* bricks);
+void stratus_brick_leave(stratus_bricks* bricks);
+
+/* ---- brick_ahead.c */
+
+/* Ends the thread that reads ahead, if there is one. */
+void stratus_brick_ahead_stop(stratus_brick_pool* pool);
 
 /* ---- brick_parts.c: where parts are in the array, and how they are filled */
 
@@ -62,21 +107,24 @@ typedef struct stratus_brick_run {
   size_t begin, end;
 } stratus_brick_run;
 
-/* Chooses rows and layers of a part, so that it has runs of at least 64 KiB. */
-void stratus_brick_parts_divide(stratus_bricks* bricks);
-int64_t stratus_brick_runs(const stratus_bricks* bricks, int64_t part);
-stratus_brick_run stratus_brick_run_at(const stratus_bricks* bricks, int64_t part, int64_t run);
-/* Gives the part of the row of values (y,z) that a byte of the array is in. */
-int64_t stratus_brick_part_of(const stratus_bricks* bricks, size_t byte);
+/* Chooses the parts of the array: rows of bricks along x that have runs of at least 64 KiB. */
+void stratus_brick_rows_divide(stratus_brick_view* view);
+/* Chooses tiles of whole bricks, of at least 64 KiB, and makes the offsets of their values. Returns false if there is no memory for them.
+ */
+bool stratus_brick_tiles_divide(stratus_brick_view* view, size_t page);
+int64_t stratus_brick_runs(const stratus_brick_view* view, int64_t part);
+stratus_brick_run stratus_brick_run_at(const stratus_brick_view* view, int64_t part, int64_t run);
+/* Gives the part that a byte of the view is in, and in *end the first byte behind it that may be in another part. */
+int64_t stratus_brick_part_of(const stratus_brick_view* view, size_t byte, size_t* end);
 /* Gives the pages that hold only this run, as a range of bytes: empty if there is none. */
-stratus_brick_run stratus_brick_inner(const stratus_bricks* bricks, size_t page, stratus_brick_run run);
+stratus_brick_run stratus_brick_inner(const stratus_brick_view* view, size_t page, stratus_brick_run run);
 /* Returns the bytes of a part's values. */
-uint64_t stratus_brick_part_bytes(const stratus_bricks* bricks, int64_t part);
+uint64_t stratus_brick_part_bytes(const stratus_brick_view* view, int64_t part);
 /* Sets bricks->only by the value ranges that are kept, if any are. */
 void stratus_brick_find_only(stratus_context* context, stratus_bricks* bricks);
 /* Reads all values of a part into the room, run after run. Returns how many bytes of them the source could not read: all where there is no
  * memory for the room. */
-uint64_t stratus_brick_part_read(const stratus_bricks* bricks, int64_t part, stratus_brick_room* room);
+uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, stratus_brick_room* room);
 
 /* ---- brick_memory.c */
 

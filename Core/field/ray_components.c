@@ -11,6 +11,9 @@ stratus_volume stratus_volume_component(const stratus_volume* volume, int compon
 {
   stratus_volume view = *volume;
   view.values = (const char*)volume->values + (size_t)component * stratus_type_size(volume->type);
+  if (volume->tiles.values) {
+    view.tiles.values = (const char*)volume->tiles.values + (size_t)component * stratus_type_size(volume->type);
+  }
   view.components = 1;
   view.identity = volume->identity ? volume->identity + (uint64_t)component : 0;
   view.gradients = volume->gradients ? volume->gradients + 3 * (size_t)component * stratus_volume_count(volume) : NULL;

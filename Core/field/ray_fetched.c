@@ -30,7 +30,23 @@ int stratus_ray_cast_type_is_fast(int type)
 
 int stratus_ray_fetch_type(const stratus_volume* volume)
 {
-  return is_regular(volume) && volume->value_stride == 1 && stratus_ray_cast_type_is_fast((int)volume->type) ? (int)volume->type : -1;
+  return !volume->tiles.values && is_regular(volume) && volume->value_stride == 1 && stratus_ray_cast_type_is_fast((int)volume->type)
+    ? (int)volume->type
+    : -1;
+}
+
+const void* stratus_ray_values_of(const stratus_ray_field* field)
+{
+  return field->traversed.tiles.values ? field->tiles : field->traversed.values;
+}
+
+size_t stratus_ray_component_bytes(const stratus_ray_field* field)
+{
+  const stratus_volume* volume = &field->traversed;
+  const size_t planes = (size_t)stratus_volume_planes(volume) / (size_t)stratus_volume_components(volume);
+  return volume->tiles.values          ? sizeof *field->tiles
+    : volume->values == field->fetched ? stratus_volume_count(volume) * planes * sizeof(float)
+                                       : stratus_type_size(volume->type);
 }
 
 /* Whether gradients are not where rays read them: behind the values of one component. */
@@ -62,11 +78,16 @@ stratus_status stratus_ray_fetched_update(stratus_ray_field* field, size_t rays)
   const stratus_volume* volume = &field->volume;
   const int type = stratus_ray_fetch_type(volume);
   const int components = stratus_volume_components(volume);
-  const bool apart = has_gradients_apart(volume), slow = type < 0 || type == STRATUS_FLOAT64 || apart;
+  /* tiles are of an array that is larger than memory, so that a copy of it does not pay */
+  const bool apart = has_gradients_apart(volume), slow = (type < 0 && !volume->tiles.values) || type == STRATUS_FLOAT64 || apart;
   /* traversal applies one bias, but each component has its own, and gradients have none */
   const bool must = apart || (components > 1 && stratus_type_is_wide(volume->type));
   field->traversed = *volume;
-  if (!slow || (!is_regular(volume) && !must)) {
+  for (int c = 0; c < components; ++c) {
+    field->tiles[c] = volume->tiles;
+    field->tiles[c].values = (const char*)volume->tiles.values + (size_t)c * stratus_type_size(volume->type);
+  }
+  if ((!slow && !must) || (!is_regular(volume) && !must)) {
     return STRATUS_OK;
   }
   const size_t count = stratus_volume_count(volume), planes = (size_t)stratus_volume_planes(volume);
@@ -102,5 +123,6 @@ stratus_status stratus_ray_fetched_update(stratus_ray_field* field, size_t rays)
   field->traversed.values = field->fetched;
   field->traversed.type = STRATUS_FLOAT32;
   field->traversed.value_stride = 1;
+  field->traversed.tiles.values = NULL;
   return STRATUS_OK;
 }

@@ -10,14 +10,15 @@
 
 typedef struct stratus_ray_field {
   stratus_context* context;
-  stratus_volume volume;       /* as last rendered; its coordinates point into `grid` */
-  stratus_ray_grid grid;       /* of volumes with coordinates */
-  int64_t owned[2][3];         /* the cells lo..hi - 1 that this piece owns */
-  bool owns_all;               /* these are all cells */
-  stratus_volume traversed;    /* the values that rays read: the volume itself, or its fetched values */
-  float* fetched;              /* float copy of the values; NULL: none */
-  uint64_t samples_since_data; /* samples that rays have taken of the data; decides when the copy pays */
-  bool copy_failed;            /* memory ran out for it since the data changed */
+  stratus_volume volume;                       /* as last rendered; its coordinates point into `grid` */
+  stratus_ray_grid grid;                       /* of volumes with coordinates */
+  int64_t owned[2][3];                         /* the cells lo..hi - 1 that this piece owns */
+  bool owns_all;                               /* these are all cells */
+  stratus_volume traversed;                    /* the values that rays read: the volume itself, or its fetched values */
+  stratus_tiles tiles[STRATUS_COMPONENTS_MAX]; /* of each component that is read from tiles */
+  float* fetched;                              /* float copy of the values; NULL: none */
+  uint64_t samples_since_data;                 /* samples that rays have taken of the data; decides when the copy pays */
+  bool copy_failed;                            /* memory ran out for it since the data changed */
   stratus_interpolation interpolation;
   /* The component that rays follow: of dependent components, the last one, but in composite mode and slices; else 0. `ranges` are its own.
    */

@@ -91,6 +91,7 @@ static bool has_all(const stratus_ray_pages* pages, const int32_t* wanted, int64
 /* A volume as pages are copied from it. Strides are in values. */
 typedef struct page_source {
   const uint8_t* values;
+  const stratus_tiles* tiles; /* of each component; NULL: values are not in tiles */
   int64_t dimensions[3];
   size_t stride, component, size; /* size: bytes of a value */
   int components;
@@ -101,6 +102,7 @@ static page_source source_of(const stratus_ray_field* field)
   const stratus_volume* v = &field->traversed;
   const bool planes = v->values == field->fetched || v->gradients; /* one component, or derivative, after the other */
   return (page_source){ .values = v->values,
+    .tiles = v->tiles.values ? field->tiles : NULL,
     .dimensions = { v->dimensions[0], v->dimensions[1], v->dimensions[2] },
     .stride = (size_t)v->value_stride,
     .component = planes ? stratus_volume_count(v) : 1,
@@ -124,6 +126,16 @@ static void copy_row(const page_source* s, const uint8_t* from, int64_t beyond, 
   }
 }
 
+/* The same from tiles; `at`: the row's first value. */
+static void copy_tile_row(const page_source* s, const stratus_tiles* tiles, const int64_t at[3], int64_t beyond, uint8_t* to)
+{
+  const uint8_t* from = (const uint8_t*)tiles->values + tiles->at[1][at[1]] + tiles->at[2][at[2]];
+  for (int64_t i = 0; i < PAGE_ROW; ++i) {
+    const int64_t inside = i < PAGE_ROW - beyond ? i : PAGE_ROW - beyond - 1;
+    memcpy(to + (size_t)i * s->size, from + tiles->at[0][at[0] + inside], s->size);
+  }
+}
+
 static void copy_page(const page_source* s, const int64_t page[3], uint8_t* to)
 {
   const int64_t* n = s->dimensions;
@@ -134,7 +146,11 @@ static void copy_page(const page_source* s, const int64_t page[3], uint8_t* to)
       for (int64_t y = 0; y < PAGE_ROW; ++y) {
         const int64_t j = first[1] + y < n[1] ? first[1] + y : n[1] - 1, k = first[2] + z < n[2] ? first[2] + z : n[2] - 1;
         const size_t value = (size_t)((k * n[1] + j) * n[0] + first[0]) * s->stride + (size_t)c * s->component;
-        copy_row(s, s->values + value * s->size, beyond, to);
+        if (s->tiles) {
+          copy_tile_row(s, &s->tiles[c], (const int64_t[]){ first[0], j, k }, beyond, to);
+        } else {
+          copy_row(s, s->values + value * s->size, beyond, to);
+        }
         to += PAGE_ROW * s->size;
       }
     }

@@ -21,7 +21,7 @@ typedef struct ray_reading {
 } ray_reading;
 
 #define RAY_READINGS STRATUS_ISA_NAME(stratus_ray_readings)
-extern const ray_reading RAY_READINGS[11]; /* ray_reading_isa.c; by values.reading */
+extern const ray_reading RAY_READINGS[RAY_READING_TILES + 1]; /* ray_reading_isa.c; by values.reading */
 #define RAY_READING(a) (&RAY_READINGS[(a)->values.reading])
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The functions that read a field of each type of values, compiled for one instruction set, STRATUS_ISA. */
 #include "ray_reading.h"
+#include "stratus/volume.h"
 
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wunused-function" /* a type uses only some of the fetches */
@@ -8,6 +9,9 @@
 
 #define STRATUS_TYPE -1
 #define RAY_NAME(x) JOIN(x, any)
+#include "ray_reading_type.h"
+#define STRATUS_TYPE -3
+#define RAY_NAME(x) JOIN(x, tiles)
 #include "ray_reading_type.h"
 #define STRATUS_TYPE 0
 #define RAY_NAME(x) JOIN(x, int8)
@@ -32,5 +36,6 @@
   {                                                                                                                                        \
     reading_value_##type, reading_gradient_##type, reading_cell_##type, reading_nearest_##type                                             \
   }
-const ray_reading RAY_READINGS[11] = { READING(any), READING(int8), READING(uint8), READING(int16), READING(uint16), READING(any),
-  READING(any), READING(any), READING(any), READING(float32), READING(float64) };
+_Static_assert(sizeof(ray_tiles) == sizeof(stratus_tiles), "fetches see the caller's tiles as their own");
+const ray_reading RAY_READINGS[RAY_READING_TILES + 1] = { READING(any), READING(int8), READING(uint8), READING(int16), READING(uint16),
+  READING(any), READING(any), READING(any), READING(any), READING(float32), READING(float64), READING(tiles) };

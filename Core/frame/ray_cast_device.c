@@ -51,6 +51,12 @@ static size_t value_bytes(const stratus_ray_caster* caster)
   return ((values - 1) * (size_t)volume->value_stride + (size_t)stratus_volume_components(volume)) * stratus_type_size(volume->type);
 }
 
+/* Whether the device gets pages: of values in tiles, or that one allocation does not hold. */
+static bool comes_in_pages(const stratus_ray_caster* caster)
+{
+  return caster->field.traversed.tiles.values || value_bytes(caster) > stratus_device_largest_allocation(caster->context->device);
+}
+
 static size_t hidden_bytes(const stratus_ray_caster* caster)
 {
   const int64_t* n = caster->field.volume.dimensions;
@@ -339,8 +345,8 @@ stratus_status stratus_ray_device_send(
   stratus_ray_caster* caster, const stratus_ray_cast_frame* frame, const float* layers, const char** why_not)
 {
   *why_not = obstacle(caster);
-  if (!*why_not && value_bytes(caster) > stratus_device_largest_allocation(caster->context->device)) {
-    *why_not = "a volume is larger than the device's largest allocation, and several are not drawn from pages";
+  if (!*why_not && comes_in_pages(caster)) {
+    *why_not = "a volume is larger than memory or the device's largest allocation, and several are not drawn from pages";
   }
   if (*why_not) {
     return STRATUS_OK;
@@ -365,7 +371,7 @@ stratus_status stratus_ray_cast_device(stratus_ray_caster* caster, const stratus
   stratus_ray_variant variant, stratus_ray_counts* counts, double* upload_ms, bool* drawn)
 {
   stratus_context* context = caster->context;
-  const bool in_pages = value_bytes(caster) > stratus_device_largest_allocation(context->device);
+  const bool in_pages = comes_in_pages(caster);
   _Alignas(64) stratus_ray_cast_arguments arguments = *frame->arguments; /* aligned so that a device can borrow them */
   stratus_ray_cast_frame mine = *frame;
   char text[128];

@@ -261,7 +261,7 @@ static void set_addressing(const stratus_volume* volume, stratus_ray_cast_argume
   a->values.slice = (int)(uint32_t)slice;
   a->values.slice_high = (int)(uint32_t)(slice >> 32);
   a->values.tail = values > 4 && values < INT32_MAX ? (int)(values - 4) : 0;
-  a->values.reading = 1 + stratus_ray_fetch_type(volume);
+  a->values.reading = volume->tiles.values ? RAY_READING_TILES : 1 + stratus_ray_fetch_type(volume);
   a->values.type = (int)volume->type;
   a->values.stride = (int)stride;
 }
@@ -361,7 +361,7 @@ stratus_status stratus_ray_frame_arguments(const stratus_ray_caster* caster, con
   a->crop.clipped_value = (float)fmax(fmin(options->clipping.clipped_value - caster->field.ranges->bias, CLIPPED_MOST), -CLIPPED_MOST);
   set_addressing(volume, a);
   a->grid = caster->field.grid.arguments;
-  const double bias = stratus_volume_bias(volume);
+  const double bias = stratus_type_is_wide(volume->type) ? caster->field.ranges->bias : 0.0;
   uint64_t bits;
   memcpy(&bits, &bias, sizeof bits);
   a->values.bias_low = (int)(uint32_t)bits;
@@ -451,7 +451,7 @@ stratus_ray_cast_frame stratus_ray_frame_of(
 {
   size_t bytes = 0;
   return (stratus_ray_cast_frame){ .arguments = arguments,
-    .values = caster->field.traversed.values,
+    .values = stratus_ray_values_of(&caster->field),
     .hidden = caster->field.hidden,
     .map = with_map ? caster->structure.map->bytes : NULL,
     .grid = caster->field.grid.table,

@@ -5,6 +5,7 @@
 
 #include "lights.h"
 #include "matrix.h"
+#include "ray_fetched.h"
 #include "ray_voxels.h"
 
 stratus_status stratus_ray_shading_check(stratus_context* context, const stratus_ray_cast_options* options)
@@ -58,8 +59,6 @@ static void set_tables(const stratus_ray_optics* optics, const stratus_ray_field
   const stratus_ray_cast_options* options, stratus_ray_cast_arguments* a)
 {
   const stratus_ray_shading_tables* shading = &optics->shading_tables;
-  const stratus_volume* volume = &field->traversed;
-  const size_t planes = (size_t)stratus_volume_planes(volume) / (size_t)stratus_volume_components(volume);
   a->media.components = field->components;
   a->media.dependent = optics->dependent ? a->media.components - 1 : 0;
   a->media.mean = options->optics.mean_components && !optics->dependent;
@@ -69,8 +68,7 @@ static void set_tables(const stratus_ray_optics* optics, const stratus_ray_field
   a->media.label_first = shading->label_first;
   a->media.label_steps = shading->label_tables ? shading->label_steps : 0;
   a->media.label_count = shading->label_tables ? shading->label_tables_count - 1 : 0;
-  a->media.component_bytes = (int)(uint32_t)(volume->values == field->fetched ? stratus_volume_count(volume) * planes * sizeof(float)
-                                                                              : stratus_type_size(volume->type));
+  a->media.component_bytes = (int)(uint32_t)stratus_ray_component_bytes(field);
   for (int c = 0; c < 4; ++c) {
     const stratus_table* table = shading->tables[c];
     const bool has = optics->shades && options->mode == STRATUS_MODE_COMPOSITE && c < field->components;

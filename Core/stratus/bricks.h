@@ -20,8 +20,11 @@ typedef struct stratus_brick_source {
   stratus_type type;
   int64_t dimensions[3]; /* number of values along x, y, z; each >= 1 */
   /* Values along x, y, z of the parts in which the source reads best, such as the chunks of a file; each >= 1. Parts begin at multiples of
-   * it. The last ones along an axis are smaller. */
+   * it. The last ones along an axis are smaller. 1, 1, 1 if the source reads any box as well. */
   int64_t brick[3];
+  /* Of several components: how many values along x each point of the grid has. Then dimensions[0] and brick[0] are multiples of it. 0
+   * counts as 1. */
+  int64_t components;
   stratus_brick_read_function read;
   /* 0, or the identity of a stratus_volume of these values. Bricks of which its kept value ranges say that all values are the same are then
    * not read. */
@@ -55,7 +58,7 @@ typedef struct stratus_brick_pool_report {
 } stratus_brick_pool_report;
 
 typedef struct stratus_bricks_report {
-  uint64_t parts;      /* into which the array is divided */
+  uint64_t parts;      /* into which the array is divided, and its tiles */
   uint64_t parts_here; /* in memory */
   uint64_t parts_read; /* how often a part was read; again after it was dropped */
   uint64_t parts_dropped;
@@ -74,17 +77,26 @@ STRATUS_API void stratus_brick_pool_destroy(stratus_brick_pool* pool);
 
 /* Makes an array of all values of the source, of which none are read yet. The part of the array that is read and dropped as a whole is a
  * row of bricks along x, because neighbours along x share pages of memory; where that is less than 64 KiB, several rows or layers of them.
- * What reads the array waits for its parts. Parts are dropped if they were not read for longest (by a clock with a second chance). */
+ * Readers of the array wait for its parts. Parts are dropped if they were not read for longest (by a clock with a second chance).
+ *
+ * An array that is larger than the pool's memory now has the same values in tiles, too: bricks, or several of less than 64 KiB, that are
+ * read and dropped one by one. */
 STRATUS_API stratus_status stratus_bricks_create(
   stratus_context* context, stratus_brick_pool* pool, const stratus_brick_source* source, stratus_bricks** bricks);
 /* The values, x fastest, without gaps, for stratus_volume.values. They must not be written. System calls that read them give EFAULT where
  * they are not in memory. A process that fork() makes does not have them. */
 STRATUS_API const void* stratus_bricks_values(const stratus_bricks* bricks);
+/* The values in tiles, for stratus_volume.tiles, as long as the array lives; NULL if it has none. */
+STRATUS_API const stratus_tiles* stratus_bricks_tiles(const stratus_bricks* bricks);
 /* Where the missing bytes are counted, for stratus_volume.missing. */
 STRATUS_API const uint64_t* stratus_bricks_missing(const stratus_bricks* bricks);
 /* Where the parts that were read are counted. */
 STRATUS_API const uint64_t* stratus_bricks_reads(const stratus_bricks* bricks);
 STRATUS_API void stratus_bricks_get_report(stratus_bricks* bricks, stratus_bricks_report* report);
+/* Lets a thread of the pool read, while nothing else does, the parts of the array that another one of the same pool and shape has in
+ * memory: such as those of the next time step where rays read this one. It goes on while `like` is read, until `like` is destroyed or
+ * another call replaces it; NULL ends it. No parts of either array are dropped for it. */
+STRATUS_API stratus_status stratus_bricks_read_ahead(stratus_bricks* bricks, stratus_bricks* like);
 /* Nothing may read the values any more. */
 STRATUS_API void stratus_bricks_destroy(stratus_bricks* bricks);
 

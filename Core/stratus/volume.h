@@ -31,6 +31,14 @@ STRATUS_API size_t stratus_type_size(stratus_type type); /* size in bytes of a v
 #define STRATUS_GHOST_HIDDEN_POINT 2u /* point: the cells that touch it are transparent */
 #define STRATUS_GHOST_HIDDEN_CELL 32u /* cell: it is transparent */
 
+/* The same values in another layout, in which neighbours along all three axes are near one another in memory. Value (i,j,k) is `bytes` into
+ * `values`, where bytes = at[0][i] + at[1][j] + at[2][k]. */
+typedef struct stratus_tiles {
+  const void* values;    /* NULL (default): there are none */
+  const uint64_t* at[3]; /* for each axis, dimensions + 1 numbers of bytes; the last one repeats the one before it */
+  int64_t dimensions[3]; /* of the volume */
+} stratus_tiles;
+
 /* A view of values on a regular grid. Values may be NaN or infinite: a cell with such a corner is transparent (nearest interpolation: a
  * voxel with such a value).
  *
@@ -78,6 +86,9 @@ typedef struct stratus_volume {
   /* NULL (default), or how many bytes of the values their source could not supply so far, as where a mapped file is cut short while it is
    * read. Once this is not 0, calls fail with STRATUS_INVALID_ARGUMENT, and what they draw then is undefined. */
   const uint64_t* missing;
+  /* The values once more, of all components and with value_stride, for rays on the host and the pages of devices; what reads all values
+   * reads `values`. For arrays that are larger than memory (stratus_bricks_tiles()). */
+  stratus_tiles tiles;
 } stratus_volume;
 
 /* Return a view with the defaults. The caller sets at least values, type and dimensions. */

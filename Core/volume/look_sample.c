@@ -55,6 +55,7 @@ stratus_status stratus_look_sample_begin(stratus_context* context, const stratus
   view->value_stride = view->components = 1;
   view->identity = 0;
   view->missing = NULL;
+  view->tiles = (stratus_tiles){ .values = NULL };
   view->gradients = NULL;
   view->point_ghosts = view->cell_ghosts = NULL;
   double* place = (double*)(void*)((char*)sample->memory + at_places);

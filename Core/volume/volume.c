@@ -264,6 +264,13 @@ stratus_status stratus_volume_check(stratus_context* context, const stratus_volu
   if (!volume) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume is NULL");
   }
+  for (int a = 0; a < 3 && volume->tiles.values; ++a) {
+    if (!volume->tiles.at[a] || volume->tiles.dimensions[a] != volume->dimensions[a]) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+        "volume tiles have %s along axis %d, and %lld values where the volume has %lld", volume->tiles.at[a] ? "offsets" : "no offsets", a,
+        (long long)volume->tiles.dimensions[a], (long long)volume->dimensions[a]);
+    }
+  }
   if (!volume->values) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "volume values is NULL");
   }

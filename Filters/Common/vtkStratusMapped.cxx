@@ -36,12 +36,13 @@ bool HasItsValues(vtkDataArray* array)
 }
 } // namespace
 
-void vtkStratusSetMapped(vtkDataArray* array, uint64_t identity, const uint64_t* missing, const uint64_t* reads)
+void vtkStratusSetMapped(vtkDataArray* array, uint64_t identity, const uint64_t* missing, const uint64_t* reads, const stratus_tiles* tiles)
 {
   vtkInformation* const information = array->GetInformation();
   information->Set(Key("IDENTITY"), static_cast<unsigned long>(identity));
   information->Set(Key("MISSING"), reinterpret_cast<unsigned long>(missing));
   information->Set(Key("READS"), reinterpret_cast<unsigned long>(reads));
+  information->Set(Key("TILES"), reinterpret_cast<unsigned long>(tiles));
   information->Set(Key("VALUES"), reinterpret_cast<unsigned long>(array->GetVoidPointer(0)));
   information->Set(Key("TIME"), static_cast<unsigned long>(array->GetMTime()));
 }
@@ -59,4 +60,10 @@ const uint64_t* vtkStratusMissingOf(vtkDataArray* array)
 const uint64_t* vtkStratusReadsOf(vtkDataArray* array)
 {
   return HasItsValues(array) ? reinterpret_cast<const uint64_t*>(Find(array, "READS")) : nullptr;
+}
+
+const stratus_tiles* vtkStratusTilesOf(vtkDataArray* array)
+{
+  return HasItsValues(array) && Find(array, "TIME") == array->GetMTime() ? reinterpret_cast<const stratus_tiles*>(Find(array, "TILES"))
+                                                                         : nullptr;
 }

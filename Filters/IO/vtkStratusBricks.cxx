@@ -87,6 +87,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
     core.dimensions[a] = source.Dimensions[a] * (a == 0 ? source.Components : 1);
     core.brick[a] = source.Brick[a] * (a == 0 ? source.Components : 1);
   }
+  core.components = source.Components;
   core.identity = source.Identity;
   core.read = &ReadBox;
   core.release = &Release;
@@ -104,8 +105,18 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
   array->SetVoidArray(
     values, core.dimensions[0] * core.dimensions[1] * core.dimensions[2], 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
   array->SetArrayFreeFunction(&Free);
-  vtkStratusSetMapped(array, source.Identity, stratus_bricks_missing(bricks), stratus_bricks_reads(bricks));
+  vtkStratusSetMapped(array, source.Identity, stratus_bricks_missing(bricks), stratus_bricks_reads(bricks), stratus_bricks_tiles(bricks));
   return array;
+}
+
+void vtkStratusReadAhead(vtkDataArray* array, vtkDataArray* like)
+{
+  Pool& pool = ThePool();
+  const std::lock_guard<std::mutex> lock(pool.Lock);
+  const auto found = pool.Arrays.find(array->GetVoidPointer(0)), other = pool.Arrays.find(like->GetVoidPointer(0));
+  if (found != pool.Arrays.end() && other != pool.Arrays.end() && found != other) {
+    stratus_bricks_read_ahead(found->second, other->second);
+  }
 }
 
 void vtkStratusSetBrickMemory(vtkTypeInt64 bytes)

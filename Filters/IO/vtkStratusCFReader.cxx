@@ -187,7 +187,7 @@ void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFModel& file, size_t ste
   }
   vtkSmartPointer<vtkDataArray> values;
   if (this->MapFile && static_cast<double>(n[0]) * n[1] * n[2] * sizeof(float) >= static_cast<double>(this->MappedBytesLeast)) {
-    values = grid.MakeBricks(step);
+    values = this->BricksOf(step, [&grid](size_t one) { return grid.MakeBricks(one); });
   }
   this->Mapped = values ? 1 : 0;
   values = values ? values : grid.ReadValues(step);

@@ -164,6 +164,17 @@ public:
     return true;
   }
 
+  // Lets the system read ahead.
+  void Expect(int64_t at, int64_t bytes) const
+  {
+#ifdef POSIX_FADV_WILLNEED
+    (void)posix_fadvise(this->Handle, static_cast<off_t>(at), static_cast<off_t>(bytes), POSIX_FADV_WILLNEED);
+#else
+    (void)at;
+    (void)bytes;
+#endif
+  }
+
   const int Handle;
 };
 
@@ -207,22 +218,30 @@ vtkSmartPointer<vtkDataArray> vtkStratusMapFile(
 vtkSmartPointer<vtkDataArray> vtkStratusMakeRawBricks(
   const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3])
 {
-  constexpr int64_t layers = 16; // of a part, which has at least 64 KiB of each
   const auto file = std::make_shared<OpenFile>(path);
-  const int64_t row = sizes[0] * components * vtkDataArray::GetDataTypeSize(type), rows = sizes[1];
+  const int64_t value = components * vtkDataArray::GetDataTypeSize(type), row = sizes[0] * value, rows = sizes[1], across = sizes[0];
   vtkStratusBrickSource source;
   source.Name = name;
   source.Type = type;
   source.Components = components;
   std::copy_n(sizes, 3, source.Dimensions.begin());
-  source.Brick = { { sizes[0], 1, layers } };
+  source.Brick = { { 1, 1, 1 } }; // any box
   source.Identity = vtkStratusIdentityOfFile(path, begin, row * rows * sizes[2]);
-  source.Read = [file, begin, row, rows](const int64_t lo[3], const int64_t size[3], void* values) {
-    const size_t bytes = static_cast<size_t>(size[1] * row); // of whole rows, which follow one another
+  source.Read = [file, begin, value, row, rows, across](const int64_t lo[3], const int64_t size[3], void* values) {
+    // whole rows follow one another; of parts of rows, the disk reads whole ones ahead
+    const bool wide = size[0] == across;
+    const int64_t runs = wide ? 1 : size[1];
+    const size_t bytes = static_cast<size_t>(size[0] * value * (wide ? size[1] : 1));
+    const auto at = [&](int64_t z) { return begin + ((lo[2] + z) * rows + lo[1]) * row + lo[0] * value; };
+    for (int64_t z = 0; !wide && z < size[2]; ++z) {
+      file->Expect(at(z), size[1] * row);
+    }
+    char* to = static_cast<char*>(values);
     bool whole = true;
     for (int64_t z = 0; z < size[2]; ++z) {
-      whole =
-        file->Read(begin + ((lo[2] + z) * rows + lo[1]) * row, static_cast<char*>(values) + static_cast<size_t>(z) * bytes, bytes) && whole;
+      for (int64_t run = 0; run < runs; ++run, to += bytes) {
+        whole = file->Read(at(z) + run * row, to, bytes) && whole;
+      }
     }
     return whole;
   };

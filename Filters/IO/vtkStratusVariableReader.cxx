@@ -183,6 +183,7 @@ bool vtkStratusVariableReader::Look()
     return !this->OutputClass.empty();
   }
   this->LookTime = this->GetMTime();
+  this->Bricks.clear();
   this->OutputClass.clear();
   this->Variables.clear();
   this->Times.clear();
@@ -211,6 +212,31 @@ bool vtkStratusVariableReader::Look()
     vtkErrorMacro(<< "out of memory while looking at " << this->FileName);
   }
   return !this->OutputClass.empty();
+}
+
+vtkSmartPointer<vtkDataArray> vtkStratusVariableReader::BricksOf(
+  size_t step, const std::function<vtkSmartPointer<vtkDataArray>(size_t)>& make)
+{
+  constexpr size_t most = 8; // steps: each may have its file open
+  const auto at = [&](size_t one) {
+    vtkSmartPointer<vtkDataArray>& array = this->Bricks[one];
+    array = array ? array : make(one);
+    return array;
+  };
+  const bool plays = !this->Bricks.empty() && step != this->LastStep, back = step < this->LastStep;
+  const vtkSmartPointer<vtkDataArray> now = at(step);
+  if (now && plays && (back ? step > 0 : step + 1 < this->Times.size())) {
+    const vtkSmartPointer<vtkDataArray> next = at(back ? step - 1 : step + 1);
+    if (next) {
+      vtkStratusReadAhead(next, now);
+    }
+  }
+  while (this->Bricks.size() > most) { // the one that is farthest in time goes
+    const auto first = this->Bricks.begin(), last = std::prev(this->Bricks.end());
+    this->Bricks.erase(step - first->first > last->first - step ? first : last);
+  }
+  this->LastStep = step;
+  return now;
 }
 
 void vtkStratusVariableReader::SetAxesOnSphere()

@@ -17,11 +17,15 @@
 
 #include "StratusFiltersIOModule.h" // For export macro
 #include "vtkDataSetAlgorithm.h"
-#include "vtkNew.h" // For vtkNew
+#include "vtkNew.h"          // For vtkNew
+#include "vtkSmartPointer.h" // For vtkSmartPointer
 
-#include <string> // For std::string
-#include <vector> // For std::vector
+#include <functional> // For std::function
+#include <map>        // For std::map
+#include <string>     // For std::string
+#include <vector>     // For std::vector
 
+class vtkDataArray;
 class vtkStringArray;
 
 #ifndef __VTK_WRAP__
@@ -182,6 +186,12 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+#ifndef __VTK_WRAP__
+  /// Returns the bricks of a time step, which `make` makes unless they are there from before; null if it can't. Bricks of some steps stay,
+  /// so that values in memory are not read again. Once the time changes, bricks of the step that comes next are read ahead.
+  vtkSmartPointer<vtkDataArray> BricksOf(size_t step, const std::function<vtkSmartPointer<vtkDataArray>(size_t)>& make);
+#endif
+
   vtkTypeBool MapFile = 0, Mapped = 0;
   vtkTypeInt64 MappedBytesLeast = vtkTypeInt64(1) << 24;
   char* FileName = nullptr;
@@ -208,6 +218,10 @@ private:
   void SetUnits(vtkDataObject* output);
 
   vtkMTimeType LookTime = 0;
+#ifndef __VTK_WRAP__
+  std::map<size_t, vtkSmartPointer<vtkDataArray>> Bricks; // of time steps
+#endif
+  size_t LastStep = 0; // of these
   std::string OutputClass;
   vtkNew<vtkStringArray> Names;
 };

@@ -76,6 +76,8 @@ static void bricks(const stratus_volume* v)
   REFUSES(stratus_bricks_create(context, pool, &source, NULL));
   GIVES(NULL, stratus_bricks_values(NULL));
   GIVES(NULL, stratus_bricks_missing(NULL));
+  GIVES(NULL, stratus_bricks_tiles(NULL));
+  IS_SILENT(stratus_bricks_read_ahead(NULL, NULL));
   GIVES(NULL, stratus_bricks_reads(NULL));
   TAKES(stratus_bricks_get_report(NULL, &report));
   TAKES(stratus_bricks_destroy(NULL));

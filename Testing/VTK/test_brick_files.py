@@ -3,6 +3,7 @@
 memory, pictures have the same bits in little memory, and chunks that cannot be read are an error of the mapper."""
 import os
 import sys
+import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Python"))
 from checking import check, done, errors_of
@@ -122,6 +123,38 @@ check("values outlive their reader", vtk_to_numpy(data.GetPointData().GetScalars
 check("bricks of another array went", used <= LIMIT)
 del data
 check("bricks end with their arrays", Reader.GetMemoryUsed() == 0)
+
+# Once the time changes, parts of the next step are read before something looks at them; steps that were shown are not read again.
+with netCDF4.Dataset("steps.nc", "w") as file:
+    for axis, count in (("time", 3), ("z", 64), ("y", 64), ("x", 64)):
+        file.createDimension(axis, count)
+    file.createVariable("time", "f8", ("time",))[:] = (0, 1, 2)
+    file["time"].units = "hours since 2001-01-01"
+    steps = file.createVariable("rho", "f4", ("time", "z", "y", "x"), chunksizes=(1, 16, 64, 64))
+    steps[:] = numpy.arange(3 * 64 ** 3).reshape(3, 64, 64, 64)
+playing = stratus.vtkStratusCFReader()
+playing.SetFileName("steps.nc"), playing.MapFileOn(), playing.SetMappedBytesLeast(1)
+
+
+def first_value(step):
+    playing.UpdateTimeStep(float(step))
+    return values_of(playing)[5]
+
+
+begin = Reader.GetBytesRead()
+check("the first step", first_value(0) == 5)
+one_step = Reader.GetBytesRead() - begin
+time.sleep(0.3)
+check("no step is read ahead before the time changes", one_step > 0 and Reader.GetBytesRead() - begin == one_step)
+check("the second step", first_value(1) == 64 ** 3 + 5)
+for _ in range(500):
+    if Reader.GetBytesRead() - begin >= 3 * one_step:
+        break
+    time.sleep(0.02)
+check("the next step is read ahead where this one was", Reader.GetBytesRead() - begin == 3 * one_step)
+check("the third step", first_value(2) == 2 * 64 ** 3 + 5 and Reader.GetBytesRead() - begin == 3 * one_step)
+check("a step that was shown is not read again", first_value(0) == 5 and Reader.GetBytesRead() - begin == 3 * one_step)
+del playing
 
 # Arrays of few values are read at once.
 small = stratus.vtkStratusCFReader()

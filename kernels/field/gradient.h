@@ -78,7 +78,7 @@ INLINE vmask clipped_off(CONSTANT stratus_ray_cast_arguments* a, const vfloat x[
 INLINE void RAY_NAME(fetch_two)(
   CONSTANT stratus_ray_cast_arguments* a, value_source values, vint i, vint j, vint k, vmask mask, vfloat* v0, vfloat* v1)
 {
-#if STRATUS_TYPE == -1 || RAY_IN_PAGES
+#if STRATUS_TYPE < 0 || RAY_IN_PAGES
   *v0 = RAY_NAME(fetch_nearest)(a, values, i, j, k, mask);
   *v1 = RAY_NAME(fetch_nearest)(a, values, vi_min(i + vi_set(1), vi_set(a->values.dimensions[0] - 1)), j, k, mask);
 #else

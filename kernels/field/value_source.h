@@ -21,7 +21,17 @@ INLINE double stratus_bias(const stratus_ray_cast_arguments* a)
 typedef uint64_t stratus_index;
 #endif
 
-/* Where a volume's values are: one after the other, or in pages (RAY_PAGES), with a table of each page's slab and its place in the slab. */
+#ifndef STRATUS_DEVICE
+/* The values of a component in tiles: stratus_tiles. */
+typedef struct ray_tiles {
+  const uchar* values;
+  const uint64_t* at[3];
+  int64_t dimensions[3];
+} ray_tiles;
+#endif
+
+/* Where a volume's values are: one after the other, or in pages (RAY_PAGES), with a table of each page's slab and its place in the slab. On
+ * the host it may be the address of a ray_tiles instead, one for each component. */
 #if RAY_IN_PAGES
 typedef struct value_source {
   GLOBAL const void* slab[PAGE_SLABS];

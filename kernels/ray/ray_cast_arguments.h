@@ -112,6 +112,8 @@ typedef struct stratus_ray_crop {
   int regions; /* the regions between the planes that are shown: bit x + 3 y + 9 z, each 0..2; 0: there are none, and the box is all */
 } stratus_ray_crop;
 
+#define RAY_READING_TILES 11 /* values.reading of values in tiles */
+
 /* The volume's values and their layout in memory. */
 typedef struct stratus_ray_values {
   float last[3]; /* the largest position along each axis, which `clamp` clamps to, and grids */
@@ -121,7 +123,7 @@ typedef struct stratus_ray_values {
   int dimensions[3];
   int row, slice;           /* how many values lie from one row to the next, and from one slice to the next (their low 32 bits) */
   int tail;                 /* the largest index from which 4 bytes may be read (8-bit types) */
-  int reading;              /* the host's function for them: 1 + the number of a type that has its own fetch; 0: the generic fetch */
+  int reading;              /* the host's functions for them: 1 + the number of a type that has its own fetch; 0: the generic fetch */
   int type, stride;         /* read by the generic fetch only, as the next two */
   int row_high, slice_high; /* high 32 bits of row and slice */
   int bias_low, bias_high;  /* bits of the double that wide types are relative to */

@@ -9,6 +9,7 @@
 
 #include <omp.h>
 #include <stdio.h>
+#include <time.h>
 
 /* A source of values that a formula gives. */
 typedef struct formula {
@@ -352,6 +353,154 @@ static void values_that_cannot_be_read_are_counted(void** state)
   }
 }
 
+/* An array that is larger than memory has all values in tiles, too, however they are looked at, within the limit. */
+static void tiles_are_the_sources(void** state)
+{
+  (void)state;
+  formula all[] = {
+    make_formula(STRATUS_FLOAT32, 128, 96, 80, 32, 32, 16), /* bricks of 64 KiB */
+    make_formula(STRATUS_UINT8, 301, 157, 67, 50, 33, 9),   /* small ones, which end anywhere */
+    make_formula(STRATUS_INT16, 97, 201, 61, 97, 201, 1),   /* whole layers */
+    make_formula(STRATUS_FLOAT64, 130, 70, 30, 1, 1, 1),    /* no bricks */
+    make_formula(STRATUS_UINT8, 171, 120, 115, 1, 1, 1),
+    make_formula(STRATUS_UINT16, 3 * 61, 70, 90, 3, 1, 1), /* of three components */
+    make_formula(STRATUS_FLOAT32, 2 * 61, 70, 90, 2 * 16, 16, 16),
+    make_formula(STRATUS_FLOAT32, 400003, 1, 1, 1000, 8, 8),
+  };
+  static const int components[] = { 1, 1, 1, 1, 1, 3, 2, 1 };
+  for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
+    formula* const f = &all[i];
+    const int64_t of_point = components[i], points = f->dimensions[0] / of_point;
+    const size_t size = stratus_type_size(f->type);
+    stratus_brick_pool* pool = make_pool(1);
+    if (!is_paged(pool)) {
+      stratus_brick_pool_destroy(pool);
+      return;
+    }
+    const uint64_t memory = (uint64_t)count_of(f) * size * 3 / 4;
+    pool->memory = memory;
+    stratus_brick_source source = source_of(f);
+    source.components = of_point;
+    stratus_bricks* bricks = NULL;
+    assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_OK);
+    const stratus_tiles* tiles = stratus_bricks_tiles(bricks);
+    assert_non_null(tiles);
+    assert_int_equal(tiles->dimensions[0], points);
+    int64_t wrong = 0;
+#pragma omp parallel for num_threads(3) reduction(+ : wrong)
+    for (int64_t at = 0; at < count_of(f); ++at) {
+      const int64_t x = at % f->dimensions[0], y = at / f->dimensions[0] % f->dimensions[1], z = at / f->dimensions[0] / f->dimensions[1];
+      const char* to =
+        (const char*)tiles->values + tiles->at[0][x / of_point] + tiles->at[1][y] + tiles->at[2][z] + (size_t)(x % of_point) * size;
+      double expected;
+      put(f->type, &expected, 0, at);
+      wrong += memcmp(&expected, to, size) != 0;
+    }
+    assert_int_equal(wrong, 0);
+    for (int a = 0; a < 3; ++a) {
+      assert_int_equal(tiles->at[a][tiles->dimensions[a]], tiles->at[a][tiles->dimensions[a] - 1]);
+    }
+    stratus_brick_pool_report report;
+    stratus_brick_pool_get_report(pool, &report);
+    assert_true(report.resident <= memory);
+    assert_int_equal(wrong_at_random(f, stratus_bricks_values(bricks), 300), 0); /* the array itself, in the same memory */
+    assert_int_equal(f->misplaced, 0);
+    stratus_bricks_destroy(bricks);
+    assert_int_equal(f->released, 1);
+    stratus_brick_pool_get_report(pool, &report);
+    assert_int_equal(report.resident, 0);
+    stratus_brick_pool_destroy(pool);
+  }
+}
+
+static void only_tiles_that_are_looked_at_are_read(void** state)
+{
+  (void)state;
+  formula f = make_formula(STRATUS_FLOAT32, 256, 256, 256, 64, 64, 64);
+  stratus_brick_pool* pool = make_pool(16 << 20);
+  if (!is_paged(pool)) {
+    stratus_brick_pool_destroy(pool);
+    return;
+  }
+  stratus_bricks* bricks = make_bricks(pool, &f);
+  const stratus_tiles* tiles = stratus_bricks_tiles(bricks);
+  assert_non_null(tiles);
+  for (int64_t i = 70; i < 120; i += 7) {
+    const float* value =
+      (const float*)(const void*)((const char*)tiles->values + tiles->at[0][i] + tiles->at[1][130] + tiles->at[2][250 - i]);
+    float expected;
+    put(STRATUS_FLOAT32, &expected, 0, ((250 - i) * 256 + 130) * 256 + i);
+    assert_memory_equal(value, &expected, sizeof expected);
+  }
+  assert_int_equal(report_of(bricks).parts_read, 1);
+  assert_int_equal(report_of(bricks).bytes_read, 64 * 64 * 64 * 4);
+  assert_int_equal(f.calls, 1);
+  stratus_bricks_destroy(bricks);
+  pool->memory = (uint64_t)1 << 30; /* now it fits */
+  bricks = make_bricks(pool, &f);
+  assert_null(stratus_bricks_tiles(bricks));
+  stratus_bricks_destroy(bricks);
+  stratus_brick_pool_destroy(pool);
+}
+
+static void wait_a_little(void)
+{
+  const struct timespec time = { .tv_nsec = 5 * 1000 * 1000 };
+  nanosleep(&time, NULL);
+}
+
+/* Parts are read where another array's were, when nothing else reads, and only into memory that both leave. */
+static void parts_are_read_ahead(void** state)
+{
+  (void)state;
+  enum { NX = 256, NY = 128, NZ = 128, PART = NX * 64 * 32 * 4, TILE = PART / 8 };
+  for (int tiled = 0; tiled < 2; ++tiled) {
+    formula f[2] = { make_formula(STRATUS_FLOAT32, NX, NY, NZ, 32, 64, 32), make_formula(STRATUS_FLOAT32, NX, NY, NZ, 32, 64, 32) };
+    stratus_brick_pool* pool = make_pool(1);
+    if (!is_paged(pool)) {
+      stratus_brick_pool_destroy(pool);
+      return;
+    }
+    pool->memory = tiled ? 8 << 20 : 1 << 30; /* an array takes 16 MB */
+    stratus_bricks* bricks[2] = { make_bricks(pool, &f[0]), make_bricks(pool, &f[1]) };
+    pool->memory = 5 * (tiled ? TILE : PART);
+    assert_int_equal(stratus_bricks_read_ahead(bricks[1], bricks[0]), STRATUS_OK);
+    const stratus_tiles* tiles[2] = { stratus_bricks_tiles(bricks[0]), stratus_bricks_tiles(bricks[1]) };
+    assert_int_equal(tiles[0] != NULL, tiled);
+    for (int part = 0; part < 2; ++part) {
+      const int64_t at = ((40 + 32 * part) * NY + 70) * NX + 90;
+      if (tiled) {
+        const size_t offset = tiles[0]->at[0][90] + tiles[0]->at[1][70] + tiles[0]->at[2][40 + 32 * part];
+        assert_true(isfinite(*(const float*)(const void*)((const char*)tiles[0]->values + offset)));
+      } else {
+        assert_true(equals(&f[0], stratus_bricks_values(bricks[0]), at));
+      }
+      for (int tries = 0; tries < 2000 && report_of(bricks[1]).parts_read < (uint64_t)part + 1; ++tries) {
+        wait_a_little();
+      }
+      assert_int_equal(report_of(bricks[1]).parts_read, part + 1);
+    }
+    assert_int_equal(report_of(bricks[0]).parts_read, 2);
+    /* one more part of the first array: there is no room for the second one's, and nothing is dropped for it */
+    const size_t third = tiled ? tiles[0]->at[2][100] : 0;
+    assert_true(tiled ? isfinite(*(const float*)(const void*)((const char*)tiles[0]->values + third))
+                      : equals(&f[0], stratus_bricks_values(bricks[0]), (int64_t)100 * NY * NX));
+    for (int tries = 0; tries < 20; ++tries) {
+      wait_a_little();
+    }
+    assert_int_equal(report_of(bricks[1]).parts_read, 2);
+    assert_int_equal(report_of(bricks[0]).parts_dropped + report_of(bricks[1]).parts_dropped, 0);
+    if (!tiled) { /* what was read ahead is not read again */
+      assert_true(equals(&f[1], stratus_bricks_values(bricks[1]), ((int64_t)72 * NY + 70) * NX + 91));
+      assert_int_equal(report_of(bricks[1]).parts_read, 2);
+    }
+    assert_int_equal(stratus_bricks_read_ahead(bricks[1], bricks[1]), STRATUS_INVALID_ARGUMENT);
+    stratus_bricks_destroy(bricks[0]);
+    stratus_bricks_destroy(bricks[1]);
+    stratus_brick_pool_destroy(pool);
+  }
+}
+
 /* A picture of bricks in little memory has the bits of one of values in memory, and reads less where less shows. */
 static void pictures_are_the_same(void** state)
 {
@@ -376,20 +525,27 @@ static void pictures_are_the_same(void** state)
   stratus_brick_pool* pool = make_pool(1);
   pool->memory = 8 << 20; /* the array takes 16 MB */
   stratus_bricks* bricks = make_bricks(pool, &f);
-  float pixels[2][SIZE * SIZE * 4];
-  for (int i = 0; i < 2; ++i) {
+  float pixels[3][SIZE * SIZE * 4];
+  uint64_t reads[3] = { 0 };
+  for (int i = 0; i < 3; ++i) {
     stratus_ray_caster* caster = NULL;
     stratus_camera camera;
     const double eye[3] = { 3.0 * N, 0.4 * N, 0.3 * N }, focal[3] = { 0.5 * N, 0.5 * N, 0.5 * N }, up[3] = { 0.0, 1.0, 0.0 };
     volume.values = i == 0 ? plain : stratus_bricks_values(bricks);
     volume.missing = i == 0 ? NULL : stratus_bricks_missing(bricks);
+    if (i == 2 && stratus_bricks_tiles(bricks)) {
+      volume.tiles = *stratus_bricks_tiles(bricks);
+    }
     assert_int_equal(stratus_camera_perspective(host, eye, focal, up, 30.0, 1.0, &camera), STRATUS_OK);
     stratus_image image = { .width = SIZE, .height = SIZE, .rgba = pixels[i] };
     assert_int_equal(stratus_ray_caster_create(host, &caster), STRATUS_OK);
     assert_int_equal(stratus_ray_caster_render(caster, &volume, &transfer, &camera, NULL, &image, NULL), STRATUS_OK);
     stratus_ray_caster_destroy(caster);
+    reads[i] = *stratus_bricks_reads(bricks);
   }
   assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+  assert_memory_equal(pixels[0], pixels[2], sizeof pixels[0]);
+  assert_true(!stratus_bricks_tiles(bricks) || reads[2] > reads[1]);
   stratus_brick_pool_report report;
   stratus_brick_pool_get_report(pool, &report);
   assert_true(!report.paged || (report.resident_most <= 8 << 20 && report_of(bricks).parts_dropped > 0));
@@ -483,9 +639,12 @@ static void faults_of_the_caller_are_told(void** state)
   source.type = (stratus_type)99;
   assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_INVALID_ARGUMENT);
   source = source_of(&f);
+  source.components = 3;
+  assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_INVALID_ARGUMENT);
+  source = source_of(&f);
   source.dimensions[0] = source.dimensions[1] = source.dimensions[2] = INT64_C(1) << 30;
   assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_OVERFLOW);
-  assert_int_equal(f.released, 4);
+  assert_int_equal(f.released, 5);
   assert_null(bricks);
   stratus_brick_pool_destroy(pool);
 }
@@ -494,7 +653,9 @@ int test_bricks(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(values_are_the_sources), cmocka_unit_test(without_pages_all_is_read_at_once),
     cmocka_unit_test(only_parts_that_are_looked_at_are_read), cmocka_unit_test(memory_stays_within_its_limit),
-    cmocka_unit_test(what_is_read_stays), cmocka_unit_test(values_that_cannot_be_read_are_counted), cmocka_unit_test(pictures_are_the_same),
-    cmocka_unit_test(bricks_of_one_value_are_not_read), cmocka_unit_test(faults_of_the_caller_are_told) };
+    cmocka_unit_test(what_is_read_stays), cmocka_unit_test(values_that_cannot_be_read_are_counted), cmocka_unit_test(tiles_are_the_sources),
+    cmocka_unit_test(only_tiles_that_are_looked_at_are_read), cmocka_unit_test(parts_are_read_ahead),
+    cmocka_unit_test(pictures_are_the_same), cmocka_unit_test(bricks_of_one_value_are_not_read),
+    cmocka_unit_test(faults_of_the_caller_are_told) };
   return cmocka_run_group_tests(tests, begin, end);
 }

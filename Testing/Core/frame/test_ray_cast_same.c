@@ -2,6 +2,7 @@
  * Same input, same picture: no structure, block size or number of threads changes a bit. The test compares pictures itself and by the
  * caster's own audit, which must agree. */
 #include "picture_case.h"
+#include "tile_case.h"
 
 static picture first;
 static picture second;
@@ -153,6 +154,46 @@ static void tiles_change_nothing_but_roundings(void** state)
   stratus_context_destroy(context);
 }
 
+/* Rays read values from tiles as they do from memory in order, in each mode that draws the case. */
+static void values_in_tiles_change_no_bit(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  int lit = 0, drawn[STRATUS_MODE_QUANTITIES + 1] = { 0 };
+  for (uint32_t seed = 600; seed < 680; seed += few_run() ? 3 : 1) {
+    const int64_t side[3] = { 1 + seed % 9, 1 + seed / 3 % 7, 1 + seed / 5 % 8 };
+    picture_case c;
+    case_create_random(context, seed, &c);
+    for (int mode = STRATUS_MODE_COMPOSITE; mode <= STRATUS_MODE_SLICE; ++mode) {
+      const stratus_image image = { .width = CASE_WIDTH, .height = CASE_HEIGHT, .rgba = first.rgba, .depth = first.depth };
+      stratus_ray_caster* caster = NULL;
+      c.options.mode = (stratus_mode)mode;
+      c.options.optics.contours[0] = c.opacity[4];
+      c.options.optics.contour_count = 1;
+      c.options.slice = (stratus_slice){ .linear = { 1, -2, 0.5 }, .center = { 5, 5, 5 } };
+      assert_int_equal(stratus_ray_caster_create(context, &caster), STRATUS_OK);
+      const stratus_status status = stratus_ray_caster_render(caster, &c.volume, &c.transfer, &c.camera, &c.options, &image, NULL);
+      stratus_ray_caster_destroy(caster);
+      if (status == STRATUS_OK) {
+        char what[96];
+        tile_volume(&c.volume, side);
+        case_render(context, &c, &second);
+        free_tiles(&c.volume);
+        snprintf(what, sizeof what, "seed %u, mode %d in tiles, %s", seed, mode, case_type_names[c.volume.type]);
+        expect_same(what, &first, &second);
+        lit += case_lit(&first) > 0;
+        ++drawn[mode];
+      }
+    }
+    case_destroy(&c);
+  }
+  assert_true(lit > (few_run() ? 50 : 150));
+  for (int mode = STRATUS_MODE_COMPOSITE; mode <= STRATUS_MODE_SLICE; ++mode) {
+    assert_true(drawn[mode] > 0);
+  }
+  stratus_context_destroy(context);
+}
+
 /* Each sampling rule has a table, and lit pictures have another. A table is used again when its rule returns, and only then. */
 static void rules_that_take_turns_keep_their_tables(void** state)
 {
@@ -221,6 +262,7 @@ int test_ray_cast_same(void)
     cmocka_unit_test(trees_that_come_with_the_data_change_no_bit),
     cmocka_unit_test(threads_change_no_bit),
     cmocka_unit_test(tiles_change_nothing_but_roundings),
+    cmocka_unit_test(values_in_tiles_change_no_bit),
     cmocka_unit_test(rules_that_take_turns_keep_their_tables),
     cmocka_unit_test(a_caster_that_was_used_before_draws_the_same),
   };
