@@ -413,10 +413,10 @@ void vtkStratusHDF5Reader::Build(size_t step, vtkDataObject* output)
   image->SetSpacing(this->Spacing);
   image->SetDirectionMatrix(this->Direction);
   const Array& chosen = this->FindChosen();
-  const Box box = this->OpenBox(file, chosen, step);
-  vtkSmartPointer<vtkDataArray> values = this->LeaveValues(chosen, box);
+  vtkSmartPointer<vtkDataArray> values =
+    this->BricksOf(step, [&](size_t one) { return this->LeaveValues(chosen, this->OpenBox(file, chosen, one)); });
   this->Mapped = values ? 1 : 0;
-  values = values ? values : this->ReadValues(file, chosen, box);
+  values = values ? values : this->ReadValues(file, chosen, this->OpenBox(file, chosen, step));
   const auto data_of = [image](const Array& array) {
     return array.Cells ? static_cast<vtkDataSetAttributes*>(image->GetCellData()) : image->GetPointData();
   };
