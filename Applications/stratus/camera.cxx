@@ -13,6 +13,7 @@ void shown_bounds(const cli::context& core, const stratus_volume& volume, const 
   stratus_value_range* ranges = nullptr;
   stratus_occupancy* occupancy = nullptr;
   stratus_volume part = volume;
+  part.tiles = {};                       // they are of all of it
   constexpr double large = 2147483648.0; // values, whose blocks are at least as large by default
   const double values =
     static_cast<double>(volume.dimensions[0]) * static_cast<double>(volume.dimensions[1]) * static_cast<double>(volume.dimensions[2]);

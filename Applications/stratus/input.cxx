@@ -61,8 +61,7 @@ void set_values(vtkDataSet* image, vtkDataArray* array, bool on_cells, stratus_v
   volume.cell_ghosts = ghosts(image->GetCellData(), image->GetNumberOfCells(), "cells of the image");
   volume.point_ghosts = on_cells ? nullptr : point_ghosts;
   volume.values = array->GetVoidPointer(0);
-  volume.identity = vtkStratusIdentityOf(array);
-  volume.missing = vtkStratusMissingOf(array);
+  vtkStratusSetSource(array, 0, volume);
 }
 } // namespace
 

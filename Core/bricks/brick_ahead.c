@@ -66,7 +66,7 @@ static void* read_ahead(void* user)
     if (view) {
       stratus_bricks* const bricks = view->bricks;
       stratus_brick_enter(bricks);
-      read = stratus_brick_read_part(view, part, &room, bricks->like);
+      read = stratus_brick_read_part(view, part, &room, true);
       stratus_brick_leave(bricks);
     }
     if (!read) {
@@ -105,7 +105,7 @@ stratus_status stratus_bricks_read_ahead(stratus_bricks* bricks, stratus_bricks*
   bricks->like = bricks->rows.memory < 0 ? NULL : like;
   if (bricks->like && !pool->reads_ahead) {
     sigset_t all, before;
-    sigfillset(&all); /* the program's handlers run in its own threads */
+    stratus_brick_signals(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     pool->reads_ahead = pthread_create(&pool->ahead, NULL, read_ahead, pool) == 0;
     pthread_sigmask(SIG_SETMASK, &before, NULL);

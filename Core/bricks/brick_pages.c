@@ -59,6 +59,15 @@ uint64_t stratus_brick_store_part(const stratus_brick_view* view, int64_t part, 
   return missing;
 }
 
+void stratus_brick_signals(sigset_t* blocked)
+{
+  static const int faults[] = { SIGBUS, SIGSEGV, SIGFPE, SIGILL };
+  sigfillset(blocked);
+  for (size_t i = 0; i < sizeof faults / sizeof *faults; ++i) {
+    sigdelset(blocked, faults[i]);
+  }
+}
+
 void stratus_brick_enter(stratus_bricks* bricks)
 {
   ++bricks->threads;
@@ -115,7 +124,7 @@ static uint64_t bytes_of(const stratus_brick_view* view, int64_t part, uint64_t*
   for (int64_t r = 0; r < runs; ++r) {
     const stratus_brick_run run = stratus_brick_run_at(view, part, r), inner = stratus_brick_inner(view, page, run);
     bytes += inner.end - inner.begin;
-    *edges += (run.begin < inner.begin ? page : 0) + (run.end > inner.end ? page : 0);
+    *edges += run.begin < inner.begin ? page : 0; /* the run that ends there does not count it */
   }
   return bytes;
 }
@@ -151,9 +160,8 @@ static void set_state(stratus_brick_view* view, int64_t part, int state)
   view->state[part] = (uint8_t)((view->state[part] & ~STRATUS_PART_STATE) | state);
 }
 
-/* Moves the clock's hand until the pool is within its limit, or has gone around twice. Part `kept` of `keeper` stays; with `spared`, all of
- * both arrays. */
-static void make_room(stratus_brick_pool* pool, const stratus_brick_view* keeper, int64_t kept, const stratus_bricks* spared)
+/* Moves the clock's hand until the pool is within its limit, or has gone around twice. Part `kept` of `keeper` stays. */
+static void make_room(stratus_brick_pool* pool, const stratus_brick_view* keeper, int64_t kept)
 {
   int64_t parts = 0;
   for (const stratus_brick_view* b = pool->first; b; b = b->next) {
@@ -167,9 +175,7 @@ static void make_room(stratus_brick_pool* pool, const stratus_brick_view* keeper
     stratus_brick_view* const view = pool->hand;
     const int64_t part = pool->hand_part++;
     const int state = view->state[part] & STRATUS_PART_STATE;
-    const bool stays = view == keeper && part == kept;
-    if (stays || (spared && (view->bricks == spared || view->bricks == keeper->bricks)) ||
-      (state != STRATUS_PART_HERE && state != STRATUS_PART_RESTING)) {
+    if ((view == keeper && part == kept) || (state != STRATUS_PART_HERE && state != STRATUS_PART_RESTING)) {
       continue;
     }
     hide_part(view, part, state == STRATUS_PART_RESTING);
@@ -183,17 +189,16 @@ static void make_room(stratus_brick_pool* pool, const stratus_brick_view* keeper
   }
 }
 
-bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, const stratus_bricks* spared)
+bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, bool ahead)
 {
   stratus_brick_pool* const pool = view->bricks->pool;
   uint64_t edges = 0;
   const uint64_t inner = bytes_of(view, part, &edges), shared = view->state[part] & STRATUS_PART_EDGES ? 0 : edges;
-  pool->resident += inner + shared;
-  make_room(pool, view, part, spared);
-  if (spared && pool->resident > pool->memory) {
-    pool->resident -= inner + shared;
+  if (ahead && pool->resident + inner + shared > pool->memory) {
     return false;
   }
+  pool->resident += inner + shared;
+  make_room(pool, view, part);
   view->state[part] = STRATUS_PART_EDGES | STRATUS_PART_READING;
   pool->resident_most = pool->resident > pool->resident_most ? pool->resident : pool->resident_most;
   pthread_mutex_unlock(&pool->lock);
@@ -206,7 +211,8 @@ bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_bri
   pool->parts_read += 1;
   pool->bytes_read += all - missing;
   view->bricks->report.bytes_read += all - missing;
-  (void)__atomic_add_fetch(&view->bricks->report.parts_read, 1, __ATOMIC_RELEASE); /* others read these two without the lock */
+  ++view->bricks->report.parts_read;
+  (void)__atomic_add_fetch(&view->bricks->waited_for, ahead ? 0 : 1, __ATOMIC_RELEASE); /* others read these two without the lock */
   (void)__atomic_add_fetch(&view->bricks->report.missing, missing, __ATOMIC_RELEASE);
   show_part(view, part);
   pthread_cond_broadcast(&pool->read);
@@ -221,7 +227,7 @@ static void bring(stratus_brick_view* view, int64_t part, stratus_brick_room* ro
     set_state(view, part, STRATUS_PART_HERE);
     show_part(view, part);
   } else if (state == STRATUS_PART_ABSENT) {
-    (void)stratus_brick_read_part(view, part, room, NULL);
+    (void)stratus_brick_read_part(view, part, room, false);
   }
 }
 
@@ -317,7 +323,7 @@ void stratus_brick_pages_start(stratus_brick_pool* pool, int threads)
   pool->faults = open_faults();
   pool->quit = pool->faults < 0 ? -1 : eventfd(0, EFD_CLOEXEC);
   if (pool->quit >= 0) {
-    sigfillset(&all); /* the program's handlers run in its own threads */
+    stratus_brick_signals(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     while (pool->thread_count < threads && pthread_create(&pool->threads[pool->thread_count], NULL, serve_faults, pool) == 0) {
       ++pool->thread_count;
@@ -370,9 +376,9 @@ uint64_t stratus_brick_resident(const stratus_brick_view* view)
   return 0;
 }
 
-bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, const stratus_bricks* spared)
+bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, bool ahead)
 {
-  (void)view, (void)part, (void)room, (void)spared;
+  (void)view, (void)part, (void)room, (void)ahead;
   return false;
 }
 

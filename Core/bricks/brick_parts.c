@@ -41,7 +41,8 @@ static size_t row_bytes(const stratus_brick_source* s)
 /* Whether the source reads any box as well as another: its bricks are values, or some components of one. */
 static bool has_no_bricks(const stratus_brick_source* s)
 {
-  return s->brick[0] * (int64_t)stratus_type_size(s->type) <= TILE_ROW && s->brick[1] == 1 && s->brick[2] == 1;
+  const bool narrow = s->brick[0] * (int64_t)stratus_type_size(s->type) <= TILE_ROW || s->brick[0] == s->components;
+  return narrow && s->brick[1] == 1 && s->brick[2] == 1;
 }
 
 void stratus_brick_rows_divide(stratus_brick_view* view)
@@ -67,7 +68,8 @@ bool stratus_brick_tiles_divide(stratus_brick_view* view, size_t page)
     bytes *= view->side[a];
   }
   if (has_no_bricks(s)) {
-    view->side[0] = least(TILE_ROW / value / s->brick[0] * s->brick[0], n[0]);
+    const int64_t points = TILE_ROW / value / s->brick[0];
+    view->side[0] = least((points > 1 ? points : 1) * s->brick[0], n[0]);
     bytes = value * view->side[0];
   }
   for (bool grows = true; grows && bytes < TILE_LEAST;) { /* double the shortest side that can grow */

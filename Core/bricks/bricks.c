@@ -37,6 +37,7 @@ stratus_status stratus_brick_pool_create(stratus_context* context, const stratus
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_brick_pool), &memory));
   stratus_brick_pool* const p = memory;
   p->context = context;
+  p->process = (long)getpid();
   p->memory = limit_of(o.memory);
   p->faults = p->quit = -1;
   p->page = (size_t)sysconf(_SC_PAGESIZE);
@@ -78,7 +79,7 @@ void stratus_brick_pool_get_report(stratus_brick_pool* pool, stratus_brick_pool_
 
 void stratus_brick_pool_destroy(stratus_brick_pool* pool)
 {
-  if (pool) {
+  if (pool && pool->process == (long)getpid()) {
     stratus_brick_ahead_stop(pool);
     stratus_brick_pages_stop(pool);
     pthread_cond_destroy(&pool->read);
@@ -144,7 +145,7 @@ static stratus_status read_all(stratus_context* context, stratus_bricks* bricks)
   }
   free(room.bytes);
   TRY(status);
-  bricks->report.parts_here = bricks->report.parts_read = (uint64_t)view->parts;
+  bricks->report.parts_here = bricks->report.parts_read = bricks->waited_for = (uint64_t)view->parts;
   bricks->report.bytes_read = view->bytes - bricks->report.missing;
   return STRATUS_OK;
 }
@@ -280,7 +281,7 @@ const uint64_t* stratus_bricks_missing(const stratus_bricks* bricks)
 
 const uint64_t* stratus_bricks_reads(const stratus_bricks* bricks)
 {
-  return bricks ? &bricks->report.parts_read : NULL;
+  return bricks ? &bricks->waited_for : NULL;
 }
 
 void stratus_bricks_get_report(stratus_bricks* bricks, stratus_bricks_report* report)
@@ -294,7 +295,7 @@ void stratus_bricks_get_report(stratus_bricks* bricks, stratus_bricks_report* re
 
 void stratus_bricks_destroy(stratus_bricks* bricks)
 {
-  if (!bricks) {
+  if (!bricks || bricks->pool->process != (long)getpid()) {
     return;
   }
   stratus_brick_pool* const pool = bricks->pool;

@@ -8,6 +8,7 @@
 #include "volume.h"
 
 #include <pthread.h>
+#include <signal.h>
 
 /* State of a part. */
 enum {
@@ -44,6 +45,7 @@ struct stratus_bricks {
   stratus_brick_view tiles; /* the same values for rays; no parts if the array fits in the pool's memory */
   uint64_t* at[3];          /* offsets in `shown` */
   stratus_tiles shown;
+  uint64_t waited_for;  /* parts that were read because something waited for them */
   stratus_bricks* like; /* its parts are read ahead; NULL: none */
   int threads;          /* of the pool that bring parts now; the array stays until there are none */
   bool leaves;          /* it is to be destroyed */
@@ -59,6 +61,7 @@ typedef struct stratus_brick_room {
 
 struct stratus_brick_pool {
   stratus_context* context;
+  long process; /* whose the threads are: a process that fork() makes has none */
   pthread_mutex_t lock;
   pthread_cond_t read; /* a part was read */
   uint64_t memory, resident, resident_most, parts_read, bytes_read;
@@ -85,15 +88,19 @@ bool stratus_brick_map(stratus_brick_view* view);
 void stratus_brick_unmap(stratus_brick_view* view);
 /* Puts the runs of a part from the room into the view. Returns how many bytes could not be written, for want of memory. */
 uint64_t stratus_brick_store_part(const stratus_brick_view* view, int64_t part, const stratus_brick_room* room);
-/* Reads a part that is absent, with the pool's lock on entry and on return, but not while the source reads. Other parts are dropped for it,
- * but none of `spared`, unless that is NULL, and then none of its own array either: where that is not enough, returns false. */
-bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, const stratus_bricks* spared);
+/* Reads a part that is absent, with the pool's lock on entry and on return, but not while the source reads. Other parts are dropped for it;
+ * but if it is read ahead, none are, and false is returned where there is no room. */
+bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, bool ahead);
 /* Returns the bytes of a view's parts that are in memory, and of the pages that they share. */
 uint64_t stratus_brick_resident(const stratus_brick_view* view);
 
 /* Counts a thread that brings parts of an array, and no longer does. With the pool's lock. */
 void stratus_brick_enter(stratus_bricks* bricks);
 void stratus_brick_leave(stratus_bricks* bricks);
+
+/* The signals that threads of a pool do not take: the program's handlers run in its own threads. They take faults of their own, such as
+ * SIGBUS of a source that maps a file. */
+void stratus_brick_signals(sigset_t* blocked);
 
 /* ---- brick_ahead.c */
 

@@ -255,7 +255,9 @@ static stratus_status render(stratus_ray_caster* caster, const stratus_volume* v
   char why[192] = "";
   stratus_ray_drawn drawn = { .count = 0 };
   bool empty = false;
-  const bool times = !image->samples; /* an image of samples must not depend on times, because samples depend on the structure */
+  /* An image of samples must not depend on times, because samples depend on the structure. In tiles, samples that a structure skips need
+   * not even be read: trying to do without it would read empty space. */
+  const bool times = !image->samples && !volume->tiles.values;
   const bool tries =
     times && options->skipping.structure == STRATUS_STRUCTURE_AUTO && caster->integrator.keeps <= 1; /* later pictures have few rays */
 

@@ -344,6 +344,7 @@ stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus
       caster->integrator.shown.mode == STRATUS_MODE_SLICE ? "a ray takes two samples at most"
         : *used == STRATUS_STRUCTURE_NONE                 ? "every block is occupied, nothing to skip"
         : times                                           ? "nothing was measured"
+        : caster->field.traversed.tiles.values            ? "values that it skips are not read"
                                                           : "a picture of samples follows from no times");
     offered = *used == STRATUS_STRUCTURE_HYBRID;
   } else {

@@ -84,18 +84,19 @@ STRATUS_API void stratus_brick_pool_destroy(stratus_brick_pool* pool);
 STRATUS_API stratus_status stratus_bricks_create(
   stratus_context* context, stratus_brick_pool* pool, const stratus_brick_source* source, stratus_bricks** bricks);
 /* The values, x fastest, without gaps, for stratus_volume.values. They must not be written. System calls that read them give EFAULT where
- * they are not in memory. A process that fork() makes does not have them. */
+ * they are not in memory. A process that fork() makes does not have them,
+ * and frees nothing of them. */
 STRATUS_API const void* stratus_bricks_values(const stratus_bricks* bricks);
 /* The values in tiles, for stratus_volume.tiles, as long as the array lives; NULL if it has none. */
 STRATUS_API const stratus_tiles* stratus_bricks_tiles(const stratus_bricks* bricks);
 /* Where the missing bytes are counted, for stratus_volume.missing. */
 STRATUS_API const uint64_t* stratus_bricks_missing(const stratus_bricks* bricks);
-/* Where the parts that were read are counted. */
+/* Where the parts are counted that were read because something waited for them. */
 STRATUS_API const uint64_t* stratus_bricks_reads(const stratus_bricks* bricks);
 STRATUS_API void stratus_bricks_get_report(stratus_bricks* bricks, stratus_bricks_report* report);
 /* Lets a thread of the pool read, while nothing else does, the parts of the array that another one of the same pool and shape has in
  * memory: such as those of the next time step where rays read this one. It goes on while `like` is read, until `like` is destroyed or
- * another call replaces it; NULL ends it. No parts of either array are dropped for it. */
+ * another call replaces it; NULL ends it. No parts are dropped for it. */
 STRATUS_API stratus_status stratus_bricks_read_ahead(stratus_bricks* bricks, stratus_bricks* like);
 /* Nothing may read the values any more. */
 STRATUS_API void stratus_bricks_destroy(stratus_bricks* bricks);

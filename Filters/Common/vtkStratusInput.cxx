@@ -196,16 +196,8 @@ bool vtkStratusImageView::SetValues(
   volume.values = plain->GetVoidPointer(std::max(component, 0)); // values, not tuples, are counted
   // The image's own time counts too: programs that write through a pointer often call Modified() on the image only.
   volume.revision = Mix(Mix(0, array->GetMTime()), image->GetMTime());
-  volume.missing = vtkStratusMissingOf(plain);
-  volume.tiles = {};
-  const stratus_tiles* const tiles = vtkStratusTilesOf(plain);
-  if (tiles && std::equal(tiles->dimensions, tiles->dimensions + 3, volume.dimensions)) { // the array is on the grid that it was read for
-    volume.tiles = *tiles;
-    volume.tiles.values = static_cast<const char*>(tiles->values) + std::max(component, 0) * array->GetDataTypeSize();
-  }
+  vtkStratusSetSource(plain, std::max(component, 0), volume);
   this->Reads = vtkStratusReadsOf(plain);
-  volume.identity = vtkStratusIdentityOf(plain);
-  volume.identity += volume.identity && component > 0 ? static_cast<uint64_t>(component) : 0;
   return true;
 }
 

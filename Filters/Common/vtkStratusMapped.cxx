@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusMapped.h"
 
+#include "stratus/volume.h"
+
 #include "vtkDataArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationKeyLookup.h"
 #include "vtkInformationUnsignedLongKey.h"
 
+#include <algorithm>
 #include <string>
 
 namespace {
@@ -52,18 +55,21 @@ uint64_t vtkStratusIdentityOf(vtkDataArray* array)
   return HasItsValues(array) && Find(array, "TIME") == array->GetMTime() ? Find(array, "IDENTITY") : 0;
 }
 
-const uint64_t* vtkStratusMissingOf(vtkDataArray* array)
-{
-  return HasItsValues(array) ? reinterpret_cast<const uint64_t*>(Find(array, "MISSING")) : nullptr;
-}
-
 const uint64_t* vtkStratusReadsOf(vtkDataArray* array)
 {
   return HasItsValues(array) ? reinterpret_cast<const uint64_t*>(Find(array, "READS")) : nullptr;
 }
 
-const stratus_tiles* vtkStratusTilesOf(vtkDataArray* array)
+void vtkStratusSetSource(vtkDataArray* array, int component, stratus_volume& volume)
 {
-  return HasItsValues(array) && Find(array, "TIME") == array->GetMTime() ? reinterpret_cast<const stratus_tiles*>(Find(array, "TILES"))
-                                                                         : nullptr;
+  volume.identity = vtkStratusIdentityOf(array);
+  volume.identity += volume.identity ? static_cast<uint64_t>(component) : 0;
+  volume.missing = HasItsValues(array) ? reinterpret_cast<const uint64_t*>(Find(array, "MISSING")) : nullptr;
+  volume.tiles = {};
+  const bool unchanged = HasItsValues(array) && Find(array, "TIME") == array->GetMTime();
+  const stratus_tiles* const tiles = unchanged ? reinterpret_cast<const stratus_tiles*>(Find(array, "TILES")) : nullptr;
+  if (tiles && std::equal(tiles->dimensions, tiles->dimensions + 3, volume.dimensions)) { // the array is on the grid that it was read for
+    volume.tiles = *tiles;
+    volume.tiles.values = static_cast<const char*>(tiles->values) + component * array->GetDataTypeSize();
+  }
 }

@@ -10,6 +10,7 @@
 
 class vtkDataArray;
 struct stratus_tiles;
+struct stratus_volume;
 
 // Marks an array that holds a file's values unchanged. identity: not 0, as stratus_volume has it. missing: counts
 // the bytes that could not be read; it lives as long as the array's values.
@@ -20,12 +21,9 @@ VTK_STRATUS_PRIVATE void vtkStratusSetMapped(
 // Returns the identity of the array's values; 0 where they come from no mapped file, or where the array was modified since.
 VTK_STRATUS_PRIVATE uint64_t vtkStratusIdentityOf(vtkDataArray* array);
 
-// Returns where the bytes are counted that were missing when something looked at them; null for an array in memory. They count as 0.
-VTK_STRATUS_PRIVATE const uint64_t* vtkStratusMissingOf(vtkDataArray* array);
-
 // Returns where the parts that were read of an array of bricks are counted; null for another array.
 VTK_STRATUS_PRIVATE const uint64_t* vtkStratusReadsOf(vtkDataArray* array);
-// Returns the values in tiles, of an array of bricks that has them; else null.
-VTK_STRATUS_PRIVATE const stratus_tiles* vtkStratusTilesOf(vtkDataArray* array);
+// Sets the identity, the missing bytes and the tiles of a volume whose values are a component of an array. Its type and dimensions are set.
+VTK_STRATUS_PRIVATE void vtkStratusSetSource(vtkDataArray* array, int component, stratus_volume& volume);
 
 #endif

@@ -113,9 +113,10 @@ void vtkStratusReadAhead(vtkDataArray* array, vtkDataArray* like)
 {
   Pool& pool = ThePool();
   const std::lock_guard<std::mutex> lock(pool.Lock);
-  const auto found = pool.Arrays.find(array->GetVoidPointer(0)), other = pool.Arrays.find(like->GetVoidPointer(0));
-  if (found != pool.Arrays.end() && other != pool.Arrays.end() && found != other) {
-    stratus_bricks_read_ahead(found->second, other->second);
+  const auto found = pool.Arrays.find(array->GetVoidPointer(0));
+  const auto other = like ? pool.Arrays.find(like->GetVoidPointer(0)) : pool.Arrays.end();
+  if (found != pool.Arrays.end() && found != other) {
+    stratus_bricks_read_ahead(found->second, other == pool.Arrays.end() ? nullptr : other->second);
   }
 }
 

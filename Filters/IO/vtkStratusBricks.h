@@ -29,7 +29,7 @@ struct vtkStratusBrickSource {
 VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& source);
 
 // Lets the system read values of the array ahead, where values of another array of its shape are in memory, such as the time step that is
-// shown. Does nothing for arrays that are not bricks.
+// shown. like: null ends it. Does nothing for arrays that are not bricks.
 VTK_STRATUS_PRIVATE void vtkStratusReadAhead(vtkDataArray* array, vtkDataArray* like);
 
 // The bytes that all such arrays of the process take at most. 0: half of the memory that was free at the first call.

@@ -4,6 +4,8 @@
 #include "vtkStratusBricks.h"
 #include "vtkStratusMapped.h"
 
+#include "stratus/volume.h"
+
 #include "vtkDataArray.h"
 
 #if defined(__unix__) || defined(__APPLE__)
@@ -12,6 +14,7 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <fcntl.h>
 #include <memory>
 #include <mutex>
@@ -178,6 +181,16 @@ public:
   const int Handle;
 };
 
+// Takes the whole pages of a part of a mapping out of the process. They stay in the system's memory as long as it has room.
+void Forget(const char* begin, size_t bytes)
+{
+  const uintptr_t first = (reinterpret_cast<uintptr_t>(begin) + PageBytes - 1) / PageBytes * PageBytes;
+  const uintptr_t end = (reinterpret_cast<uintptr_t>(begin) + bytes) / PageBytes * PageBytes;
+  if (first < end) {
+    (void)madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
+  }
+}
+
 vtkSmartPointer<vtkDataArray> MapOpen(int file, int64_t begin, const char* name, int type, int components, vtkIdType tuples)
 {
   auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
@@ -227,23 +240,35 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeRawBricks(
   std::copy_n(sizes, 3, source.Dimensions.begin());
   source.Brick = { { 1, 1, 1 } }; // any box
   source.Identity = vtkStratusIdentityOfFile(path, begin, row * rows * sizes[2]);
-  source.Read = [file, begin, value, row, rows, across](const int64_t lo[3], const int64_t size[3], void* values) {
-    // whole rows follow one another; of parts of rows, the disk reads whole ones ahead
-    const bool wide = size[0] == across;
+  const auto mapped = vtkStratusMapFile(path, begin, name, type, components, sizes[0] * sizes[1] * sizes[2]);
+  stratus_volume volume = stratus_volume_default();
+  vtkStratusSetSource(mapped, 0, volume);
+  const char* const first = mapped ? static_cast<const char*>(mapped->GetVoidPointer(0)) : nullptr;
+  const volatile uint64_t* const missing = volume.missing;
+  source.Read = [file, mapped, first, missing, begin, value, row, rows, across](const int64_t lo[3], const int64_t size[3], void* values) {
+    const bool wide = size[0] == across; // whole rows follow one another
     const int64_t runs = wide ? 1 : size[1];
     const size_t bytes = static_cast<size_t>(size[0] * value * (wide ? size[1] : 1));
-    const auto at = [&](int64_t z) { return begin + ((lo[2] + z) * rows + lo[1]) * row + lo[0] * value; };
-    for (int64_t z = 0; !wide && z < size[2]; ++z) {
-      file->Expect(at(z), size[1] * row);
+    const auto at = [&](int64_t z) { return ((lo[2] + z) * rows + lo[1]) * row + lo[0] * value; };
+    for (int64_t z = 0; !wide && !first && z < size[2]; ++z) {
+      file->Expect(begin + at(z), size[1] * row); // of parts of rows, the disk reads whole ones; of mappings it does so by itself
     }
     char* to = static_cast<char*>(values);
+    const uint64_t before = missing ? *missing : 0;
     bool whole = true;
     for (int64_t z = 0; z < size[2]; ++z) {
       for (int64_t run = 0; run < runs; ++run, to += bytes) {
-        whole = file->Read(at(z) + run * row, to, bytes) && whole;
+        if (first) { // short rows are copied faster than the system reads them
+          std::memcpy(to, first + at(z) + run * row, bytes);
+        } else {
+          whole = file->Read(begin + at(z) + run * row, to, bytes) && whole;
+        }
       }
     }
-    return whole;
+    if (first) {
+      Forget(first + at(0), static_cast<size_t>(at(size[2] - 1) + size[1] * row - at(0)));
+    }
+    return whole && (!missing || *missing == before);
   };
   return file->Handle < 0 ? nullptr : vtkStratusMakeBricks(source);
 }

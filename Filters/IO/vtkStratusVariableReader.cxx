@@ -2,6 +2,8 @@
 #include "vtkStratusVariableReader.h"
 
 #include "vtkStratusBricks.h"
+#include "vtkStratusMapped.h"
+#include "vtkStratusMappedFile.h"
 #include "vtkStratusMetres.h"
 #include "vtkStratusReadError.h"
 #include "vtkStratusUnits.h"
@@ -184,6 +186,7 @@ bool vtkStratusVariableReader::Look()
   }
   this->LookTime = this->GetMTime();
   this->Bricks.clear();
+  this->Ahead = nullptr;
   this->OutputClass.clear();
   this->Variables.clear();
   this->Times.clear();
@@ -214,28 +217,58 @@ bool vtkStratusVariableReader::Look()
   return !this->OutputClass.empty();
 }
 
+// Takes the bricks of a step from those that are kept. They may have to wait for a thread that reads them, which may wait for a lock of the
+// caller's, so that they are freed later.
+void vtkStratusVariableReader::Retire(size_t step)
+{
+  this->Retired.push_back(this->Bricks[step]);
+  this->Bricks.erase(step);
+}
+
 vtkSmartPointer<vtkDataArray> vtkStratusVariableReader::BricksOf(
   size_t step, const std::function<vtkSmartPointer<vtkDataArray>(size_t)>& make)
 {
   constexpr size_t most = 8; // steps: each may have its file open
+  const uint64_t file = vtkStratusIdentityOfFile(this->FileName, 0, -1);
   const auto at = [&](size_t one) {
+    const auto kept = this->Bricks.find(one);
+    if (kept != this->Bricks.end() && (file != this->BricksFile || vtkStratusIdentityOf(kept->second) == 0)) {
+      this->Retire(one); // the file was replaced, or something changed the array
+    }
     vtkSmartPointer<vtkDataArray>& array = this->Bricks[one];
     array = array ? array : make(one);
     return array;
   };
+  if (file != this->BricksFile) {
+    while (!this->Bricks.empty()) {
+      this->Retire(this->Bricks.begin()->first);
+    }
+    this->BricksFile = file;
+  }
   const bool plays = !this->Bricks.empty() && step != this->LastStep, back = step < this->LastStep;
+  this->LastStep = step;
+  if (this->Ahead) {
+    vtkStratusReadAhead(this->Ahead, nullptr);
+    this->Retired.push_back(this->Ahead);
+    this->Ahead = nullptr;
+  }
   const vtkSmartPointer<vtkDataArray> now = at(step);
   if (now && plays && (back ? step > 0 : step + 1 < this->Times.size())) {
-    const vtkSmartPointer<vtkDataArray> next = at(back ? step - 1 : step + 1);
-    if (next) {
-      vtkStratusReadAhead(next, now);
+    try {
+      this->Ahead = at(back ? step - 1 : step + 1);
+    } catch (const vtkStratusReadError&) { // the error comes when the step is shown
+      this->Bricks.erase(back ? step - 1 : step + 1);
+    }
+    if (this->Ahead) {
+      vtkStratusReadAhead(this->Ahead, now);
     }
   }
-  while (this->Bricks.size() > most) { // the one that is farthest in time goes
-    const auto first = this->Bricks.begin(), last = std::prev(this->Bricks.end());
-    this->Bricks.erase(step - first->first > last->first - step ? first : last);
+  // Nothing is dropped for a step that is read ahead: past steps make room.
+  const bool full = 2 * vtkStratusGetBrickMemoryUsed() > vtkStratusGetBrickMemory();
+  while (this->Bricks.size() > (full ? 2 : most)) { // the one that is farthest in time goes
+    const size_t first = this->Bricks.begin()->first, last = std::prev(this->Bricks.end())->first;
+    this->Retire(step - first > last - step ? first : last);
   }
-  this->LastStep = step;
   return now;
 }
 
@@ -325,9 +358,11 @@ int vtkStratusVariableReader::RequestData(vtkInformation*, vtkInformationVector*
   if (vtkFieldData* points = output->GetAttributesAsFieldData(vtkDataObject::POINT)) {
     points->Initialize(); // an image keeps the values of another variable, of other sizes perhaps
   }
+  this->Retired.clear();
   try {
     this->Build(step, output);
     this->SetUnits(output);
+    this->Retired.clear();
     if (!this->Times.empty()) {
       output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Times[step]);
     }

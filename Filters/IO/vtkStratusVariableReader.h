@@ -20,6 +20,7 @@
 #include "vtkNew.h"          // For vtkNew
 #include "vtkSmartPointer.h" // For vtkSmartPointer
 
+#include <cstdint>    // For uint64_t
 #include <functional> // For std::function
 #include <map>        // For std::map
 #include <string>     // For std::string
@@ -219,7 +220,12 @@ private:
 
   vtkMTimeType LookTime = 0;
 #ifndef __VTK_WRAP__
+  void Retire(size_t step);
+
   std::map<size_t, vtkSmartPointer<vtkDataArray>> Bricks; // of time steps
+  std::vector<vtkSmartPointer<vtkDataArray>> Retired;     // were among them
+  vtkSmartPointer<vtkDataArray> Ahead;                    // of the step that is read ahead
+  uint64_t BricksFile = 0;                                // the identity of their file
 #endif
   size_t LastStep = 0; // of these
   std::string OutputClass;

@@ -57,7 +57,7 @@ def values_of(reader):
     return vtk_to_numpy(reader.GetOutputDataObject(0).GetPointData().GetScalars())
 
 
-def picture(data, errors=None):
+def picture(data, errors=None, least=0.3):
     mapper = stratus.vtkStratusVolumeMapper()
     mapper.SetInputDataObject(data)
     if errors is not None:
@@ -68,7 +68,7 @@ def picture(data, errors=None):
     look.SetInterpolationTypeToLinear()
     look.SetScalarOpacityUnitDistance(10)
     opacity, color = look.GetScalarOpacity(), look.GetRGBTransferFunction()
-    opacity.RemoveAllPoints(), opacity.AddPoint(0.3, 0), opacity.AddPoint(1, 0.8)
+    opacity.RemoveAllPoints(), opacity.AddPoint(least, 0), opacity.AddPoint(1, 0.8)
     color.RemoveAllPoints(), color.AddRGBPoint(0, 0.1, 0.3, 0.9), color.AddRGBPoint(1, 0.9, 0.4, 0.1)
     window, renderer = vtk.vtkRenderWindow(), vtk.vtkRenderer()
     window.SetOffScreenRendering(1), window.SetMultiSamples(0), window.SetSize(200, 150)
@@ -99,6 +99,12 @@ reference = picture(plain.GetOutputDataObject(0))
 check("something shows", reference.max() > 50)
 check("a picture in little memory has the same bits", (picture(paged.GetOutputDataObject(0)) == reference).all())
 check("memory is within the limit", Reader.GetMemoryUsed() <= LIMIT)
+
+# Value ranges read all values once. Rays then read only chunks that they meet, of an array that is larger than the limit.
+fresh, begin = reader_of("plain.nc", True), Reader.GetBytesRead()
+check("something shows of the middle", picture(fresh.GetOutputDataObject(0), least=0.9).max() > 20)
+check("only chunks of the middle are read twice", Reader.GetBytesRead() - begin < 1.4 * FIELD.nbytes)
+del fresh
 
 for name, options in {
         "falling.nc": dict(chunksizes=(1, 40, 33, 17), zlib=True, complevel=1, falling="zx"), "turned.nc": dict(order="xzy", chunksizes=(2, 30, 50, 64)),
