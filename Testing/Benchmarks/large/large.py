@@ -11,13 +11,15 @@ large.py measure FILE OPTION...    draws it by `stratus render`, and prints rows
 
 KIND: raw (bytes), netcdf (floats, chunks of 64 along each axis, zlib at level 1), contiguous (floats, netCDF-4 in one piece),
 zarr and zstd (floats, Zarr of chunks of 64 along each axis, by zlib or zstd at level 1).
-SIZE: NX,NY,NZ. Methods: first: with an empty cache folder; later: with the ranges that the first picture kept; dd: the file is only read.
+SIZE: NX,NY,NZ. Methods: first@limit or @all: with an empty cache folder, with --memory or without; later: with the ranges that the first
+picture kept; dd: the file is only read; whole: netCDF4 of Python reads all values into memory.
 """
 import argparse
 import ctypes
 import ctypes.util
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -118,27 +120,37 @@ def forget(path):
 
 
 def run(command, environment):
-    """Returns seconds, processor seconds and the most resident bytes of a program."""
+    """Returns seconds, processor seconds, the most resident bytes and the output of a program."""
     start = time.perf_counter()
-    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL)
-    _, status, used = os.wait4(process.pid, 0)
-    if status:
-        sys.exit(f"failed: {' '.join(command)}")
-    return time.perf_counter() - start, used.ru_utime + used.ru_stime, used.ru_maxrss * 1024
+    with tempfile.TemporaryFile("w+") as said:
+        process = subprocess.Popen(command, env=environment, stdout=said)
+        _, status, used = os.wait4(process.pid, 0)
+        if status:
+            sys.exit(f"failed: {' '.join(command)}")
+        seconds = time.perf_counter() - start
+        said.seek(0)
+        return seconds, used.ru_utime + used.ru_stime, used.ru_maxrss * 1024, said.read()
 
 
 def measure(path, options):
-    rows, scene = [], os.path.basename(path)
-    command = [options.stratus, "render", path, "-o", os.path.join(options.folder, "large.png"), "--quiet", *VIEW]
+    rows, scene = [], os.path.splitext(os.path.basename(path))[0]
+    command = [options.stratus, "render", path, "-o", os.path.join(options.folder, "large.png"), "-v", *VIEW]
     if path.endswith(".raw"):
-        command += ["--raw", scene.split("-")[1][:-4] + ":uint8"]
+        command += ["--raw", scene.split("-")[1] + ":uint8"]
     if options.memory:
         command += ["--memory", options.memory]
 
     def add(method, name, values, unit):
+        method += "" if method in ("dd", "whole") else "@limit" if options.memory else "@all"
         rows.append(f"{scene},{method},{name},{float(numpy.median(values)):.6g},{unit}")
 
-    for method in ("dd", "first", "later"):
+    def number(text, before):
+        """The number behind a word of the program's report; 0 where it is not there."""
+        found = re.search(before + r"\s+([0-9,.]+)", text)
+        return float(found[1].replace(",", "")) if found else 0.0
+
+    whole = [sys.executable, "-c", f"import netCDF4; netCDF4.Dataset({path!r})['density'][:]"]
+    for method in ("dd", *(("whole",) if path.endswith(".nc") else ()), "first", "later"):
         results = []
         for _ in range(options.repeats if method == "later" else 1):
             if method == "first":
@@ -147,12 +159,16 @@ def measure(path, options):
                 forget(path)
             one = ["cat", *(os.path.join(path, name) for name in os.listdir(path))] if os.path.isdir(path) else ["dd", "if=" + path,
                 "of=/dev/null", "bs=1M", "status=none"]
-            one = one if method == "dd" else command
+            one = one if method == "dd" else whole if method == "whole" else command
             results.append(run(one, dict(os.environ, STRATUS_CACHE_DIR=options.cache)))
         add(method, "seconds", [result[0] for result in results], "s")
         add(method, "processor_seconds", [result[1] for result in results], "s")
-        if method != "dd":
+        if method in ("first", "later"):
             add(method, "resident_most", [result[2] for result in results], "bytes")
+            add(method, "frame_seconds", [number(result[3], "frame") / 1e3 for result in results], "s")
+            add(method, "bytes_read", [number(result[3], "read") * (1 << 20) for result in results], "bytes")
+            blocks = re.search(r"([0-9,]+) of ([0-9,]+) occupied", results[0][3])
+            add(method, "occupied", [float(blocks[1].replace(",", "")) / float(blocks[2].replace(",", ""))], "1")
     print("\n".join(rows))
 
 
