@@ -8,8 +8,8 @@
 #include <string.h>
 
 #define RUN_LEAST ((size_t)64 << 10)   /* bytes: pages that several parts share are then few */
-#define TILE_LEAST ((int64_t)64 << 10) /* bytes: what a fault costs is little next to reading them */
-#define TILE_ROW ((int64_t)64)         /* bytes of a row of a tile, where a source has no bricks: what memory moves at once */
+#define TILE_LEAST ((int64_t)64 << 10) /* bytes: a fault costs little next to reading them */
+#define TILE_ROW ((int64_t)64)         /* bytes of a row of a tile, where a source has no bricks: a line of the cache */
 #define LAYERS_LEAST 16                /* of a part, where a source has no bricks */
 
 static int64_t least(int64_t a, int64_t b)
@@ -324,7 +324,7 @@ uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, s
   const part_room at_hand = { .bytes = room->bytes, .row = (size_t)wide * value, .layer = (size_t)(wide * high) * value };
   uint64_t missing = 0;
   if (view->tiled && bytes > stratus_brick_part_bytes(view, part)) {
-    memset(room->bytes, 0, bytes); /* what fills it up */
+    memset(room->bytes, 0, bytes); /* the rest beyond the grid */
   }
   for (int64_t z = 0; z < b.size[2]; z += step[2]) {
     for (int64_t y = 0; y < b.size[1]; y += step[1]) {

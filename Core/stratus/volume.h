@@ -86,8 +86,8 @@ typedef struct stratus_volume {
   /* NULL (default), or how many bytes of the values their source could not supply so far, as where a mapped file is cut short while it is
    * read. Once this is not 0, calls fail with STRATUS_INVALID_ARGUMENT, and what they draw then is undefined. */
   const uint64_t* missing;
-  /* The values once more, of all components and with value_stride, for rays on the host and the pages of devices; what reads all values
-   * reads `values`. For arrays that are larger than memory (stratus_bricks_tiles()). */
+  /* The values once more, of all components and with value_stride, for rays on the host and the pages of devices; code that reads all
+   * values reads `values`. For arrays that are larger than memory (stratus_bricks_tiles()). */
   stratus_tiles tiles;
 } stratus_volume;
 

@@ -2,6 +2,7 @@
 #include "vtkStratusHDF5File.h"
 
 #include "vtkStratusHDF5Lock.h"
+#include "vtkStratusShuffle.h"
 
 #include "vtkType.h"
 #include "vtk_zlib.h"
@@ -137,39 +138,6 @@ size_t Inflate(const char* from, size_t bytes, char* to, size_t most)
   const int result = inflate(&stream, Z_FINISH);
   inflateEnd(&stream);
   return result == Z_STREAM_END ? most - stream.avail_out : 0;
-}
-
-// Puts the bytes of values together: `from` has the first byte of all `count` values, then the second of all, and so on.
-template <size_t Bytes> void Join(const char* from, size_t count, char* to)
-{
-  for (size_t i = 0; i < count; ++i) {
-    for (size_t b = 0; b < Bytes; ++b) {
-      to[Bytes * i + b] = from[count * b + i];
-    }
-  }
-}
-
-void Unshuffle(const char* from, size_t bytes, size_t value_bytes, char* to)
-{
-  const size_t count = bytes / value_bytes, rest = bytes % value_bytes;
-  switch (value_bytes) {
-    case 2:
-      Join<2>(from, count, to);
-      break;
-    case 4:
-      Join<4>(from, count, to);
-      break;
-    case 8:
-      Join<8>(from, count, to);
-      break;
-    default:
-      for (size_t b = 0; b < value_bytes; ++b) {
-        for (size_t i = 0; i < count; ++i) {
-          to[value_bytes * i + b] = from[count * b + i];
-        }
-      }
-  }
-  std::memcpy(to + bytes - rest, from + bytes - rest, rest);
 }
 
 // HDF5's checksum fletcher32, of words of two bytes, the first byte high.
@@ -372,7 +340,7 @@ const char* vtkStratusHDF5Values::Undo(size_t bytes, uint32_t skipped, Buffers& 
       continue;
     }
     if (this->Filters[i].Id == H5Z_FILTER_SHUFFLE) {
-      Unshuffle(buffers.Now.get(), bytes, this->Filters[i].ElementBytes, buffers.Next.get());
+      vtkStratusUnshuffle(buffers.Now.get(), bytes, this->Filters[i].ElementBytes, buffers.Next.get());
     } else {
       bytes = Inflate(buffers.Now.get(), bytes, buffers.Next.get(), buffers.Bytes);
     }

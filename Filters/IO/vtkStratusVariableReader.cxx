@@ -232,14 +232,14 @@ vtkSmartPointer<vtkDataArray> vtkStratusVariableReader::BricksOf(
   const uint64_t file = vtkStratusIdentityOfFile(this->FileName, 0, -1);
   const auto at = [&](size_t one) {
     const auto kept = this->Bricks.find(one);
-    if (kept != this->Bricks.end() && (file != this->BricksFile || vtkStratusIdentityOf(kept->second) == 0)) {
-      this->Retire(one); // the file was replaced, or something changed the array
+    if (kept != this->Bricks.end() && vtkStratusIdentityOf(kept->second) == 0) {
+      this->Retire(one); // something changed the array
     }
     vtkSmartPointer<vtkDataArray>& array = this->Bricks[one];
     array = array ? array : make(one);
     return array;
   };
-  if (file != this->BricksFile) {
+  if (file != this->BricksFile) { // it was replaced
     while (!this->Bricks.empty()) {
       this->Retire(this->Bricks.begin()->first);
     }

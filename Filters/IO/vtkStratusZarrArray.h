@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An array of Zarr: what its metadata say, and blocks of its values. Private to the module.
+// An array of Zarr: its metadata, and blocks of its values. Private to the module.
 #ifndef vtkStratusZarrArray_h
 #define vtkStratusZarrArray_h
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusZarrCodecs.h"
 
+#include "vtkStratusShuffle.h"
+
 #include "vtk_lz4.h"
 #include "vtk_zlib.h"
 
@@ -126,17 +128,10 @@ void DecodeBlosc(const vtkStratusZarrBytes& from, size_t most, vtkStratusZarrByt
 
 void Unshuffle(const vtkStratusZarrBytes& from, size_t element, vtkStratusZarrBytes& to)
 {
-  const size_t count = from.Size() / element;
-  if (count * element != from.Size()) {
+  if (from.Size() % element != 0) {
     throw "its " + std::to_string(from.Size()) + " shuffled bytes are no multiple of " + std::to_string(element);
   }
-  char* const bytes = to.Resize(from.Size());
-  for (size_t b = 0; b < element; ++b) {
-    const char* const plane = from.Get() + b * count;
-    for (size_t i = 0; i < count; ++i) {
-      bytes[i * element + b] = plane[i];
-    }
-  }
+  vtkStratusUnshuffle(from.Get(), from.Size(), element, to.Resize(from.Size()));
 }
 
 void CheckSum(const vtkStratusZarrBytes& from, vtkStratusZarrBytes& to)

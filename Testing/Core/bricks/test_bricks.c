@@ -490,7 +490,7 @@ static void parts_are_read_ahead(void** state)
     }
     assert_int_equal(report_of(bricks[1]).parts_read, 2);
     assert_int_equal(report_of(bricks[0]).parts_dropped + report_of(bricks[1]).parts_dropped, 0);
-    if (!tiled) { /* what was read ahead is not read again */
+    if (!tiled) { /* a part that was read ahead is not read again */
       assert_true(equals(&f[1], stratus_bricks_values(bricks[1]), ((int64_t)72 * NY + 70) * NX + 91));
       assert_int_equal(report_of(bricks[1]).parts_read, 2);
     }
