@@ -3,7 +3,7 @@
  * indices, and once with STRATUS_TYPE -1 for the generic fetch. That takes any type, stride and size, and axes of one value; it is slow.
  * Types 6 and 7 have a fetch of their own from pages only (RAY_PAGES), which takes any size, too. A value of a page that the device does
  * not have is not finite. On the host only: STRATUS_TYPE -2 calls the fetch that the arguments name (Core/field/ray_reading.h), and -3
- * loads from tiles (value_source.h), of any type and size.
+ * loads from tiles (fetch_tiles.h).
  *
  *   fetch_pair(a, values, index, mask, end, &v0, &v1)   values[index] and values[index+1]; of a fixed type only
  *   fetch_cell(a, values, i, j, k, mask, v)              the eight corners of cell (i,j,k): v[x + 2 y + 4 z]
@@ -11,6 +11,7 @@
 #ifndef STRATUS_TYPE
 #error "STRATUS_TYPE is not set"
 #endif
+#include "load_square.h"
 
 #if STRATUS_TYPE == 0
 #ifdef STRATUS_DEVICE
@@ -115,8 +116,12 @@ INLINE vfloat RAY_NAME(fetch_nearest)(const stratus_ray_cast_arguments* a, value
   return RAY_READING(a)->nearest(a, values, i, j, k, mask);
 }
 
-/* ------------------------------------------------------------------------------------------------ generic, and tiles */
-#elif STRATUS_TYPE == -1 || STRATUS_TYPE == -3
+/* ------------------------------------------------------------------------------------------------ tiles */
+#elif STRATUS_TYPE == -3
+#include "fetch_tiles.h"
+
+/* ------------------------------------------------------------------------------------------------ generic */
+#elif STRATUS_TYPE == -1
 
 INLINE float RAY_NAME(load_any)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const void* values, stratus_index index)
 {
@@ -160,7 +165,6 @@ INLINE float RAY_NAME(load_any)(CONSTANT stratus_ray_cast_arguments* a, GLOBAL c
   }
 }
 
-#if STRATUS_TYPE == -1
 INLINE stratus_index RAY_NAME(generic_index)(CONSTANT stratus_ray_cast_arguments* a, int i, int j, int k)
 {
   const stratus_index row = ((stratus_index)(uint)a->values.row_high << 32) | (stratus_index)(uint)a->values.row;
@@ -207,53 +211,6 @@ INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, GL
   return v_load(lv);
 }
 
-#else
-/* Where the value (i,j,k) is. */
-INLINE const uchar* RAY_NAME(in_tile)(const ray_tiles* tiles, int i, int j, int k)
-{
-  return tiles->values + tiles->at[0][i] + tiles->at[1][j] + tiles->at[2][k];
-}
-
-INLINE void RAY_NAME(fetch_cell)(const stratus_ray_cast_arguments* a, value_source values, vint i, vint j, vint k, vmask mask, vfloat v[8])
-{
-  const ray_tiles* tiles = (const ray_tiles*)values;
-  int li[STRATUS_WIDTH], lj[STRATUS_WIDTH], lk[STRATUS_WIDTH], lm[STRATUS_WIDTH];
-  float lv[8][STRATUS_WIDTH];
-  vi_store(li, i);
-  vi_store(lj, j);
-  vi_store(lk, k);
-  vi_store(lm, vi_select(mask, vi_set(1), vi_set(0)));
-  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    for (int row = 0; row < 4; ++row) {
-      lv[2 * row][lane] = lv[2 * row + 1][lane] = 0.0f;
-      if (lm[lane]) { /* other lanes must not touch memory: a tile would be read for them */
-        const uchar* at = RAY_NAME(in_tile)(tiles, li[lane], lj[lane] + (row & 1), lk[lane] + (row >> 1));
-        lv[2 * row][lane] = RAY_NAME(load_any)(a, at, 0);
-        lv[2 * row + 1][lane] = RAY_NAME(load_any)(a, at + (tiles->at[0][li[lane] + 1] - tiles->at[0][li[lane]]), 0);
-      }
-    }
-  }
-  for (int corner = 0; corner < 8; ++corner) {
-    v[corner] = v_load(lv[corner]);
-  }
-}
-
-INLINE vfloat RAY_NAME(fetch_nearest)(const stratus_ray_cast_arguments* a, value_source values, vint i, vint j, vint k, vmask mask)
-{
-  const ray_tiles* tiles = (const ray_tiles*)values;
-  int li[STRATUS_WIDTH], lj[STRATUS_WIDTH], lk[STRATUS_WIDTH], lm[STRATUS_WIDTH];
-  float lv[STRATUS_WIDTH];
-  vi_store(li, i);
-  vi_store(lj, j);
-  vi_store(lk, k);
-  vi_store(lm, vi_select(mask, vi_set(1), vi_set(0)));
-  for (int lane = 0; lane < STRATUS_WIDTH; ++lane) {
-    lv[lane] = lm[lane] ? RAY_NAME(load_any)(a, RAY_NAME(in_tile)(tiles, li[lane], lj[lane], lk[lane]), 0) : 0.0f;
-  }
-  return v_load(lv);
-}
-#endif
-
 #else /* -------------------------------------------------------------------------------------------- a fixed type */
 
 #define VALUES ((GLOBAL const VALUE*)values)
@@ -263,27 +220,7 @@ INLINE vfloat RAY_NAME(fetch_nearest)(const stratus_ray_cast_arguments* a, value
 /* The floats of at[0], at[1], at[row] and at[row + 1]. */
 INLINE __m128 RAY_NAME(load_square)(CONSTANT stratus_ray_cast_arguments* a, const VALUE* at, size_t row)
 {
-#if STRATUS_TYPE == 8
-  (void)a;
-  return _mm_loadh_pi(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i*)(const void*)at)), (const __m64*)(const void*)(at + row));
-#elif STRATUS_TYPE == 9
-  const __m256d square = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(at)), _mm_loadu_pd(at + row), 1);
-  return _mm256_cvtpd_ps(_mm256_sub_pd(square, _mm256_set1_pd(BIAS_OF(a))));
-#elif STRATUS_TYPE >= 2
-  int low, high;
-  memcpy(&low, at, sizeof low);
-  memcpy(&high, at + row, sizeof high);
-  const __m128i square = _mm_insert_epi32(_mm_cvtsi32_si128(low), high, 1);
-  (void)a;
-  return _mm_cvtepi32_ps(STRATUS_TYPE == 2 ? _mm_cvtepi16_epi32(square) : _mm_cvtepu16_epi32(square));
-#else
-  uint16_t low, high;
-  memcpy(&low, at, sizeof low);
-  memcpy(&high, at + row, sizeof high);
-  const __m128i square = _mm_insert_epi16(_mm_cvtsi32_si128(low), high, 1);
-  (void)a;
-  return _mm_cvtepi32_ps(STRATUS_TYPE == 0 ? _mm_cvtepi8_epi32(square) : _mm_cvtepu8_epi32(square));
-#endif
+  return load_square(STRATUS_TYPE, STRATUS_TYPE == 9 ? BIAS_OF(a) : 0.0, at, at + row);
 }
 
 /* out: the four floats of load_square() at each lane's place. */
