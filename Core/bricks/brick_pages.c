@@ -4,8 +4,9 @@
  * values reads bricks, and what is in memory costs nothing.
  *
  * Each array is a file in memory that is mapped for its readers. Parts are written to the file, and their pages are shown to the readers
- * when they are complete. A page that parts share is shown once all of them are there, and stays. An array that does not fit in the pool's
- * memory has a second file and mapping for rays, in which each tile of the grid has pages of its own.
+ * when they are complete. A page that parts share is shown once all of them are there, and stays, until such pages take half of the pool's
+ * memory: then all parts are dropped. An array that does not fit in the pool's memory has a second file and mapping for rays, in which each
+ * tile of the grid has pages of its own.
  *
  * A clock chooses what is dropped: its hand first takes the pages of a part out of the readers' mapping, and drops the part when it comes
  * around again and nothing has read it. */
@@ -189,15 +190,57 @@ static void make_room(stratus_brick_pool* pool, const stratus_brick_view* keeper
   }
 }
 
+static bool is_being_read(const stratus_brick_view* view)
+{
+  int64_t part = 0;
+  while (part < view->parts && (view->state[part] & STRATUS_PART_STATE) != STRATUS_PART_READING) {
+    ++part;
+  }
+  return part < view->parts;
+}
+
+/* Drops all parts of a view, and the pages that they share. */
+static void empty(stratus_brick_view* view)
+{
+  stratus_bricks_report* const report = &view->bricks->report;
+  view->bricks->pool->resident -= stratus_brick_resident(view);
+  for (int64_t part = 0; part < view->parts; ++part) {
+    const int here = (view->state[part] & STRATUS_PART_STATE) != STRATUS_PART_ABSENT;
+    report->parts_here -= (uint64_t)here;
+    report->parts_dropped += (uint64_t)here;
+    view->state[part] = STRATUS_PART_ABSENT;
+  }
+  (void)fallocate(view->memory, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, (off_t)view->mapped);
+  view->shared = 0;
+  ++view->emptied;
+}
+
+/* Sees that pages that parts share leave half of the memory to the pages of single parts. */
+static void limit_shared(const stratus_brick_pool* pool)
+{
+  uint64_t shared = 0;
+  for (const stratus_brick_view* view = pool->first; view; view = view->next) {
+    shared += view->shared;
+  }
+  for (stratus_brick_view* view = pool->first; view && shared > pool->memory / 2; view = view->next) {
+    if (view->shared > 0 && !is_being_read(view)) {
+      shared -= view->shared;
+      empty(view);
+    }
+  }
+}
+
 bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, bool ahead)
 {
   stratus_brick_pool* const pool = view->bricks->pool;
+  limit_shared(pool);
   uint64_t edges = 0;
   const uint64_t inner = bytes_of(view, part, &edges), shared = view->state[part] & STRATUS_PART_EDGES ? 0 : edges;
   if (ahead && pool->resident + inner + shared > pool->memory) {
     return false;
   }
   pool->resident += inner + shared;
+  view->shared += shared;
   make_room(pool, view, part);
   view->state[part] = STRATUS_PART_EDGES | STRATUS_PART_READING;
   pool->resident_most = pool->resident > pool->resident_most ? pool->resident : pool->resident_most;
@@ -231,11 +274,10 @@ static void bring(stratus_brick_view* view, int64_t part, stratus_brick_room* ro
   }
 }
 
-/* Brings all parts of a page, and shows it. Values on a page that parts share stay there when the parts are dropped, so that each part must
- * have been read once, and they need not be in memory together. */
-static void bring_page(stratus_brick_view* view, size_t begin, stratus_brick_room* room)
+/* Brings all parts of a page. Values on a page that parts share stay there when the parts are dropped, so that each part must have been
+ * read once, and they need not be in memory together. */
+static void bring_parts(stratus_brick_view* view, size_t begin, size_t last, stratus_brick_room* room)
 {
-  const size_t page = view->bricks->pool->page, last = begin + page < view->bytes ? begin + page - 1 : view->bytes - 1;
   size_t end = 0;
   const bool shared = stratus_brick_part_of(view, begin, &end) != stratus_brick_part_of(view, last, &end);
   int64_t before = -1;
@@ -249,6 +291,17 @@ static void bring_page(stratus_brick_view* view, size_t begin, stratus_brick_roo
     }
     before = part;
   }
+}
+
+/* Shows a page, once its parts were brought while none of it was emptied. */
+static void bring_page(stratus_brick_view* view, size_t begin, stratus_brick_room* room)
+{
+  const size_t page = view->bricks->pool->page, last = begin + page < view->bytes ? begin + page - 1 : view->bytes - 1;
+  uint64_t emptied;
+  do {
+    emptied = view->emptied;
+    bring_parts(view, begin, last, room);
+  } while (emptied != view->emptied);
   show(view, begin, begin + page);
 }
 

@@ -36,6 +36,8 @@ typedef struct stratus_brick_view {
   size_t tile;       /* bytes from a tile to the next: whole pages */
   uint8_t* state;    /* of each part */
   int64_t ahead;     /* the part where the search for one to read ahead goes on */
+  uint64_t shared;   /* bytes in memory of pages that parts share */
+  uint64_t emptied;  /* how often all parts were dropped, with the pages that they share */
 } stratus_brick_view;
 
 struct stratus_bricks {

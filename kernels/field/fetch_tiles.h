@@ -36,7 +36,7 @@ INLINE float tile_value(const stratus_ray_cast_arguments* a, const uchar* at)
   }
 }
 
-/* Other lanes than those of the mask must not touch memory: a tile would be read for them. */
+/* Only lanes of the mask may touch memory: a tile would be read for the others. */
 INLINE void tile_corners(const stratus_ray_cast_arguments* a, const tile_place places[STRATUS_WIDTH], vfloat v[8])
 {
   float lv[8][STRATUS_WIDTH];

@@ -292,6 +292,45 @@ static void memory_stays_within_its_limit(void** state)
   stratus_brick_pool_destroy(pool);
 }
 
+/* Rows of 4,004 bytes, of which 17 are a part: each shares 2 of its 17 pages with its neighbours, so that such pages of the whole array are
+ * more than the memory. */
+static void pages_that_parts_share_leave_room(void** state)
+{
+  (void)state;
+  formula f = make_formula(STRATUS_FLOAT32, 1001, 1700, 50, 1001, 1, 1);
+  stratus_brick_pool* pool = make_pool(16 << 20);
+  if (!is_paged(pool)) {
+    stratus_brick_pool_destroy(pool);
+    return;
+  }
+  stratus_bricks* bricks = make_bricks(pool, &f);
+  const void* values = stratus_bricks_values(bricks);
+  const int64_t count = count_of(&f);
+  int64_t wrong = 0;
+  for (int64_t i = 0; i < count; i += 1001) { /* of every row, at its ends, which some of the shared pages hold */
+    wrong += !equals(&f, values, i) + !equals(&f, values, i + 1000);
+  }
+  assert_int_equal(wrong, 0);
+  const uint64_t once = report_of(bricks).parts_read;
+  assert_in_range(once, bricks->rows.parts, bricks->rows.parts + bricks->rows.parts / 8);
+  assert_true(bricks->rows.emptied > 0);
+  assert_int_equal(wrong_at_random(&f, values, 2000), 0);
+  for (int64_t i = 0; i < 17 * 1001; ++i) { /* what is read again and again is read from its file once */
+    wrong += !equals(&f, values, 20 * 1001 + i);
+  }
+  const uint64_t before = report_of(bricks).parts_read;
+  for (int64_t i = 0; i < 17 * 1001; ++i) {
+    wrong += !equals(&f, values, 20 * 1001 + i);
+  }
+  assert_int_equal(wrong, 0);
+  assert_int_equal(report_of(bricks).parts_read, before);
+  assert_in_range(pool->resident, 0, 16 << 20);
+  assert_in_range(pool->resident_most, 0, (16 << 20) + (1 << 20));
+  stratus_bricks_destroy(bricks);
+  assert_int_equal(pool->resident, 0);
+  stratus_brick_pool_destroy(pool);
+}
+
 /* A part that is read between all others is dropped at most once, when the clock first goes around and all parts look alike. */
 static void what_is_read_stays(void** state)
 {
@@ -653,7 +692,8 @@ int test_bricks(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(values_are_the_sources), cmocka_unit_test(without_pages_all_is_read_at_once),
     cmocka_unit_test(only_parts_that_are_looked_at_are_read), cmocka_unit_test(memory_stays_within_its_limit),
-    cmocka_unit_test(what_is_read_stays), cmocka_unit_test(values_that_cannot_be_read_are_counted), cmocka_unit_test(tiles_are_the_sources),
+    cmocka_unit_test(pages_that_parts_share_leave_room), cmocka_unit_test(what_is_read_stays),
+    cmocka_unit_test(values_that_cannot_be_read_are_counted), cmocka_unit_test(tiles_are_the_sources),
     cmocka_unit_test(only_tiles_that_are_looked_at_are_read), cmocka_unit_test(parts_are_read_ahead),
     cmocka_unit_test(pictures_are_the_same), cmocka_unit_test(bricks_of_one_value_are_not_read),
     cmocka_unit_test(faults_of_the_caller_are_told) };
