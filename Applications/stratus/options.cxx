@@ -139,8 +139,9 @@ Rendering
   --quiet                 print nothing but errors
   --report, -v            print each build stage: its device, kernels that the device ran, milliseconds, bytes
   --threads N             threads of the host (default: all)
-  --memory SIZE           memory that values of large files take at most: 2G, 512M (default: half of what is free). Chunks of netCDF files,
-                          and uncompressed files that are larger, are read when a ray meets them, and dropped for others
+  --memory SIZE           memory that values of large files take at most, with what is built of them: 2G, 512M (default: half of what is
+                          free). Half of it at least is for values. Chunks of files, and uncompressed files that are larger, are read when
+                          a ray meets them, and dropped for others
   --read-timeout S        stop reading INPUT, or a mask, after S seconds without a byte read or progress reported; 0: never (default 60)
   --show samples          show a heat map of the samples that each pixel used, with a scale, instead of the image; --color sets its colours
   --quantity Q            show a map of a number of each pixel's ray, with a scale, instead of the image: integral (of the values over the

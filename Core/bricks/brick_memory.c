@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * How much memory is free: for the process's control group where that has a limit, as in a container or a batch job, else in the machine.
- */
+ * And how much of its limit a pool has left. */
 #define _POSIX_C_SOURCE 200809L
 #include "bricks.h"
 
@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #define PATH_MOST 4096
+#define LOOK_MS 10.0 /* between two looks at the process's memory */
 
 /* Returns the number in a file, or `otherwise` if there is none: a group without a limit says "max". */
 static uint64_t number_in(const char* path, uint64_t otherwise)
@@ -79,4 +80,26 @@ static uint64_t free_in_group(uint64_t otherwise)
 uint64_t stratus_brick_memory_default(void)
 {
   return free_in_group(free_in_machine()) / 2;
+}
+
+uint64_t stratus_brick_memory_private(void)
+{
+  uint64_t all = 0, of_files = 0; /* in pages */
+  FILE* file = fopen("/proc/self/statm", "r");
+  const bool known = file && fscanf(file, "%*u %" SCNu64 " %" SCNu64, &all, &of_files) == 2 && all > of_files;
+  if (file) {
+    fclose(file);
+  }
+  return known ? (all - of_files) * (uint64_t)sysconf(_SC_PAGESIZE) : 0;
+}
+
+uint64_t stratus_brick_memory_left(stratus_brick_pool* pool)
+{
+  const double now = pool->whole_process ? stratus_now_ms() : 0.0;
+  if (pool->whole_process && now - pool->looked >= LOOK_MS) {
+    const uint64_t bytes = stratus_brick_memory_private();
+    pool->grown = bytes > pool->began ? bytes - pool->began : 0;
+    pool->looked = now;
+  }
+  return pool->memory - (pool->grown < pool->memory / 2 ? pool->grown : pool->memory / 2);
 }

@@ -168,7 +168,8 @@ static void make_room(stratus_brick_pool* pool, const stratus_brick_view* keeper
   for (const stratus_brick_view* b = pool->first; b; b = b->next) {
     parts += b->parts;
   }
-  for (int64_t visit = 0; pool->resident > pool->memory && visit < 2 * parts; ++visit) {
+  const uint64_t memory = stratus_brick_memory_left(pool);
+  for (int64_t visit = 0; pool->resident > memory && visit < 2 * parts; ++visit) {
     if (!pool->hand || pool->hand_part >= pool->hand->parts) {
       pool->hand = pool->hand && pool->hand->next ? pool->hand->next : pool->first;
       pool->hand_part = 0;
@@ -216,13 +217,14 @@ static void empty(stratus_brick_view* view)
 }
 
 /* Sees that pages that parts share leave half of the memory to the pages of single parts. */
-static void limit_shared(const stratus_brick_pool* pool)
+static void limit_shared(stratus_brick_pool* pool)
 {
+  const uint64_t most = stratus_brick_memory_left(pool) / 2;
   uint64_t shared = 0;
   for (const stratus_brick_view* view = pool->first; view; view = view->next) {
     shared += view->shared;
   }
-  for (stratus_brick_view* view = pool->first; view && shared > pool->memory / 2; view = view->next) {
+  for (stratus_brick_view* view = pool->first; view && shared > most; view = view->next) {
     if (view->shared > 0 && !is_being_read(view)) {
       shared -= view->shared;
       empty(view);
@@ -236,7 +238,7 @@ bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_bri
   limit_shared(pool);
   uint64_t edges = 0;
   const uint64_t inner = bytes_of(view, part, &edges), shared = view->state[part] & STRATUS_PART_EDGES ? 0 : edges;
-  if (ahead && pool->resident + inner + shared > pool->memory) {
+  if (ahead && pool->resident + inner + shared > stratus_brick_memory_left(pool)) {
     return false;
   }
   pool->resident += inner + shared;

@@ -12,7 +12,7 @@
 
 stratus_brick_pool_options stratus_brick_pool_options_default(void)
 {
-  return (stratus_brick_pool_options){ .memory = 0, .threads = 0 };
+  return (stratus_brick_pool_options){ .memory = 0, .threads = 0, .whole_process = 0 };
 }
 
 static uint64_t limit_of(uint64_t memory)
@@ -33,12 +33,18 @@ stratus_status stratus_brick_pool_create(stratus_context* context, const stratus
   if (o.threads < 0 || o.threads > THREADS_MOST) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "threads %d of the pool outside 0..%d", o.threads, THREADS_MOST);
   }
+  if (o.whole_process != 0 && o.whole_process != 1) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "whole_process %d of the pool must be 0 or 1", o.whole_process);
+  }
   void* memory = NULL;
   TRY(stratus_allocate_zero(context, 1, sizeof(stratus_brick_pool), &memory));
   stratus_brick_pool* const p = memory;
   p->context = context;
   p->process = (long)getpid();
   p->memory = limit_of(o.memory);
+  p->whole_process = o.whole_process;
+  p->began = o.whole_process ? stratus_brick_memory_private() : 0;
+  p->looked = -INFINITY;
   p->faults = p->quit = -1;
   p->page = (size_t)sysconf(_SC_PAGESIZE);
   pthread_mutex_init(&p->lock, NULL);

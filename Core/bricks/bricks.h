@@ -67,6 +67,9 @@ struct stratus_brick_pool {
   pthread_mutex_t lock;
   pthread_cond_t read; /* a part was read */
   uint64_t memory, resident, resident_most, parts_read, bytes_read;
+  bool whole_process;    /* the process's own memory counts */
+  uint64_t began, grown; /* its bytes when the pool was made, and those that were added */
+  double looked;         /* when that was found, by stratus_now_ms() */
   stratus_brick_view* first;
   stratus_brick_view* hand; /* of the clock, at its part number hand_part */
   int64_t hand_part;
@@ -139,5 +142,9 @@ uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, s
 
 /* Returns half of the bytes of memory that the machine, or the process's control group, has free. */
 uint64_t stratus_brick_memory_default(void);
+/* Returns the bytes of the process's memory that are of no file: not the bytes of bricks, either. 0 where the system does not say. */
+uint64_t stratus_brick_memory_private(void);
+/* Returns the bytes that the pool's bricks may take now. With the pool's lock. */
+uint64_t stratus_brick_memory_left(stratus_brick_pool* pool);
 
 #endif

@@ -44,6 +44,9 @@ typedef struct stratus_brick_pool_options {
    * in, has free when the pool is made. Less than 16 MiB counts as 16 MiB. */
   uint64_t memory;
   int threads; /* 0..64 that read bricks. 0 (default): as many as the context has, but at least 2 */
+  /* 1: other memory that the process took since the pool was made counts in `memory`, too, such as value ranges and pictures, until half of
+   * it is left to bricks. Needs Linux's /proc. 0 (default): only bricks count. */
+  int whole_process;
 } stratus_brick_pool_options;
 
 typedef struct stratus_brick_pool_report {

@@ -28,7 +28,9 @@ struct Pool {
     stratus_context_options options = stratus_context_options_default();
     options.device = "host";
     if (stratus_context_create(&options, &this->Context, nullptr, 0) == STRATUS_OK) {
-      stratus_brick_pool_create(this->Context, nullptr, &this->Bricks);
+      stratus_brick_pool_options memory = stratus_brick_pool_options_default();
+      memory.whole_process = 1;
+      stratus_brick_pool_create(this->Context, &memory, &this->Bricks);
     }
   }
 

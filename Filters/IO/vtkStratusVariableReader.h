@@ -81,8 +81,10 @@ public:
 
   //@{
   /**
-   * Set/Get how many bytes of memory all bricks of the process take together, at least 16 MiB. Those that were not looked at for longest
-   * are dropped, and read again when something looks at them. 0 (default): half of the memory that is free when the first file is read.
+   * Set/Get how many bytes of memory all bricks of the process take together, at least 16 MiB. Other memory that the process takes from the
+   * first file on counts, too, such as structures and pictures, until half of the limit is left to bricks. Bricks that were not looked at
+   * for longest are dropped, and read again when something looks at them. 0 (default): half of the memory that is free when the first file
+   * is read.
    */
   static void SetMemoryLimit(vtkTypeInt64 bytes);
   static vtkTypeInt64 GetMemoryLimit();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Arrays of bricks against the values that their source has: whatever the shapes, the limit of memory and the threads that read, and
  * which parts are read, dropped and kept. */
-#define _XOPEN_SOURCE 700
+#define _GNU_SOURCE /* MAP_ANONYMOUS */
 #include "bricks.h"
 #include "remove_folder.h"
 #include "structures.h"
@@ -9,6 +9,7 @@
 
 #include <omp.h>
 #include <stdio.h>
+#include <sys/mman.h>
 #include <time.h>
 
 /* A source of values that a formula gives. */
@@ -289,6 +290,45 @@ static void memory_stays_within_its_limit(void** state)
   assert_int_equal(stratus_brick_pool_set_memory(pool, 1), STRATUS_OK);
   stratus_brick_pool_get_report(pool, &report);
   assert_int_equal(report.memory, 16 << 20); /* the least */
+  stratus_brick_pool_destroy(pool);
+}
+
+/* Takes memory that goes back to the system as soon as it is released. */
+static void* take_memory(size_t bytes)
+{
+  void* const memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  assert_ptr_not_equal(memory, MAP_FAILED);
+  memset(memory, 1, bytes);
+  return memory;
+}
+
+/* Other memory of the process takes its share of the limit, but never more than half. */
+static void other_memory_of_the_process_counts(void** state)
+{
+  (void)state;
+  enum { LIMIT = 64 << 20, OTHER = 24 << 20, MORE = 80 << 20, SLACK = 4 << 20 };
+  formula f = make_formula(STRATUS_FLOAT32, 256, 256, 512, 64, 64, 16);
+  stratus_brick_pool_options options = stratus_brick_pool_options_default();
+  stratus_brick_pool* pool = NULL;
+  options.memory = LIMIT;
+  options.whole_process = 1;
+  assert_int_equal(stratus_brick_pool_create(host, &options, &pool), STRATUS_OK);
+  if (!is_paged(pool) || stratus_brick_memory_private() == 0) {
+    stratus_brick_pool_destroy(pool);
+    return;
+  }
+  stratus_bricks* bricks = make_bricks(pool, &f);
+  void* const other = take_memory(OTHER);
+  assert_int_equal(wrong_in_order(&f, stratus_bricks_values(bricks)), 0);
+  assert_in_range(pool->resident, LIMIT / 2, LIMIT - OTHER + SLACK);
+  void* const more = take_memory(MORE);
+  assert_int_equal(wrong_in_order(&f, stratus_bricks_values(bricks)), 0);
+  assert_in_range(pool->resident, LIMIT / 2 - SLACK, LIMIT / 2);
+  munmap(more, MORE);
+  munmap(other, OTHER);
+  assert_int_equal(wrong_in_order(&f, stratus_bricks_values(bricks)), 0);
+  assert_in_range(pool->resident, LIMIT - SLACK, LIMIT);
+  stratus_bricks_destroy(bricks);
   stratus_brick_pool_destroy(pool);
 }
 
@@ -692,8 +732,8 @@ int test_bricks(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(values_are_the_sources), cmocka_unit_test(without_pages_all_is_read_at_once),
     cmocka_unit_test(only_parts_that_are_looked_at_are_read), cmocka_unit_test(memory_stays_within_its_limit),
-    cmocka_unit_test(pages_that_parts_share_leave_room), cmocka_unit_test(what_is_read_stays),
-    cmocka_unit_test(values_that_cannot_be_read_are_counted), cmocka_unit_test(tiles_are_the_sources),
+    cmocka_unit_test(other_memory_of_the_process_counts), cmocka_unit_test(pages_that_parts_share_leave_room),
+    cmocka_unit_test(what_is_read_stays), cmocka_unit_test(values_that_cannot_be_read_are_counted), cmocka_unit_test(tiles_are_the_sources),
     cmocka_unit_test(only_tiles_that_are_looked_at_are_read), cmocka_unit_test(parts_are_read_ahead),
     cmocka_unit_test(pictures_are_the_same), cmocka_unit_test(bricks_of_one_value_are_not_read),
     cmocka_unit_test(faults_of_the_caller_are_told) };
