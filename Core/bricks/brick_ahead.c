@@ -3,7 +3,6 @@
 #define _POSIX_C_SOURCE 200809L
 #include "bricks.h"
 
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -104,11 +103,7 @@ stratus_status stratus_bricks_read_ahead(stratus_bricks* bricks, stratus_bricks*
   pthread_mutex_lock(&pool->lock);
   bricks->like = bricks->rows.memory < 0 ? NULL : like;
   if (bricks->like && !pool->reads_ahead) {
-    sigset_t all, before;
-    stratus_brick_signals(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    pool->reads_ahead = pthread_create(&pool->ahead, NULL, read_ahead, pool) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    pool->reads_ahead = stratus_brick_start_thread(&pool->ahead, read_ahead, pool);
   }
   pthread_cond_broadcast(&pool->read);
   pthread_mutex_unlock(&pool->lock);

@@ -14,6 +14,7 @@
 #include "bricks.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -22,7 +23,6 @@
 #include <fcntl.h>
 #include <linux/userfaultfd.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/eventfd.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
@@ -60,13 +60,18 @@ uint64_t stratus_brick_store_part(const stratus_brick_view* view, int64_t part, 
   return missing;
 }
 
-void stratus_brick_signals(sigset_t* blocked)
+bool stratus_brick_start_thread(pthread_t* thread, stratus_brick_thread_function* run, void* user)
 {
   static const int faults[] = { SIGBUS, SIGSEGV, SIGFPE, SIGILL };
-  sigfillset(blocked);
+  sigset_t blocked, before;
+  sigfillset(&blocked);
   for (size_t i = 0; i < sizeof faults / sizeof *faults; ++i) {
-    sigdelset(blocked, faults[i]);
+    sigdelset(&blocked, faults[i]);
   }
+  pthread_sigmask(SIG_SETMASK, &blocked, &before);
+  const bool started = pthread_create(thread, NULL, run, user) == 0;
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+  return started;
 }
 
 void stratus_brick_enter(stratus_bricks* bricks)
@@ -374,16 +379,12 @@ void stratus_brick_pages_stop(stratus_brick_pool* pool)
 
 void stratus_brick_pages_start(stratus_brick_pool* pool, int threads)
 {
-  sigset_t all, before;
   pool->faults = open_faults();
   pool->quit = pool->faults < 0 ? -1 : eventfd(0, EFD_CLOEXEC);
   if (pool->quit >= 0) {
-    stratus_brick_signals(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    while (pool->thread_count < threads && pthread_create(&pool->threads[pool->thread_count], NULL, serve_faults, pool) == 0) {
+    while (pool->thread_count < threads && stratus_brick_start_thread(&pool->threads[pool->thread_count], serve_faults, pool)) {
       ++pool->thread_count;
     }
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
   }
   if (pool->thread_count == 0) {
     stratus_brick_pages_stop(pool);

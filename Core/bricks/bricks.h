@@ -8,7 +8,6 @@
 #include "volume.h"
 
 #include <pthread.h>
-#include <signal.h>
 
 /* State of a part. */
 enum {
@@ -103,9 +102,10 @@ uint64_t stratus_brick_resident(const stratus_brick_view* view);
 void stratus_brick_enter(stratus_bricks* bricks);
 void stratus_brick_leave(stratus_bricks* bricks);
 
-/* The signals that threads of a pool do not take: the program's handlers run in its own threads. They take faults of their own, such as
- * SIGBUS of a source that maps a file. */
-void stratus_brick_signals(sigset_t* blocked);
+typedef void* stratus_brick_thread_function(void* user);
+/* Starts a thread that takes no signals: the program's handlers run in its own threads. It takes faults of its own, such as SIGBUS of a
+ * source that maps a file. */
+bool stratus_brick_start_thread(pthread_t* thread, stratus_brick_thread_function* run, void* user);
 
 /* ---- brick_ahead.c */
 
