@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Parts of an array of bricks. In the array itself a part is a row of bricks along x, or several: neighbours along x share pages of memory.
  * Its values are runs of bytes, one for each layer of values, or one in all if the part has whole layers. A tile is a part of whole bricks
- * whose values follow one another, so that it has pages of its own. */
+ * whose values follow one another, so that it has pages of its own. The first part along an axis may begin before the array, as a brick
+ * that it has only a part of does. */
 #include "bricks.h"
 
 #include <stdlib.h>
@@ -24,11 +25,22 @@ static int64_t enough(int64_t step, int64_t all, size_t bytes)
   return steps >= (all + step - 1) / step ? all : steps * step;
 }
 
+/* Returns how many values there are along an axis from where the first brick begins. */
+static int64_t from_first_brick(const stratus_brick_source* s, int axis)
+{
+  return s->before[axis] + s->dimensions[axis];
+}
+
+/* Counts the parts of the sides that are chosen. A side of all values begins with the array. */
 static void count_parts(stratus_brick_view* view)
 {
+  const stratus_brick_source* s = &view->bricks->source;
   view->parts = 1;
   for (int a = 0; a < 3; ++a) {
-    view->across[a] = (view->bricks->source.dimensions[a] + view->side[a] - 1) / view->side[a];
+    const bool all = view->side[a] >= from_first_brick(s, a);
+    view->side[a] = all ? s->dimensions[a] : view->side[a];
+    view->before[a] = all ? 0 : s->before[a];
+    view->across[a] = (view->before[a] + s->dimensions[a] + view->side[a] - 1) / view->side[a];
     view->parts *= view->across[a];
   }
 }
@@ -49,11 +61,12 @@ void stratus_brick_rows_divide(stratus_brick_view* view)
 {
   const stratus_brick_source* s = &view->bricks->source;
   const size_t row = row_bytes(s);
-  view->side[0] = s->dimensions[0];
-  view->side[1] = enough(least(s->brick[1], s->dimensions[1]), s->dimensions[1], row);
-  view->side[2] = least(has_no_bricks(s) ? LAYERS_LEAST : s->brick[2], s->dimensions[2]);
-  if (view->side[1] == s->dimensions[1]) {
-    view->side[2] = enough(view->side[2], s->dimensions[2], row * (size_t)view->side[1]);
+  const int64_t rows = from_first_brick(s, 1), layers = from_first_brick(s, 2);
+  view->side[0] = from_first_brick(s, 0);
+  view->side[1] = enough(least(s->brick[1], rows), rows, row);
+  view->side[2] = least(has_no_bricks(s) ? LAYERS_LEAST : s->brick[2], layers);
+  if (view->side[1] == rows) {
+    view->side[2] = enough(view->side[2], layers, row * (size_t)s->dimensions[1]);
   }
   count_parts(view);
 }
@@ -61,7 +74,8 @@ void stratus_brick_rows_divide(stratus_brick_view* view)
 bool stratus_brick_tiles_divide(stratus_brick_view* view, size_t page)
 {
   const stratus_brick_source* s = &view->bricks->source;
-  const int64_t value = (int64_t)stratus_type_size(s->type), *n = s->dimensions;
+  const int64_t value = (int64_t)stratus_type_size(s->type);
+  const int64_t n[3] = { from_first_brick(s, 0), from_first_brick(s, 1), from_first_brick(s, 2) };
   int64_t bytes = value;
   for (int a = 0; a < 3; ++a) {
     view->side[a] = least(s->brick[a], n[a]);
@@ -87,18 +101,20 @@ bool stratus_brick_tiles_divide(stratus_brick_view* view, size_t page)
     }
   }
   count_parts(view);
+  bytes = value * view->side[0] * view->side[1] * view->side[2];
   view->tile = ((size_t)bytes + page - 1) / page * page;
   view->bytes = view->tile * (size_t)view->parts;
   int64_t pitch = value, tiles = 1;
   for (int a = 0; a < 3; ++a) {
-    const int64_t of_point = a == 0 && s->components > 1 ? s->components : 1, points = n[a] / of_point;
+    const int64_t of_point = a == 0 && s->components > 1 ? s->components : 1, points = s->dimensions[a] / of_point;
     uint64_t* const at = malloc(((size_t)points + 1) * sizeof *at);
     view->bricks->at[a] = at;
     if (!at) {
       return false;
     }
     for (int64_t i = 0; i <= points; ++i) {
-      const int64_t here = (i < points ? i : points - 1) * of_point; /* one more, for the cell behind the last value */
+      /* one more, for the cell behind the last value */
+      const int64_t here = view->before[a] + (i < points ? i : points - 1) * of_point;
       at[i] = (uint64_t)(here / view->side[a] * tiles) * view->tile + (uint64_t)(here % view->side[a] * pitch);
     }
     view->bricks->shown.at[a] = at;
@@ -109,9 +125,9 @@ bool stratus_brick_tiles_divide(stratus_brick_view* view, size_t page)
   return true;
 }
 
-/* A box of values. */
+/* A box of values. inset: of its first value in its tile. */
 typedef struct box {
-  int64_t lo[3], size[3];
+  int64_t lo[3], size[3], inset[3];
 } box;
 
 static box box_of(const stratus_brick_view* view, int64_t part)
@@ -119,8 +135,10 @@ static box box_of(const stratus_brick_view* view, int64_t part)
   const int64_t at[3] = { part % view->across[0], part / view->across[0] % view->across[1], part / (view->across[0] * view->across[1]) };
   box b;
   for (int a = 0; a < 3; ++a) {
-    b.lo[a] = at[a] * view->side[a];
-    b.size[a] = least(view->side[a], view->bricks->source.dimensions[a] - b.lo[a]);
+    const int64_t begin = at[a] * view->side[a] - view->before[a];
+    b.lo[a] = begin < 0 ? 0 : begin;
+    b.inset[a] = view->tiled ? b.lo[a] - begin : 0;
+    b.size[a] = least(begin + view->side[a], view->bricks->source.dimensions[a]) - b.lo[a];
   }
   return b;
 }
@@ -162,7 +180,7 @@ int64_t stratus_brick_part_of(const stratus_brick_view* view, size_t byte, size_
   const size_t bytes = row_bytes(&view->bricks->source);
   const int64_t row = (int64_t)(byte / bytes), rows = view->bricks->source.dimensions[1];
   *end = ((size_t)row + 1) * bytes;
-  return row / rows / view->side[2] * view->across[1] + row % rows / view->side[1];
+  return (row / rows + view->before[2]) / view->side[2] * view->across[1] + (row % rows + view->before[1]) / view->side[1];
 }
 
 stratus_brick_run stratus_brick_inner(const stratus_brick_view* view, size_t page, stratus_brick_run run)
@@ -189,7 +207,7 @@ static void fill(stratus_type type, void* values, size_t count)
 
 static int64_t bricks_along(const stratus_brick_source* s, int axis)
 {
-  return (s->dimensions[axis] + s->brick[axis] - 1) / s->brick[axis];
+  return (from_first_brick(s, axis) + s->brick[axis] - 1) / s->brick[axis];
 }
 
 /* Returns the value that all of a brick's blocks have, or NaN: a block's range is of its cells' corners, so that the blocks in which a
@@ -198,7 +216,8 @@ static float only_value(const stratus_brick_source* s, const stratus_value_range
 {
   int64_t first[3], last[3];
   for (int a = 0; a < 3; ++a) {
-    const int64_t lo = brick[a] * s->brick[a], hi = least(lo + s->brick[a], s->dimensions[a]) - 1;
+    const int64_t begin = brick[a] * s->brick[a] - s->before[a], lo = begin < 0 ? 0 : begin;
+    const int64_t hi = least(begin + s->brick[a], s->dimensions[a]) - 1;
     first[a] = least(lo / ranges->block_size, ranges->blocks[a] - 1);
     last[a] = least(hi / ranges->block_size, ranges->blocks[a] - 1);
   }
@@ -246,11 +265,16 @@ static bool fill_with_one(const stratus_bricks* bricks, const int64_t lo[3], con
     return false;
   }
   const int64_t nx = bricks_along(s, 0), ny = bricks_along(s, 1);
-  const float one = bricks->only[(lo[2] / s->brick[2] * ny + lo[1] / s->brick[1]) * nx + lo[0] / s->brick[0]];
-  for (int64_t z = lo[2]; z < lo[2] + size[2]; z += s->brick[2]) {
-    for (int64_t y = lo[1]; y < lo[1] + size[1]; y += s->brick[1]) {
-      for (int64_t x = lo[0]; x < lo[0] + size[0]; x += s->brick[0]) {
-        if (!(bricks->only[(z / s->brick[2] * ny + y / s->brick[1]) * nx + x / s->brick[0]] == one)) {
+  int64_t first[3], last[3];
+  for (int a = 0; a < 3; ++a) {
+    first[a] = (s->before[a] + lo[a]) / s->brick[a];
+    last[a] = (s->before[a] + lo[a] + size[a] - 1) / s->brick[a];
+  }
+  const float one = bricks->only[(first[2] * ny + first[1]) * nx + first[0]];
+  for (int64_t z = first[2]; z <= last[2]; ++z) {
+    for (int64_t y = first[1]; y <= last[1]; ++y) {
+      for (int64_t x = first[0]; x <= last[0]; ++x) {
+        if (!(bricks->only[(z * ny + y) * nx + x] == one)) {
           return false;
         }
       }
@@ -275,15 +299,17 @@ typedef struct part_room {
   size_t row, layer;
 } part_room;
 
-/* Reads a box of values, `at` from the part's first. scratch: where the source writes it, if not as the room has it. Returns the bytes that
- * are missing. */
+/* Reads a box of values of a part. scratch: where the source writes it, if not as the room has it. Returns the bytes that are missing. */
 static uint64_t read_box(
-  const stratus_bricks* bricks, const box* part, const int64_t at[3], const int64_t size[3], const part_room* room, char* scratch)
+  const stratus_bricks* bricks, const box* part, const int64_t lo[3], const int64_t size[3], const part_room* room, char* scratch)
 {
   const stratus_brick_source* s = &bricks->source;
   const size_t value = stratus_type_size(s->type), count = (size_t)(size[0] * size[1] * size[2]), row = (size_t)size[0] * value;
-  const int64_t lo[3] = { part->lo[0] + at[0], part->lo[1] + at[1], part->lo[2] + at[2] };
-  char* const place = room->bytes + (size_t)at[2] * room->layer + (size_t)at[1] * room->row + (size_t)at[0] * value;
+  char* place = room->bytes;
+  const size_t pitch[3] = { value, room->row, room->layer };
+  for (int a = 0; a < 3; ++a) {
+    place += (size_t)(part->inset[a] + lo[a] - part->lo[a]) * pitch[a];
+  }
   char* const to = scratch ? scratch : place;
   const int failed = fill_with_one(bricks, lo, size, to) ? 0 : s->read(s->user, lo, size, to);
   if (failed) {
@@ -297,6 +323,12 @@ static uint64_t read_box(
   return failed ? count * value : 0;
 }
 
+/* Returns how many values the source reads at once along an axis, from value number `at` on: to the brick's end, or to `end`. */
+static int64_t reach(const stratus_brick_source* s, int axis, int64_t at, int64_t end)
+{
+  return least(s->brick[axis] - (s->before[axis] + at) % s->brick[axis], end - at);
+}
+
 uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, stratus_brick_room* room)
 {
   const stratus_bricks* bricks = view->bricks;
@@ -305,14 +337,12 @@ uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, s
   const size_t value = stratus_type_size(s->type), bytes = view->tiled ? view->tile : (size_t)stratus_brick_part_bytes(view, part);
   /* a tile at the array's end is as wide as all others */
   const int64_t wide = view->tiled ? view->side[0] : b.size[0], high = view->tiled ? view->side[1] : b.size[1];
-  int64_t step[3] = { least(s->brick[0], b.size[0]), least(s->brick[1], b.size[1]), least(s->brick[2], b.size[2]) };
-  if (has_no_bricks(s)) {
-    memcpy(step, b.size, sizeof step);
-  }
+  const bool any = has_no_bricks(s);
+  const int64_t most[3] = { any ? b.size[0] : least(s->brick[0], b.size[0]), any ? b.size[1] : least(s->brick[1], b.size[1]),
+    any ? b.size[2] : least(s->brick[2], b.size[2]) };
   /* one call for all rows of some layers, which the room has as the source writes them */
-  const bool whole = step[0] == wide && b.size[1] == high;
-  step[1] = whole ? b.size[1] : step[1];
-  const size_t scratch = whole ? 0 : (size_t)(step[0] * step[1] * step[2]) * value;
+  const bool whole = most[0] == wide && b.size[1] == high;
+  const size_t scratch = whole ? 0 : (size_t)(most[0] * most[1] * most[2]) * value;
   if (room->capacity < bytes + scratch) {
     free(room->bytes);
     room->bytes = malloc(bytes + scratch);
@@ -326,11 +356,16 @@ uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, s
   if (view->tiled && bytes > stratus_brick_part_bytes(view, part)) {
     memset(room->bytes, 0, bytes); /* the rest beyond the grid */
   }
-  for (int64_t z = 0; z < b.size[2]; z += step[2]) {
-    for (int64_t y = 0; y < b.size[1]; y += step[1]) {
-      for (int64_t x = 0; x < b.size[0]; x += step[0]) {
-        const int64_t at[3] = { x, y, z };
-        const int64_t size[3] = { least(step[0], b.size[0] - x), least(step[1], b.size[1] - y), least(step[2], b.size[2] - z) };
+  int64_t at[3], size[3], end[3];
+  for (int a = 0; a < 3; ++a) {
+    end[a] = b.lo[a] + b.size[a];
+  }
+  for (at[2] = b.lo[2]; at[2] < end[2]; at[2] += size[2]) {
+    size[2] = any ? b.size[2] : reach(s, 2, at[2], end[2]);
+    for (at[1] = b.lo[1]; at[1] < end[1]; at[1] += size[1]) {
+      size[1] = any || whole ? b.size[1] : reach(s, 1, at[1], end[1]);
+      for (at[0] = b.lo[0]; at[0] < end[0]; at[0] += size[0]) {
+        size[0] = any || whole ? b.size[0] : reach(s, 0, at[0], end[0]);
         missing += read_box(bricks, &b, at, size, &at_hand, whole ? NULL : room->bytes + bytes);
       }
     }

@@ -115,14 +115,19 @@ static stratus_status check(stratus_context* context, const stratus_brick_source
   }
   for (int a = 0; a < 3; ++a) {
     const int64_t of_point = a == 0 && source->components > 1 ? source->components : 1;
-    if (source->dimensions[a] % of_point != 0 || source->brick[a] % of_point != 0) {
-      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "%lld values along x, in bricks of %lld, are no multiples of %lld components",
-        (long long)source->dimensions[a], (long long)source->brick[a], (long long)of_point);
+    if (source->dimensions[a] % of_point != 0 || source->brick[a] % of_point != 0 || source->before[a] % of_point != 0) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+        "%lld values along x, in bricks of %lld with %lld before them, are no multiples of %lld components",
+        (long long)source->dimensions[a], (long long)source->brick[a], (long long)source->before[a], (long long)of_point);
     }
     if (source->dimensions[a] < 1 || source->brick[a] < 1) {
       return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
         "axis %d of bricks has %lld values, in bricks of %lld: both must be at least 1", a, (long long)source->dimensions[a],
         (long long)source->brick[a]);
+    }
+    if (source->before[a] < 0 || source->before[a] >= source->brick[a]) {
+      return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "axis %d of bricks has %lld values before the array, must be from 0 to %lld",
+        a, (long long)source->before[a], (long long)source->brick[a] - 1);
     }
   }
   TRY(stratus_product(

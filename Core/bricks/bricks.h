@@ -30,6 +30,7 @@ typedef struct stratus_brick_view {
   size_t mapped;     /* bytes: whole pages */
   int memory;        /* the file of the mapping, which parts are written to; -1 if not paged */
   int64_t side[3];   /* values along each axis of a part, which is read and dropped as a whole */
+  int64_t before[3]; /* values of the first part that precede the array */
   int64_t across[3]; /* parts along each axis */
   int64_t parts;     /* and in all */
   size_t tile;       /* bytes from a tile to the next: whole pages */

@@ -9,9 +9,9 @@
 extern "C" {
 #endif
 
-/* Writes the values of the box from `lo` on, of `size` values along each axis, x fastest, without gaps. The box is one or several whole
- * bricks. Returns 0, or another number if the values cannot be read: they then count as missing. Other threads call it, several at once. It
- * must not read values of bricks. */
+/* Writes the values of the box from `lo` on, of `size` values along each axis, x fastest, without gaps. The box is one or several bricks,
+ * which are whole but for the array's ends. Returns 0, or another number if the values cannot be read: they then count as missing. Other
+ * threads call it, several at once. It must not read values of bricks. */
 typedef int (*stratus_brick_read_function)(void* user, const int64_t lo[3], const int64_t size[3], void* values);
 typedef void (*stratus_brick_release_function)(void* user);
 
@@ -22,8 +22,11 @@ typedef struct stratus_brick_source {
   /* Values along x, y, z of the parts in which the source reads best, such as the chunks of a file; each >= 1. Parts begin at multiples of
    * it. The last ones along an axis are smaller. 1, 1, 1 if the source reads any box as well. */
   int64_t brick[3];
-  /* Of several components: how many values along x each point of the grid has. Then dimensions[0] and brick[0] are multiples of it. 0
-   * counts as 1. */
+  /* Of a part of a larger grid: how many values of the first brick along x, y, z precede the part; below `brick`. Bricks then begin at
+   * multiples of `brick` minus this. 0 (default): the first brick is whole. */
+  int64_t before[3];
+  /* Of several components: how many values along x each point of the grid has. Then dimensions[0], brick[0] and before[0] are
+   * multiples of it. 0 counts as 1. */
   int64_t components;
   stratus_brick_read_function read;
   /* 0, or the identity of a stratus_volume of these values. Bricks of which its kept value ranges say that all values are the same are then

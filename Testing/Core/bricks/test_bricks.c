@@ -15,7 +15,7 @@
 /* A source of values that a formula gives. */
 typedef struct formula {
   stratus_type type;
-  int64_t dimensions[3], brick[3];
+  int64_t dimensions[3], brick[3], before[3];
   int64_t fails_at; /* a brick that holds this value cannot be read; -1: none */
   int released, calls, misplaced;
 } formula;
@@ -75,7 +75,8 @@ static int read_formula(void* user, const int64_t lo[3], const int64_t size[3], 
   ++f->calls;
   for (int a = 0; a < 3; ++a) {
     const int64_t end = lo[a] + size[a];
-    if (lo[a] % f->brick[a] != 0 || end > n[a] || (end % f->brick[a] != 0 && end != n[a])) {
+    const bool begins = lo[a] == 0 || (f->before[a] + lo[a]) % f->brick[a] == 0;
+    if (!begins || end > n[a] || ((f->before[a] + end) % f->brick[a] != 0 && end != n[a])) {
 #pragma omp atomic
       ++f->misplaced;
     }
@@ -102,11 +103,23 @@ static formula make_formula(stratus_type type, int64_t nx, int64_t ny, int64_t n
   return (formula){ .type = type, .dimensions = { nx, ny, nz }, .brick = { bx, by, bz }, .fails_at = -1 };
 }
 
+/* The same without the first values along each axis, so that its first bricks are not whole. */
+static formula without_first(formula f, int64_t x, int64_t y, int64_t z)
+{
+  const int64_t first[3] = { x, y, z };
+  for (int a = 0; a < 3; ++a) {
+    f.before[a] = first[a] % f.brick[a];
+    f.dimensions[a] -= first[a];
+  }
+  return f;
+}
+
 static stratus_brick_source source_of(formula* f)
 {
   stratus_brick_source source = { .type = f->type, .read = read_formula, .release = release_formula, .user = f };
   memcpy(source.dimensions, f->dimensions, sizeof source.dimensions);
   memcpy(source.brick, f->brick, sizeof source.brick);
+  memcpy(source.before, f->before, sizeof source.before);
   return source;
 }
 
@@ -193,6 +206,11 @@ static void values_are_the_sources(void** state)
     make_formula(STRATUS_FLOAT32, 100003, 1, 1, 1000, 8, 8), /* a line */
     make_formula(STRATUS_INT8, 1, 1, 1, 9, 9, 9),            /* a value */
     make_formula(STRATUS_FLOAT32, 40000, 9, 9, 512, 2, 2),
+    without_first(make_formula(STRATUS_FLOAT32, 256, 128, 64, 64, 32, 16), 1, 31, 20), /* parts that begin inside of a brick */
+    without_first(make_formula(STRATUS_UINT8, 301, 257, 67, 50, 33, 9), 149, 1, 8),
+    without_first(make_formula(STRATUS_INT16, 97, 1021, 31, 97, 100, 1), 3, 950, 7), /* inside of the last one along y */
+    without_first(make_formula(STRATUS_FLOAT64, 130, 70, 90, 130, 70, 40), 50, 30, 39),
+    without_first(make_formula(STRATUS_FLOAT32, 40, 40, 40, 64, 64, 64), 9, 9, 9), /* of a brick that is larger */
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
     formula* const f = &all[i];
@@ -445,8 +463,12 @@ static void tiles_are_the_sources(void** state)
     make_formula(STRATUS_UINT16, 3 * 61, 70, 90, 3, 1, 1), /* of three components */
     make_formula(STRATUS_FLOAT32, 2 * 61, 70, 90, 2 * 16, 16, 16),
     make_formula(STRATUS_FLOAT32, 400003, 1, 1, 1000, 8, 8),
+    without_first(make_formula(STRATUS_FLOAT32, 140, 120, 80, 32, 32, 16), 1, 31, 10), /* the first tiles are not whole */
+    without_first(make_formula(STRATUS_UINT8, 301, 157, 67, 50, 33, 9), 20, 32, 1),
+    without_first(make_formula(STRATUS_INT16, 97, 201, 61, 97, 201, 12), 30, 60, 11), /* tiles are longer than the part */
+    without_first(make_formula(STRATUS_FLOAT32, 2 * 61, 70, 90, 2 * 16, 16, 16), 2 * 7, 9, 5),
   };
-  static const int components[] = { 1, 1, 1, 1, 1, 3, 2, 1 };
+  static const int components[] = { 1, 1, 1, 1, 1, 3, 2, 1, 1, 1, 1, 2 };
   for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
     formula* const f = &all[i];
     const int64_t of_point = components[i], points = f->dimensions[0] / of_point;
@@ -662,6 +684,7 @@ static void bricks_of_one_value_are_not_read(void** state)
   setenv("STRATUS_CACHE_DIR", folder, 1);
   for (size_t t = 0; t < sizeof types / sizeof *types; ++t) {
     formula f = make_formula(types[t], 70, 90, 100, 20, 30, 10);
+    f.before[0] = t == 1 ? 15 : 0; /* five bricks along x, of which the first has five values */
     const size_t bytes = (size_t)count_of(&f) * stratus_type_size(types[t]);
     char* values[2];
     int calls[2];
@@ -688,8 +711,10 @@ static void bricks_of_one_value_are_not_read(void** state)
       stratus_brick_pool_destroy(pool);
     }
     assert_memory_equal(values[0], values[1], bytes);
-    assert_int_equal(calls[0], 4 * 3 * 10);
-    assert_int_equal(calls[1], 4 * 3 * 3); /* two layers of bricks with other values, and the one below, whose last block touches them */
+    const int across = t == 1 ? 5 : 4;
+    assert_int_equal(calls[0], across * 3 * 10);
+    assert_int_equal(
+      calls[1], across * 3 * 3); /* two layers of bricks with other values, and the one below, whose last block touches them */
     free(values[0]);
     free(values[1]);
   }
@@ -712,6 +737,10 @@ static void faults_of_the_caller_are_told(void** state)
   assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_INVALID_ARGUMENT);
   assert_int_equal(f.released, 1);
   source = source_of(&f);
+  source.before[2] = 4;
+  assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(host), "axis 2 of bricks has 4 values before the array, must be from 0 to 3"));
+  source = source_of(&f);
   source.read = NULL;
   assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_INVALID_ARGUMENT);
   source = source_of(&f);
@@ -723,7 +752,7 @@ static void faults_of_the_caller_are_told(void** state)
   source = source_of(&f);
   source.dimensions[0] = source.dimensions[1] = source.dimensions[2] = INT64_C(1) << 30;
   assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_OVERFLOW);
-  assert_int_equal(f.released, 5);
+  assert_int_equal(f.released, 6);
   assert_null(bricks);
   stratus_brick_pool_destroy(pool);
 }
