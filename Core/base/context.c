@@ -6,6 +6,7 @@
 #include "program_cache.h"
 
 #include <omp.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,17 +44,46 @@ const char* stratus_status_name(stratus_status status)
   return "unknown status";
 }
 
+#define ALIGNMENT 64
+
+/* Blocks are aligned here, not by posix_memalign(): up to glibc 2.37 that does not take the blocks again that were freed, so that a program
+ * that draws time steps grew by all their arrays. The word before a block is what free() takes. The address sanitizer knows the ends of its
+ * own blocks only. */
+#if defined(__SANITIZE_ADDRESS__)
+#define ALIGNS_ITSELF 0
+#elif defined(__has_feature)
+#define ALIGNS_ITSELF !__has_feature(address_sanitizer)
+#else
+#define ALIGNS_ITSELF 1
+#endif
+
 static void* default_allocate(void* user, size_t bytes)
 {
   (void)user;
+#if ALIGNS_ITSELF
+  char* const block = bytes <= SIZE_MAX - ALIGNMENT ? malloc(bytes + ALIGNMENT) : NULL;
+  if (!block) {
+    return NULL;
+  }
+  char* const memory = block + ALIGNMENT - (uintptr_t)block % ALIGNMENT; /* at least the 8 bytes behind that malloc() aligns to */
+  memcpy(memory - sizeof block, &block, sizeof block);
+  return memory;
+#else
   void* memory = NULL;
-  return posix_memalign(&memory, 64, bytes) == 0 ? memory : NULL;
+  return posix_memalign(&memory, ALIGNMENT, bytes) == 0 ? memory : NULL;
+#endif
 }
 
 static void default_release(void* user, void* memory)
 {
   (void)user;
-  free(memory);
+  char* block = memory;
+#if ALIGNS_ITSELF
+  if (memory) {
+    memcpy(&block, (char*)memory - sizeof block, sizeof block);
+  }
+#endif
+  free(block);
 }
 
 stratus_context_options stratus_context_options_default(void)

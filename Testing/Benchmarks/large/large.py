@@ -10,7 +10,8 @@ large.py measure FILE OPTION...    draws it by `stratus render`, and prints rows
   --cold              drop the file's pages from memory before each picture
 
 KIND: raw (bytes), netcdf (floats, chunks of 64 along each axis, zlib at level 1), contiguous (floats, netCDF-4 in one piece),
-zarr and zstd (floats, Zarr of chunks of 64 along each axis, by zlib or zstd at level 1).
+zarr and zstd (floats, Zarr of chunks of 64 along each axis, by zlib or zstd at level 1); ocean (24 hours of a lattice with longitudes and
+latitudes, floats, netCDF-4 with levels as chunks, zlib at level 1).
 SIZE: NX,NY,NZ. Methods: first@limit or @all: with an empty cache folder, with --memory or without; later: with the ranges that the first
 picture kept; dd: the file is only read; whole: netCDF4 of Python reads all values into memory.
 """
@@ -63,6 +64,9 @@ def layers(nx, ny, nz, at_a_time):
 def make(folder, kind, size):
     nx, ny, nz = size
     name = os.path.join(folder, f"{kind}-{nx}x{ny}x{nz}")
+    if kind == "ocean":
+        make_ocean(name + ".nc", nx, ny, nz)
+        return name + ".nc"
     if kind == "raw":
         with open(name + ".raw", "wb") as file:
             for _, field in layers(nx, ny, nz, 16):
@@ -82,6 +86,38 @@ def make(folder, kind, size):
         for first, field in layers(nx, ny, nz, 64):
             variable[first:first + len(field)] = field
     return name + ".nc"
+
+
+def make_ocean(path, nx, ny, nz, steps=24):
+    """A day of an ocean model: temperatures on a lattice of two poles in the north, land and sea floor missing, levels as chunks."""
+    import netCDF4
+    j, i = numpy.linspace(0, 1, ny)[:, None], numpy.linspace(0, 1, nx)[None, :]
+    north = numpy.clip((j - 0.85) / 0.15, 0, 1)
+    longitude, latitude = -180 + 360 * i + 0 * j, -77 + 137 * j ** 1.02 + 0 * i
+    latitude = latitude + 18 * (north * numpy.cos(numpy.radians(2 * (longitude - 80)))) ** 2
+    longitude = longitude + 25 * north ** 2 * numpy.sin(numpy.radians(2 * (longitude - 80)))
+    depth = 5700 * numpy.linspace(0, 1, nz) ** 2.2 + 0.5
+    land = (numpy.sin(31.4 * i + 2) * numpy.cos(12.56 * j) > 0.75) + 0 * i > 0
+    bottom = 2500 + 2500 * numpy.sin(21.7 * i) * numpy.cos(9 * j) + 1500 * numpy.sin(23 * i + 11 * j)
+    waves = numpy.random.default_rng(0).uniform(3, 40, (12, 3))
+    with netCDF4.Dataset(path, "w") as file:
+        for name, count in (("x", nx), ("y", ny), ("deptht", nz), ("time_counter", None)):
+            file.createDimension(name, count)
+        for name, dimensions, units, values in (("nav_lat", ("y", "x"), "degrees_north", latitude), ("nav_lon", ("y", "x"), "degrees_east", longitude),
+                ("deptht", ("deptht",), "m", depth), ("time_counter", ("time_counter",), "hours since 2001-01-01", numpy.arange(steps))):
+            axis = file.createVariable(name, "f4" if name != "time_counter" else "f8", dimensions)
+            axis.units = units
+            axis[:] = values
+        file["deptht"].positive = "down"
+        variable = file.createVariable("votemper", "f4", ("time_counter", "deptht", "y", "x"), fill_value=1e20, zlib=True, complevel=1,
+            chunksizes=(1, 1, ny, nx))
+        variable.units, variable.long_name, variable.coordinates = "degC", "temperature", "time_counter deptht nav_lat nav_lon"
+        warm = 28 * numpy.cos(numpy.radians(latitude)) ** 2
+        for step in range(steps):
+            eddies = sum(numpy.sin(6.283 * (a * i + b * j + 0.002 * step) + p) / (1 + 0.2 * k) for k, (a, b, p) in enumerate(waves))
+            for k in range(nz):
+                values = warm * numpy.exp(-depth[k] / 700) + 1.5 * eddies * numpy.exp(-depth[k] / 400) + 1
+                variable[step, k] = numpy.where(land | (depth[k] > bottom), 1e20, values)
 
 
 def by_zstd(data, codec=ctypes.CDLL(ctypes.util.find_library("zstd") or None)):

@@ -214,6 +214,25 @@ static void the_callers_allocator_serves_everything_and_gets_it_back(void** stat
   assert_int_equal(allocator.live, 0);
 }
 
+static void memory_of_any_size_is_aligned(void** state)
+{
+  (void)state;
+  stratus_context* context = NULL;
+  void* memory[200];
+  assert_int_equal(stratus_context_create(NULL, &context, NULL, 0), STRATUS_OK);
+  for (size_t i = 0; i < 200; ++i) {
+    assert_int_equal(stratus_allocate(context, i * i * i / 7 + 1, 1, &memory[i]), STRATUS_OK);
+    assert_int_equal((uintptr_t)memory[i] % 64, 0);
+    memset(memory[i], (int)i, i * i * i / 7 + 1);
+  }
+  for (size_t i = 0; i < 200; ++i) {
+    assert_int_equal(((unsigned char*)memory[i])[i * i * i / 7], i);
+    stratus_release(context, memory[i]);
+  }
+  stratus_release(context, NULL);
+  stratus_context_destroy(context);
+}
+
 static void sizes_that_overflow_are_reported_not_wrapped(void** state)
 {
   (void)state;
@@ -263,6 +282,7 @@ int test_context(void)
     cmocka_unit_test(auto_takes_a_gpu_or_says_that_the_host_draws),
     cmocka_unit_test(progress_rises_and_can_cancel_at_every_report_without_a_leak),
     cmocka_unit_test(the_callers_allocator_serves_everything_and_gets_it_back),
+    cmocka_unit_test(memory_of_any_size_is_aligned),
     cmocka_unit_test(sizes_that_overflow_are_reported_not_wrapped),
     cmocka_unit_test(every_status_and_type_has_its_name_or_size),
   };
