@@ -25,24 +25,7 @@ using ObjectInfo = H5O_info_t;
 constexpr auto Visit = &H5Ovisit2;
 #endif
 
-// Holds the lock, and keeps libhdf5 from printing errors meanwhile. libhdf5 prints a thread's errors unless the thread switches that off.
-class Call
-{
-public:
-  Call() : Lock(vtkStratusHDF5Lock())
-  {
-    H5Eget_auto2(H5E_DEFAULT, &this->Function, &this->Data);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~Call() { H5Eset_auto2(H5E_DEFAULT, this->Function, this->Data); }
-  Call(const Call&) = delete;
-  void operator=(const Call&) = delete;
-
-private:
-  const std::lock_guard<std::recursive_mutex> Lock;
-  H5E_auto2_t Function = nullptr;
-  void* Data = nullptr;
-};
+using Call = vtkStratusHDF5Call;
 
 // An object of libhdf5, within a Call.
 class Handle

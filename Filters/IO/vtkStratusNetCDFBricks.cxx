@@ -15,25 +15,10 @@
 #include <functional>
 #include <memory>
 
-#include <dlfcn.h>
-
 namespace {
 
 // Writes the stored values of a box, in the file's order. Throws vtkStratusReadError. Several threads call it.
 using StoredReader = std::function<void(const std::vector<size_t>& start, const std::vector<size_t>& count, void* stored)>;
-
-// HDF5 writes each thread's errors to the terminal unless the thread switches that off. libnetcdf does so in the thread that opens a file.
-void SilenceThread()
-{
-  using Setter = int (*)(int64_t stack, void* function, void* data);
-  static thread_local bool silent = false;
-  if (!silent) {
-    silent = true;
-    if (const auto set = reinterpret_cast<Setter>(dlsym(RTLD_DEFAULT, "H5Eset_auto2"))) {
-      set(0, nullptr, nullptr);
-    }
-  }
-}
 
 // A variable of a file of its own, which libnetcdf lets one thread at a time look at.
 class OwnFile
@@ -46,7 +31,7 @@ public:
 
   ~OwnFile()
   {
-    const std::lock_guard<std::recursive_mutex> lock(vtkStratusHDF5Lock());
+    const vtkStratusHDF5Call call;
     this->File.reset();
   }
 
@@ -55,8 +40,7 @@ public:
 
   void Read(const std::vector<size_t>& start, const std::vector<size_t>& count, void* stored) const
   {
-    SilenceThread();
-    const std::lock_guard<std::recursive_mutex> lock(vtkStratusHDF5Lock());
+    const vtkStratusHDF5Call call;
     this->File->ReadStored(*this->Variable, start, count, stored);
   }
 

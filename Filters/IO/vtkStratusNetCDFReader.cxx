@@ -84,11 +84,7 @@ int RankOf(const vtkStratusNetCDFModel& file, const Variable& variable)
 
 #ifdef STRATUS_NETCDF
 // A file with libnetcdf's lock, which is held before the file is opened and until it is closed.
-struct Locked {
-  std::lock_guard<std::recursive_mutex> Guard{ vtkStratusHDF5Lock() };
-};
-
-class LockedFile : private Locked, public vtkStratusNetCDFFile
+class LockedFile : private vtkStratusHDF5Call, public vtkStratusNetCDFFile
 {
 public:
   using vtkStratusNetCDFFile::vtkStratusNetCDFFile;

@@ -130,7 +130,7 @@ double Between(const vtkStratusUgridValues& values, const vtkStratusUgridLayers&
 bool vtkStratusUgridReader::CanReadFile(const char* name)
 {
   try {
-    const std::lock_guard<std::recursive_mutex> lock(vtkStratusHDF5Lock());
+    const vtkStratusHDF5Call call;
     const vtkStratusNetCDFFile file(name ? name : "");
     return vtkStratusUgridMesh::FindTopology(file) != nullptr;
   } catch (const vtkStratusReadError&) {

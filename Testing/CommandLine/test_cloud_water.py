@@ -133,7 +133,9 @@ def test_sun():
     expect(0, "sun +azimuth 120.0, elevation 40.0 degrees, because at the file's time and place it is -", "render", "night.nc", "--cloud", *SMALL)
     refuse(1, "the sun is below the horizon: azimuth", "night.nc", "--cloud", "--sun-time", "file")
     write("day.nc", water, time=("hours since 2003-10-17", [14.5, 17.5, 30.0]), north=39.742476, east=-105.1786)
-    expect(0, "frames +3, day", "render", "day.nc", "--cloud", "--frames", "day-%d.bmp", "--size", "24x24", "--device", "host")
+    said = expect(0, "frames +3, day", "render", "day.nc", "--cloud", "--frames", "day-%d.bmp", "--size", "24x24", "--device", "host")
+    if "HDF5" in said:  # which looks for attributes that files may have, in the thread that reads the next step
+        fail("libhdf5 prints what it does not find:\n" + said)
     frames = []
     for n in range(3):
         with open(f"day-{n}.bmp", "rb") as file:
