@@ -17,8 +17,8 @@ VTK_STRATUS_PRIVATE inline std::recursive_mutex& vtkStratusHDF5Lock()
   return lock;
 }
 
-// Holds the lock, and keeps libhdf5 from printing errors meanwhile. It prints those of each thread that does not switch that off, and
-// libnetcdf, which asks for attributes that no file needs to have, does so in one thread only.
+// Holds the lock, and keeps libhdf5 from printing errors meanwhile. libhdf5 prints the errors of each thread that does not switch that off;
+// libnetcdf, which looks for attributes that no file needs to have, does so in one thread only.
 class VTK_STRATUS_PRIVATE vtkStratusHDF5Call
 {
 public:
