@@ -55,6 +55,16 @@ uint64_t vtkStratusIdentityOf(vtkDataArray* array)
   return HasItsValues(array) && Find(array, "TIME") == array->GetMTime() ? Find(array, "IDENTITY") : 0;
 }
 
+void vtkStratusSetOnlyDuplicates(vtkDataArray* flags)
+{
+  flags->GetInformation()->Set(Key("DUPLICATES"), reinterpret_cast<unsigned long>(flags->GetVoidPointer(0)));
+}
+
+bool vtkStratusHasOnlyDuplicates(vtkDataArray* flags)
+{
+  return flags && Find(flags, "DUPLICATES") != 0 && Find(flags, "DUPLICATES") == reinterpret_cast<unsigned long>(flags->GetVoidPointer(0));
+}
+
 const uint64_t* vtkStratusReadsOf(vtkDataArray* array)
 {
   return HasItsValues(array) ? reinterpret_cast<const uint64_t*>(Find(array, "READS")) : nullptr;

@@ -21,6 +21,11 @@ VTK_STRATUS_PRIVATE void vtkStratusSetMapped(
 // Returns the identity of the array's values; 0 where they come from no mapped file, or where the array was modified since.
 VTK_STRATUS_PRIVATE uint64_t vtkStratusIdentityOf(vtkDataArray* array);
 
+// Marks flags of points or cells that say of each only whether it is another rank's, and whose cells that are not are a box; returns
+// whether an array has the mark.
+VTK_STRATUS_PRIVATE void vtkStratusSetOnlyDuplicates(vtkDataArray* flags);
+VTK_STRATUS_PRIVATE bool vtkStratusHasOnlyDuplicates(vtkDataArray* flags);
+
 // Returns where the parts that were read of an array of bricks are counted; null for another array.
 VTK_STRATUS_PRIVATE const uint64_t* vtkStratusReadsOf(vtkDataArray* array);
 // Sets the identity, the missing bytes and the tiles of a volume whose values are a component of an array. Its type and dimensions are set.

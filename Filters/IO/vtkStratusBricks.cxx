@@ -4,6 +4,7 @@
 #include "stratus/bricks.h"
 
 #include "vtkStratusCoreType.h"
+#include "vtkStratusIdentity.h"
 #include "vtkStratusMapped.h"
 
 #include "vtkDataArray.h"
@@ -12,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 namespace {
 
@@ -78,6 +80,24 @@ void Free(void* values)
 }
 } // namespace
 
+void vtkStratusCutSource(vtkStratusBrickSource& source, const std::array<int64_t, 3>& lo, const std::array<int64_t, 3>& size)
+{
+  if (size == source.Dimensions) {
+    return;
+  }
+  std::vector<uint64_t> numbers(lo.begin(), lo.end());
+  numbers.insert(numbers.end(), size.begin(), size.end());
+  source.Identity = vtkStratusIdentityOfPart(source.Identity, "", numbers);
+  source.Dimensions = size;
+  for (size_t a = 0; a < 3; ++a) {
+    source.Before[a] = (source.Before[a] + lo[a]) % source.Brick[a];
+  }
+  source.Read = [lo, read = source.Read](const int64_t from[3], const int64_t count[3], void* values) {
+    const int64_t first[3] = { lo[0] + from[0], lo[1] + from[1], lo[2] + from[2] };
+    return read(first, count, values);
+  };
+}
+
 vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& source)
 {
   Pool& pool = ThePool();
@@ -88,6 +108,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
   for (int a = 0; a < 3; ++a) {
     core.dimensions[a] = source.Dimensions[a] * (a == 0 ? source.Components : 1);
     core.brick[a] = source.Brick[a] * (a == 0 ? source.Components : 1);
+    core.before[a] = source.Before[a] * (a == 0 ? source.Components : 1);
   }
   core.components = source.Components;
   core.identity = source.Identity;

@@ -20,10 +20,15 @@ struct vtkStratusBrickSource {
   std::string Name;
   int Type = VTK_FLOAT, Components = 1;
   std::array<int64_t, 3> Dimensions, Brick;
-  uint64_t Identity = 0; // as stratus_volume has it
+  std::array<int64_t, 3> Before = { { 0, 0, 0 } }; // points of the first brick that precede the array; below Brick
+  uint64_t Identity = 0;                           // as stratus_volume has it
   // Writes the box of `size` values from `lo` on, components first, then x. Returns false if it cannot be read. Called by other threads.
   std::function<bool(const int64_t lo[3], const int64_t size[3], void* values)> Read;
 };
+
+// Restricts a source to a box of its points. Bricks begin where they did.
+VTK_STRATUS_PRIVATE void vtkStratusCutSource(
+  vtkStratusBrickSource& source, const std::array<int64_t, 3>& lo, const std::array<int64_t, 3>& size);
 
 // Returns the array; null where the system cannot stop who reads a page that is not there.
 VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& source);

@@ -516,9 +516,10 @@ vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::ReadValues(size_t step) const
   return sorted;
 }
 
-vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::MakeBricks(size_t step) const
+vtkSmartPointer<vtkDataArray> vtkStratusCFGrid::MakeBricks(size_t step, const vtkStratusBox& box) const
 {
   vtkStratusNetCDFPart part;
+  part.Box = box;
   for (const int dimension : this->Of.Dimensions) {
     const auto axis = std::find(this->Dimensions.begin(), this->Dimensions.end(), dimension);
     const bool space = axis != this->Dimensions.end();

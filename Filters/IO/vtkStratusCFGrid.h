@@ -6,6 +6,7 @@
 #include "vtkStratusCFVertical.h"
 #include "vtkStratusNetCDFLayout.h"
 #include "vtkStratusNetCDFModel.h"
+#include "vtkStratusParts.h"
 #include "vtkStratusProjection.h"
 #include "vtkStratusUnits.h"
 #include "vtkStratusVariableReader.h"
@@ -72,8 +73,8 @@ public:
   vtkStratusCFField ReadField(const Variable& variable, size_t step, const std::array<int, 3>* dimensions = nullptr) const;
   // Values of the variable with x fastest, along ascending axes.
   vtkSmartPointer<vtkDataArray> ReadValues(size_t step) const;
-  // The same values as bricks of the file, which are read when something looks at them; null where they can't be.
-  vtkSmartPointer<vtkDataArray> MakeBricks(size_t step) const;
+  // The same values in a box as bricks of the file, which are read when something looks at them; null where they can't be.
+  vtkSmartPointer<vtkDataArray> MakeBricks(size_t step, const vtkStratusBox& box) const;
   // Points of a curved grid, x fastest, in doubles.
   // hidden_points: 1 for points that have no place, hidden_cells: 1 for cells that longitudes around a pole tear apart; empty: none
   vtkSmartPointer<vtkDataArray> ReadPoints(size_t step, std::vector<char>& hidden_points, std::vector<char>& hidden_cells) const;

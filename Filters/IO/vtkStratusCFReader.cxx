@@ -2,6 +2,7 @@
 #include "vtkStratusCFReader.h"
 
 #include "vtkStratusCFGrid.h"
+#include "vtkStratusParts.h"
 #include "vtkStratusSphere.h"
 
 #include "vtkCellData.h"
@@ -186,8 +187,9 @@ void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFModel& file, size_t ste
     Hide(curved->GetCellData(), hidden_cells, vtkDataSetAttributes::HIDDENCELL);
   }
   vtkSmartPointer<vtkDataArray> values;
+  const vtkStratusBox box = vtkStratusBoxOf(this->WholeExtent, this->Part, false);
   if (this->MapFile && static_cast<double>(n[0]) * n[1] * n[2] * sizeof(float) >= static_cast<double>(this->MappedBytesLeast)) {
-    values = this->BricksOf(step, [&grid](size_t one) { return grid.MakeBricks(one); });
+    values = this->BricksOf(step, [&grid, &box](size_t one) { return grid.MakeBricks(one, box); });
   }
   this->Mapped = values ? 1 : 0;
   values = values ? values : grid.ReadValues(step);

@@ -61,7 +61,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
 protected:
-  vtkStratusCFReader() = default;
+  vtkStratusCFReader() { this->GivesParts = true; }
   ~vtkStratusCFReader() override = default;
 
   std::string InspectFile(const vtkStratusNetCDFModel& file) override;

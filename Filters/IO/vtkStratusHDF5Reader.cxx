@@ -92,6 +92,7 @@ vtkStratusHDF5Reader::vtkStratusHDF5Reader()
   std::fill_n(this->Origin, 3, 0.0);
   std::fill_n(this->Spacing, 3, 1.0);
   std::fill_n(this->Direction, 9, 0.0);
+  this->GivesParts = true;
 }
 
 vtkStratusHDF5Reader::~vtkStratusHDF5Reader() = default;
@@ -371,14 +372,13 @@ vtkSmartPointer<vtkDataArray> vtkStratusHDF5Reader::LeaveValues(const Array& arr
   if (!this->MapFile || bytes < this->MappedBytesLeast) {
     return nullptr;
   }
+  const vtkStratusBox part = vtkStratusBoxOf(this->WholeExtent, this->Part, array.Cells);
   if (box.Values->GetBegin() >= 0) {
     const int64_t begin = box.Values->GetBegin() + static_cast<int64_t>(box.Index) * bytes;
-    const bool beyond = vtkStratusHasBrickMemory() && bytes > vtkStratusGetBrickMemory(); // else the system forgets pages
-    const vtkSmartPointer<vtkDataArray> mapped = beyond
-      ? vtkStratusMakeRawBricks(this->FileName, begin, array.Name.c_str(), type, array.Components, box.Sizes)
-      : vtkStratusMapFile(this->FileName, begin, array.Name.c_str(), type, array.Components, tuples);
-    if (mapped) {
-      return mapped;
+    const vtkSmartPointer<vtkDataArray> left =
+      vtkStratusLeaveRaw(this->FileName, begin, array.Name.c_str(), type, array.Components, box.Sizes, part);
+    if (left) {
+      return left;
     }
   }
   vtkStratusBrickSource source;
@@ -399,6 +399,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusHDF5Reader::LeaveValues(const Array& arr
       return false;
     }
   };
+  vtkStratusCutSource(source, part.Low, part.Size);
   return vtkStratusMakeBricks(source);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusImageReader.h"
 
-#include "vtkStratusBricks.h"
 #include "vtkStratusImageFile.h"
 #include "vtkStratusImageValues.h"
 #include "vtkStratusMakeArray.h"
@@ -129,6 +128,7 @@ vtkStratusImageFile ReadHeader(std::string path)
 vtkStratusImageReader::vtkStratusImageReader()
 {
   this->MapFile = 1;
+  this->GivesParts = true;
 }
 
 vtkStratusImageReader::~vtkStratusImageReader() = default;
@@ -247,7 +247,7 @@ void vtkStratusImageReader::SetRawLayout(const int size[3], int type, bool bigEn
   this->Modified();
 }
 
-// Returns the values from number `first` of the file on without reading them; null where they have to be read.
+// Returns the part's values, of those from number `first` of the file on, without reading them; null where they have to be read.
 vtkSmartPointer<vtkDataArray> vtkStratusImageReader::Map(int64_t first, int64_t points)
 {
 #ifdef VTK_WORDS_BIGENDIAN
@@ -268,15 +268,9 @@ vtkSmartPointer<vtkDataArray> vtkStratusImageReader::Map(int64_t first, int64_t 
   if (error) {
     return nullptr;
   }
-  if (vtkStratusHasBrickMemory() && bytes > vtkStratusGetBrickMemory()) { // else the system forgets pages where memory is short
-    const int64_t sizes[3] = { this->WholeExtent[1] + 1, this->WholeExtent[3] + 1, this->WholeExtent[5] + 1 };
-    const vtkSmartPointer<vtkDataArray> bricks =
-      vtkStratusMakeRawBricks(file.Files[0], begin + first * size, file.ArrayName.c_str(), file.Type, this->Components, sizes);
-    if (bricks) {
-      return bricks;
-    }
-  }
-  return vtkStratusMapFile(file.Files[0], begin + first * size, file.ArrayName.c_str(), file.Type, this->Components, points);
+  const int64_t sizes[3] = { this->WholeExtent[1] + 1, this->WholeExtent[3] + 1, this->WholeExtent[5] + 1 };
+  return vtkStratusLeaveRaw(file.Files[0], begin + first * size, file.ArrayName.c_str(), file.Type, this->Components, sizes,
+    vtkStratusBoxOf(this->WholeExtent, this->Part, false));
 }
 
 // Reads a step in time as it is stored, with components first.

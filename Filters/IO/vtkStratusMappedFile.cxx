@@ -219,17 +219,9 @@ vtkSmartPointer<vtkDataArray> MapOpen(int file, int64_t begin, const char* name,
   vtkStratusSetMapped(array, IdentityOf(file, status, begin, bytes), reinterpret_cast<const uint64_t*>(&slot->Missing));
   return array;
 }
-} // namespace
-
-vtkSmartPointer<vtkDataArray> vtkStratusMapFile(
-  const std::string& path, int64_t begin, const char* name, int type, int components, vtkIdType tuples)
-{
-  const OpenFile file(path);
-  return file.Handle < 0 ? nullptr : MapOpen(file.Handle, begin, name, type, components, tuples);
-}
-
-vtkSmartPointer<vtkDataArray> vtkStratusMakeRawBricks(
-  const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3])
+// Returns the points of a box as bricks; null where they can't be made.
+vtkSmartPointer<vtkDataArray> MakeRawBricks(
+  const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3], const vtkStratusBox& box)
 {
   const auto file = std::make_shared<OpenFile>(path);
   const int64_t value = components * vtkDataArray::GetDataTypeSize(type), row = sizes[0] * value, rows = sizes[1], across = sizes[0];
@@ -270,7 +262,34 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeRawBricks(
     }
     return whole && (!missing || *missing == before);
   };
+  vtkStratusCutSource(source, box.Low, box.Size);
   return file->Handle < 0 ? nullptr : vtkStratusMakeBricks(source);
+}
+} // namespace
+
+vtkSmartPointer<vtkDataArray> vtkStratusMapFile(
+  const std::string& path, int64_t begin, const char* name, int type, int components, vtkIdType tuples)
+{
+  const OpenFile file(path);
+  return file.Handle < 0 ? nullptr : MapOpen(file.Handle, begin, name, type, components, tuples);
+}
+
+vtkSmartPointer<vtkDataArray> vtkStratusLeaveRaw(
+  const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3], const vtkStratusBox& box)
+{
+  const int64_t points = box.Size[0] * box.Size[1] * box.Size[2], value = components * vtkDataArray::GetDataTypeSize(type);
+  const bool rows = box.Size[0] == sizes[0], layers = rows && box.Size[1] == sizes[1];
+  const bool one_run = layers || (rows && box.Size[2] == 1) || (box.Size[1] == 1 && box.Size[2] == 1);
+  const bool beyond = vtkStratusHasBrickMemory() && points * value > vtkStratusGetBrickMemory(); // else the system forgets pages
+  vtkSmartPointer<vtkDataArray> array;
+  if (beyond || !one_run) {
+    array = MakeRawBricks(path, begin, name, type, components, sizes, box);
+  }
+  if (!array && one_run) {
+    const int64_t first = (box.Low[2] * sizes[1] + box.Low[1]) * sizes[0] + box.Low[0];
+    array = vtkStratusMapFile(path, begin + first * value, name, type, components, points);
+  }
+  return array;
 }
 
 uint64_t vtkStratusIdentityOfFile(const std::string& path, int64_t begin, int64_t bytes)
@@ -288,7 +307,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusMapFile(const std::string&, int64_t, con
   return nullptr;
 }
 
-vtkSmartPointer<vtkDataArray> vtkStratusMakeRawBricks(const std::string&, int64_t, const char*, int, int, const int64_t[3])
+vtkSmartPointer<vtkDataArray> vtkStratusLeaveRaw(const std::string&, int64_t, const char*, int, int, const int64_t[3], const vtkStratusBox&)
 {
   return nullptr;
 }

@@ -4,6 +4,7 @@
 #ifndef vtkStratusMappedFile_h
 #define vtkStratusMappedFile_h
 
+#include "vtkStratusParts.h"
 #include "vtkStratusPrivate.h"
 
 #include "vtkSmartPointer.h"
@@ -26,8 +27,9 @@ VTK_STRATUS_PRIVATE uint64_t vtkStratusIdentityOfFile(const std::string& path, i
 VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMapFile(
   const std::string& path, int64_t begin, const char* name, int type, int components, vtkIdType tuples);
 
-// Returns such an array of sizes x, y, z as bricks, which take no more memory than vtkStratusGetBrickMemory(). Null where it can't be made.
-VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMakeRawBricks(
-  const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3]);
+// Returns the points of a box of such values, of sizes x, y, z, as an array that is mapped; or as bricks, if the box is not one run of the
+// file's bytes, or if a limit of memory is set (vtkStratusHasBrickMemory()) that it exceeds. Null where it can't be made.
+VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusLeaveRaw(
+  const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3], const vtkStratusBox& box);
 
 #endif

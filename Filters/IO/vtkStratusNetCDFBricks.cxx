@@ -233,9 +233,11 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeNetCDFBricks(
     if (part.Axes[i] >= 0) {
       const size_t a = static_cast<size_t>(part.Axes[i]);
       source.Brick[a] = std::min(std::max<int64_t>(static_cast<int64_t>(chunks[i]), 1), source.Dimensions[a]);
+      source.Before[a] = part.BeforeFirst(a, source.Brick[a]);
     }
   }
   const auto bricks = std::make_shared<Part>(values, reader, part);
   source.Read = [bricks](const int64_t lo[3], const int64_t size[3], void* to) { return bricks->Read(lo, size, to); };
+  vtkStratusCutSource(source, part.Box.Low, part.Box.Size);
   return vtkStratusMakeBricks(source);
 }

@@ -4,6 +4,7 @@
 #define vtkStratusNetCDFBricks_h
 
 #include "vtkStratusNetCDFFile.h"
+#include "vtkStratusParts.h"
 
 #include <array>
 
@@ -14,6 +15,14 @@ struct vtkStratusNetCDFPart {
   std::vector<size_t> Indices;
   std::array<size_t, 3> Lengths;                             // along x, y, z
   std::array<bool, 3> Flipped = { { false, false, false } }; // the file's last value is the array's first
+  vtkStratusBox Box;                                         // what is made of it
+
+  // Returns how many values of the array's first chunk precede the array: the file's last chunk, which may not be whole.
+  int64_t BeforeFirst(size_t axis, int64_t chunk) const
+  {
+    const int64_t rest = static_cast<int64_t>(this->Lengths[axis]) % chunk;
+    return this->Flipped[axis] && rest > 0 ? chunk - rest : 0;
+  }
 };
 
 // Returns the array, x fastest, with values as vtkStratusNetCDFFile::Read() gives them; null where it can't be made. The file is opened

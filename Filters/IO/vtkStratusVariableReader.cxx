@@ -5,11 +5,13 @@
 #include "vtkStratusMapped.h"
 #include "vtkStratusMappedFile.h"
 #include "vtkStratusMetres.h"
+#include "vtkStratusParts.h"
 #include "vtkStratusReadError.h"
 #include "vtkStratusUnits.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataObjectTypes.h"
+#include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
@@ -25,6 +27,9 @@ vtkStratusVariableReader::vtkStratusVariableReader()
 {
   this->SetNumberOfInputPorts(0);
   std::fill_n(this->WholeExtent, 6, 0);
+  std::fill_n(this->Part, 6, 0);
+  std::fill_n(this->BricksPart, 6, 0);
+  std::fill_n(this->OwnedPart, 6, 0);
 }
 
 vtkStratusVariableReader::~vtkStratusVariableReader()
@@ -239,11 +244,12 @@ vtkSmartPointer<vtkDataArray> vtkStratusVariableReader::BricksOf(
     array = array ? array : make(one);
     return array;
   };
-  if (file != this->BricksFile) { // it was replaced
+  if (file != this->BricksFile || !std::equal(this->Part, this->Part + 6, this->BricksPart)) { // it was replaced
     while (!this->Bricks.empty()) {
       this->Retire(this->Bricks.begin()->first);
     }
     this->BricksFile = file;
+    std::copy_n(this->Part, 6, this->BricksPart);
   }
   const bool plays = !this->Bricks.empty() && step != this->LastStep, back = step < this->LastStep;
   this->LastStep = step;
@@ -306,6 +312,9 @@ int vtkStratusVariableReader::RequestInformation(vtkInformation*, vtkInformation
   vtkInformation* info = outputs->GetInformationObject(0);
   if (vtkDataObject::GetData(info)->GetExtentType() == VTK_3D_EXTENT) {
     info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->WholeExtent, 6);
+    if (this->GivesParts) { // and their ghosts, which the pipeline would give whole arrays for
+      info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+    }
   } else {
     info->Remove(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
   }
@@ -318,6 +327,15 @@ int vtkStratusVariableReader::RequestInformation(vtkInformation*, vtkInformation
     info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
   }
   return 1;
+}
+
+// Finds what is requested. Returns false if that is nothing.
+bool vtkStratusVariableReader::FindPart(vtkInformation* request, vtkDataObject* output)
+{
+  std::copy_n(this->WholeExtent, 6, this->Part);
+  std::copy_n(this->WholeExtent, 6, this->OwnedPart);
+  return !this->GivesParts || output->GetExtentType() != VTK_3D_EXTENT ||
+    vtkStratusFindPart(request, this->WholeExtent, this->Part, this->OwnedPart);
 }
 
 // Sets the unit of the variable's values, and how long a unit of the coordinates is if that is known.
@@ -359,9 +377,17 @@ int vtkStratusVariableReader::RequestData(vtkInformation*, vtkInformationVector*
     points->Initialize(); // an image keeps the values of another variable, of other sizes perhaps
   }
   this->Retired.clear();
+  if (!this->FindPart(info, output)) {
+    output->Initialize();
+    return 1;
+  }
   try {
     this->Build(step, output);
     this->SetUnits(output);
+    if (auto* grid = this->GivesParts && output->GetExtentType() == VTK_3D_EXTENT ? vtkDataSet::SafeDownCast(output) : nullptr) {
+      vtkStratusCutGrid(grid, this->WholeExtent, this->Part);
+      vtkStratusFlagDuplicates(grid, this->OwnedPart, this->Mapped && grid->GetNumberOfPoints() >= this->MappedBytesLeast);
+    }
     this->Retired.clear();
     if (!this->Times.empty()) {
       output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), this->Times[step]);

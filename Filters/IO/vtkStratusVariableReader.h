@@ -6,6 +6,10 @@
  * A reader outputs one variable on its grid, at the time step that the pipeline requests (the nearest step at or before it, otherwise the
  * first). An error names the file and the fault, and empties the output.
  *
+ * Readers of images and of grids with an extent output the piece of a rank, with as many layers of ghost cells as are requested, or the
+ * extent that a filter requests (vtkStratusVDBReader outputs the whole). Of values that stay in the file (SetMapFile()), only the piece's
+ * are read, and the chunks that contain them. Other values are read as a whole first.
+ *
  * The information of the output's array has the variable's unit as vtkDataArray::UNITS_LABEL(). If the unit of the coordinates is a length,
  * the output's field data have an array "MetresPerUnit" of one number. By both, numbers of rays (vtkStratusVolumeMapper::SetQuantities())
  * have units, and their lengths are in metres.
@@ -209,6 +213,10 @@ protected:
   vtkStratusFileAxis FileAxes[3];
 #endif
   int WholeExtent[6]; // of an output with an extent
+  /// Whether the reader gives parts of such an output, for ranks and for filters that request one. Build() makes all of it, or all but
+  /// arrays that have the values of Part only; the rest is cut out.
+  bool GivesParts = false;
+  int Part[6]; // what is requested of WholeExtent, with ghost cells
 
   /// Says that the output's coordinates are places on a sphere, in metres.
   void SetAxesOnSphere();
@@ -223,11 +231,14 @@ private:
   vtkMTimeType LookTime = 0;
 #ifndef __VTK_WRAP__
   void Retire(size_t step);
+  bool FindPart(vtkInformation* request, vtkDataObject* output);
 
   std::map<size_t, vtkSmartPointer<vtkDataArray>> Bricks; // of time steps
   std::vector<vtkSmartPointer<vtkDataArray>> Retired;     // were among them
   vtkSmartPointer<vtkDataArray> Ahead;                    // of the step that is read ahead
   uint64_t BricksFile = 0;                                // the identity of their file
+  int BricksPart[6];                                      // the extent that they have
+  int OwnedPart[6];                                       // Part without ghost cells
 #endif
   size_t LastStep = 0; // of these
   std::string OutputClass;

@@ -442,6 +442,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusZarrFile::MakeBricks(const Variable& var
       const size_t a = static_cast<size_t>(part.Axes[i]);
       source.Dimensions[a] = static_cast<int64_t>(part.Lengths[a]);
       source.Brick[a] = std::min(static_cast<int64_t>(array->GetChunk()[i]), source.Dimensions[a]);
+      source.Before[a] = part.BeforeFirst(a, source.Brick[a]);
     }
   }
   source.Identity = vtkStratusIdentityOfPart(array->GetIdentity(), variable.Name, numbers);
@@ -471,5 +472,6 @@ vtkSmartPointer<vtkDataArray> vtkStratusZarrFile::MakeBricks(const Variable& var
       return false;
     }
   };
+  vtkStratusCutSource(source, part.Box.Low, part.Box.Size);
   return vtkStratusMakeBricks(source);
 }
