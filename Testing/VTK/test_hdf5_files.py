@@ -96,8 +96,8 @@ for name, options in files.items():
         print(f"{name} is left out: {error}")
         continue
     bricks, whole = reader_of(name, True), reader_of(name, False)
-    check(f"{name} is in bricks", bool(bricks.GetMapped()) and not whole.GetMapped())
-    check(f"{name} has its values", same(in_two_threads(values_of(bricks)), values_of(whole)))
+    check(bool(bricks.GetMapped()) and not whole.GetMapped(), f"{name} is in bricks")
+    check(same(in_two_threads(values_of(bricks)), values_of(whole)), f"{name} has its values")
 
 # Chunks that were never written, and values behind the end of a data set.
 with netCDF4.Dataset("partly.nc", "w") as file:
@@ -114,9 +114,9 @@ for name in ("filled", "usual"):
             reader.SetFileName("partly.nc"), reader.SetVariableName(name), reader.SetMapFile(bricks), reader.SetMappedBytesLeast(0)
             reader.UpdateTimeStep(float(step))
             got.append(values_of(reader).copy())
-        check(f"'{name}' at {step} is filled", numpy.array_equal(*got, equal_nan=True))
-        check(f"'{name}' at {step} has {('some', 'no', 'some', 'all')[2 * (name == 'usual') + step]} values",
-              numpy.isfinite(got[0]).sum() == {("filled", 1): 0, ("usual", 1): 24000}.get((name, step), 9 * 8 * 40))
+        check(numpy.array_equal(*got, equal_nan=True), f"'{name}' at {step} is filled")
+        check(numpy.isfinite(got[0]).sum() == {("filled", 1): 0, ("usual", 1): 24000}.get((name, step), 9 * 8 * 40),
+              f"'{name}' at {step} has {('some', 'no', 'some', 'all')[2 * (name == 'usual') + step]} values")
 
 
 # ---- images of VTKHDF
@@ -171,24 +171,24 @@ WIND = chance.random((*SIZE, 3))
 arrays = {"PointData/rho": FIELD, "PointData/wind": WIND, "CellData/mass": CELLS}
 for name, options in {"pieces.vtkhdf": {}, "chunks.vtkhdf": dict(zlib=True, fletcher32=True), "big.hdf": dict(endian="big")}.items():
     expected = by_vtk(write_image(name, arrays, **options))
-    check(f"{name} can be read", stratus.vtkStratusHDF5Reader.CanReadFile(name) == 1)
+    check(stratus.vtkStratusHDF5Reader.CanReadFile(name) == 1, f"{name} can be read")
     for limit in (0, 16 << 20):
         Reader.SetMemoryLimit(limit)
         for map_file in (False, True):
             for variable in ("rho", "wind", "mass"):
                 reader = image_of(name, variable, map_file)
                 output, cells = reader.GetOutputDataObject(0), variable == "mass"
-                check(f"{variable} of {name} is {'left in the file' if map_file else 'read'}", bool(reader.GetMapped()) == map_file)
-                check(f"{variable} of {name} has its frame", frame_of(output) == frame_of(expected))
+                check(bool(reader.GetMapped()) == map_file, f"{variable} of {name} is {'left in the file' if map_file else 'read'}")
+                check(frame_of(output) == frame_of(expected), f"{variable} of {name} has its frame")
                 reference = CELLS.ravel() if cells else vtk_to_numpy(expected.GetPointData().GetArray(variable))
-                check(f"{variable} of {name} has its values", same(in_two_threads(values_of(reader, cells)), reference))
-    check(f"variables of {name}", [reader.GetNameOfVariable(i) for i in range(3)] == ["rho", "wind", "mass"])
+                check(same(in_two_threads(values_of(reader, cells)), reference), f"{variable} of {name} has its values")
+    check([reader.GetNameOfVariable(i) for i in range(3)] == ["rho", "wind", "mass"], f"variables of {name}")
 
 large = write_image("large.hdf", {"PointData/rho": numpy.tile(FIELD, (40, 1, 1))}, (0, NX - 1, 0, NY - 1, 0, 40 * NZ - 1))
 used = Reader.GetBytesRead()
 reader = image_of(large, map_file=True)
-check("values in one piece that are larger than the limit", same(values_of(reader), numpy.tile(FIELD, (40, 1, 1)).ravel()))
-check("are in bricks", reader.GetMapped() and Reader.GetBytesRead() >= used + 40 * FIELD.nbytes and Reader.GetMemoryUsed() <= 16 << 20)
+check(same(values_of(reader), numpy.tile(FIELD, (40, 1, 1)).ravel()), "values in one piece that are larger than the limit")
+check(reader.GetMapped() and Reader.GetBytesRead() >= used + 40 * FIELD.nbytes and Reader.GetMemoryUsed() <= 16 << 20, "are in bricks")
 Reader.SetMemoryLimit(0)
 
 # Time, blanks, a flat image, arrays that do not fit.
@@ -202,23 +202,23 @@ for map_file in (False, True):
     for step, (time, factor) in enumerate(((0.5, 2), (1.0, 1), (4.0, 2))):
         for variable, expected in (("rho", factor * FIELD), ("mass", CELLS + step), ("still", FIELD)):
             reader = image_of("steps.vtkhdf", variable, map_file, time)
-            check(f"{variable} at {time}", same(values_of(reader, variable == "mass"), expected.astype(expected.dtype).ravel()))
+            check(same(values_of(reader, variable == "mass"), expected.astype(expected.dtype).ravel()), f"{variable} at {time}")
             blank = reader.GetOutputDataObject(0).GetPointData().GetArray("vtkGhostType")
-            check("blanked points", blank is not None and same(vtk_to_numpy(blank), ghosts.ravel()))
+            check(blank is not None and same(vtk_to_numpy(blank), ghosts.ravel()), "blanked points")
 for words in ("'short' of the size 39 x 51 x 61", "'still' of cells"):
-    check("an array that is left out", words in reader.GetDescription())
+    check(words in reader.GetDescription(), "an array that is left out")
 flat = image_of(write_image("flat.vtkhdf", {"PointData/rho": FIELD[0]}, (0, NX - 1, 0, NY - 1, 3, 3)))
-check("a flat image", same(values_of(flat), FIELD[0].ravel()))
+check(same(values_of(flat), FIELD[0].ravel()), "a flat image")
 many = image_of(write_image("negative.vtkhdf", arrays, (-7, NX - 8, -1, NY - 2, 4, NZ + 3)))
-check("an extent that does not begin at 0", many.GetOutputDataObject(0).GetExtent() == (-7, NX - 8, -1, NY - 2, 4, NZ + 3))
-check("has its values", same(values_of(many), FIELD.ravel()))
+check(many.GetOutputDataObject(0).GetExtent() == (-7, NX - 8, -1, NY - 2, 4, NZ + 3), "an extent that does not begin at 0")
+check(same(values_of(many), FIELD.ravel()), "has its values")
 
 # ---- any HDF5
 write("plain.h5", FIELD, chunksizes=(7, 16, 20), zlib=True)
 plain = image_of("plain.h5", "/run/rho", True)
-check("a data set by its path", same(values_of(plain), FIELD.ravel()) and plain.GetMapped())
-check("has a plain frame", frame_of(plain.GetOutputDataObject(0))[:3] == ((0, NX - 1, 0, NY - 1, 0, NZ - 1), (0, 0, 0), (1, 1, 1)))
-check("is the first", plain.GetNameOfVariable(0) == "/run/rho" and plain.GetNumberOfVariables() == 1)
+check(same(values_of(plain), FIELD.ravel()) and plain.GetMapped(), "a data set by its path")
+check(frame_of(plain.GetOutputDataObject(0))[:3] == ((0, NX - 1, 0, NY - 1, 0, NZ - 1), (0, 0, 0), (1, 1, 1)), "has a plain frame")
+check(plain.GetNameOfVariable(0) == "/run/rho" and plain.GetNumberOfVariables() == 1, "is the first")
 
 # ---- files that are wrong
 for name, words, options in (
@@ -226,31 +226,31 @@ for name, words, options in (
         ("small", "no array of numbers of its size", dict(extent=(0, 9, 0, 9, 0, 9))),
         ("falls", "must rise", dict(extent=(9, 0, 0, 9, 0, 9)))):
     reader = image_of(write_image(f"{name}.hdf", {"PointData/rho": FIELD}, **options))
-    check(f"an image that is {name}", any(words in text for text in reader.heard))
+    check(any(words in text for text in reader.heard), f"an image that is {name}")
 write_image("astray.hdf", {"PointData/rho": FIELD[None], "Steps/PointDataOffsets/rho": numpy.array((0, 1))}, version=(2, 0), steps=(0.0, 1.0))
-check("a step behind the end", any("index 1, must be from 0 to below 1" in text for text in image_of("astray.hdf", step=1.0).heard))
-check("another type is VTK's", stratus.vtkStratusHDF5Reader.CanReadFile("table.hdf") == 0)
-check("another name is refused", any("those that are: rho, wind, mass" in text for text in image_of("pieces.vtkhdf", "none").heard))
+check(any("index 1, must be from 0 to below 1" in text for text in image_of("astray.hdf", step=1.0).heard), "a step behind the end")
+check(stratus.vtkStratusHDF5Reader.CanReadFile("table.hdf") == 0, "another type is VTK's")
+check(any("those that are: rho, wind, mass" in text for text in image_of("pieces.vtkhdf", "none").heard), "another name is refused")
 with open("no.h5", "w") as file:
     file.write("no HDF5 at all")
-check("another format is refused", any("no HDF5 file" in text for text in image_of("no.h5").heard))
-check("and is not ours", stratus.vtkStratusHDF5Reader.CanReadFile("no.h5") == 0)
+check(any("no HDF5 file" in text for text in image_of("no.h5").heard), "another format is refused")
+check(stratus.vtkStratusHDF5Reader.CanReadFile("no.h5") == 0, "and is not ours")
 
 # A damaged chunk.
 size = os.path.getsize(write_image("damaged.hdf", {"PointData/rho": FIELD}, zlib=True, fletcher32=True, chunksizes=(5, 51, 61)))
 with open("damaged.hdf", "r+b") as file:
     file.seek(size // 2), file.write(bytes(64))
-check("a damaged image is refused", any("cannot be read" in text for text in image_of("damaged.hdf").heard))
+check(any("cannot be read" in text for text in image_of("damaged.hdf").heard), "a damaged image is refused")
 damaged = image_of("damaged.hdf", map_file=True)
 missing = numpy.isnan(values_of(damaged))
-check("only a damaged chunk is missing", missing.sum() == 5 * NY * NX)
-check("others have their values", same(values_of(damaged)[~missing], FIELD.ravel()[~missing]))
+check(missing.sum() == 5 * NY * NX, "only a damaged chunk is missing")
+check(same(values_of(damaged)[~missing], FIELD.ravel()[~missing]), "others have their values")
 mapper, volume = stratus.vtkStratusVolumeMapper(), vtk.vtkVolume()
 mapper.SetInputDataObject(damaged.GetOutputDataObject(0)), volume.SetMapper(mapper)
 heard = errors_of(mapper)
 window, renderer = vtk.vtkRenderWindow(), vtk.vtkRenderer()
 window.SetOffScreenRendering(1), window.AddRenderer(renderer), renderer.AddVolume(volume), renderer.ResetCamera(), window.Render()
-check("the mapper reports it", any("missing" in text for text in heard))
+check(any("missing" in text for text in heard), "the mapper reports it")
 del missing, damaged, mapper, volume, renderer, window
 
 done()
