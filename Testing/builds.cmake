@@ -53,7 +53,7 @@ set_tests_properties(core_by_clang PROPERTIES FIXTURES_SETUP core_by_clang)
 set_tests_properties(install_core PROPERTIES FIXTURES_REQUIRED core_by_clang)
 stratus_add_consumer(consumer_of_core Testing/Consumers/Core install_core "${CMAKE_BINARY_DIR}/consumer_of_core/consumer")
 stratus_add_consumer(example_c_alone Examples/C install_core "${CMAKE_BINARY_DIR}/example_c_alone/cloud"
-  "${CMAKE_BINARY_DIR}/example_c_alone/cloud.ppm")
+  "${CMAKE_BINARY_DIR}/example_c_alone/cloud.png")
 if (stratus_vtk)
   stratus_add_installation(install_all "${CMAKE_BINARY_DIR}")
   stratus_add_consumer(consumer_of_vtk Testing/Consumers/VTK install_all ${stratus_display} "${CMAKE_BINARY_DIR}/consumer_of_vtk/consumer")

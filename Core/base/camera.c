@@ -8,6 +8,7 @@
 #define DEGREES_TO_RADIANS 0.017453292519943295
 /* Sine of the smallest angle between view direction and view-up at which double still defines the upward direction. */
 #define PARALLEL_BELOW 1e-9
+#define FRAME 0.95 /* of the window, which a framed box fills at most */
 /* Limits on the squared length of a camera's forward vector. */
 #define SMALLEST_VECTOR 1e-30
 #define LARGEST_VECTOR 1e30
@@ -93,6 +94,65 @@ stratus_status stratus_camera_parallel(stratus_context* context, const double ey
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera parallel_scale %g, must be positive and finite", parallel_scale);
   }
   return aim(context, eye, focal, view_up, parallel_scale, aspect, 1, camera);
+}
+
+/* The distance from a box's middle at which a perspective camera sees all of its corners, or half the height of a parallel camera's window.
+ * axes: right, up and back, of length 1. slope: of the upper edge of the view; 0: parallel. */
+static double framing(const double half[3], double axes[3][3], double slope, double aspect)
+{
+  double most = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const double p[3] = { corner & 1 ? half[0] : -half[0], corner & 2 ? half[1] : -half[1], corner & 4 ? half[2] : -half[2] };
+    const double across = fmax(fabs(stratus_vector_dot(p, axes[0])) / aspect, fabs(stratus_vector_dot(p, axes[1]))) / FRAME;
+    most = fmax(most, slope > 0.0 ? stratus_vector_dot(p, axes[2]) + across / slope : across);
+  }
+  return most;
+}
+
+stratus_status stratus_camera_frame(stratus_context* context, const double bounds[6], int up_axis, double azimuth, double elevation,
+  double view_angle, double aspect, stratus_camera* camera)
+{
+  double middle[3], half[3], axes[3][3], eye[3], up[3] = { 0.0, 0.0, 0.0 };
+  if (!context) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  if (!bounds || up_axis < 0 || up_axis > 2) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, bounds ? "camera up_axis %d outside 0..2" : "camera bounds are NULL", up_axis);
+  }
+  if (!isfinite(azimuth) || !(elevation >= -89.0 && elevation <= 89.0) || !(view_angle >= 0.0 && view_angle < 180.0)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "camera azimuth %g, elevation %g and view_angle %g: must be finite, in -89..89, and in 0..180, less than 180", azimuth, elevation,
+      view_angle);
+  }
+  if (!(aspect > 0.0) || !isfinite(aspect)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera aspect %g, must be positive and finite", aspect);
+  }
+  for (int a = 0; a < 3; ++a) {
+    const double lo = bounds[2 * a], hi = bounds[2 * a + 1];
+    if (!isfinite(lo) || !isfinite(hi) || lo > hi) {
+      return stratus_fail(
+        context, STRATUS_INVALID_ARGUMENT, "camera bounds %g..%g along axis %d are not an ordered finite range", lo, hi, a);
+    }
+    middle[a] = 0.5 * lo + 0.5 * hi;
+    half[a] = 0.5 * hi - 0.5 * lo;
+  }
+  up[up_axis] = 1.0;
+  axes[2][up_axis] = sin(elevation * DEGREES_TO_RADIANS);
+  axes[2][(up_axis + 1) % 3] = cos(elevation * DEGREES_TO_RADIANS) * cos(azimuth * DEGREES_TO_RADIANS);
+  axes[2][(up_axis + 2) % 3] = cos(elevation * DEGREES_TO_RADIANS) * sin(azimuth * DEGREES_TO_RADIANS);
+  stratus_vector_cross(up, axes[2], axes[0]);
+  (void)stratus_vector_normalize(axes[0]);
+  stratus_vector_cross(axes[2], axes[0], axes[1]);
+  const double slope = tan(0.5 * view_angle * DEGREES_TO_RADIANS), fits = framing(half, axes, slope, aspect);
+  if (!(fits > 0.0) || !isfinite(fits)) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "camera bounds have no diagonal that is finite and above 0");
+  }
+  const double distance = slope > 0.0 ? fits : 4.0 * sqrt(stratus_vector_dot(half, half));
+  for (int a = 0; a < 3; ++a) {
+    eye[a] = middle[a] + distance * axes[2][a];
+  }
+  return slope > 0.0 ? stratus_camera_perspective(context, eye, middle, up, view_angle, aspect, camera)
+                     : stratus_camera_parallel(context, eye, middle, up, fits, aspect, camera);
 }
 
 stratus_status stratus_camera_check(stratus_context* context, const stratus_camera* camera, const stratus_image* image)

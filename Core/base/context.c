@@ -40,6 +40,8 @@ const char* stratus_status_name(stratus_status status)
       return "device error";
     case STRATUS_UNSUPPORTED:
       return "unsupported";
+    case STRATUS_FILE_ERROR:
+      return "file error";
   }
   return "unknown status";
 }

@@ -43,6 +43,17 @@ STRATUS_API stratus_status stratus_camera_perspective(stratus_context* context, 
 STRATUS_API stratus_status stratus_camera_parallel(stratus_context* context, const double eye[3], const double focal[3],
   const double view_up[3], double parallel_scale, double aspect, stratus_camera* camera);
 
+/* Make a camera that sees a whole box, as large as fits into the image with a border of 1/20.
+ * - bounds: xmin, xmax, ymin, ymax, zmin, zmax, finite, of a box with a diagonal > 0, such as of stratus_volume_bounds().
+ * - up_axis: 0..2, the axis that points up in the image.
+ * - azimuth: degrees about up_axis, from the axis after it (x for z) towards the one after that. elevation: degrees above the horizon,
+ *   -89..89. The eye is in this direction.
+ * - view_angle: as in stratus_camera_perspective(); 0: parallel rays. aspect: as there.
+ *
+ * Returns STRATUS_INVALID_ARGUMENT for values outside these ranges. */
+STRATUS_API stratus_status stratus_camera_frame(stratus_context* context, const double bounds[6], int up_axis, double azimuth,
+  double elevation, double view_angle, double aspect, stratus_camera* camera);
+
 /* The image that a renderer fills, and the geometry that ends its rays. The caller owns all buffers. Each has width*height pixels, bottom
  * row first. */
 typedef struct stratus_image {
@@ -58,6 +69,15 @@ typedef struct stratus_image {
    * near_k of a perspective camera > 0. */
   const float* opaque_depth;
 } stratus_image;
+
+/* Write an image's rgba8, or its rgba if rgba8 is NULL, as a PNG file of 8 bits. A file of that name stays as it was
+ * until the new one is whole (PATH.part).
+ * - background: red, green and blue, 0..1, under the image. NULL: the file has transparency.
+ *
+ * Returns STRATUS_INVALID_ARGUMENT without pixels or a path, STRATUS_FILE_ERROR with the system's words, and STRATUS_UNSUPPORTED where
+ * the core was built without zlib. */
+STRATUS_API stratus_status stratus_image_write(
+  stratus_context* context, const stratus_image* image, const double background[3], const char* path);
 
 #ifdef __cplusplus
 }

@@ -20,7 +20,8 @@ typedef enum stratus_status {
   STRATUS_CANCELLED,        /* the progress callback asked to stop; output arrays are undefined, objects stay usable */
   STRATUS_NO_DEVICE,        /* no such OpenCL device */
   STRATUS_DEVICE_ERROR,     /* an OpenCL call failed, or the device disappeared */
-  STRATUS_UNSUPPORTED       /* the request is valid, but this build or method does not implement it */
+  STRATUS_UNSUPPORTED,      /* the request is valid, but this build or method does not implement it */
+  STRATUS_FILE_ERROR        /* a file cannot be written; the message has the system's words */
 } stratus_status;
 
 /* Return the English name of a status. Never NULL. */

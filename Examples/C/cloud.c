@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Draws the scene "cloud" with only the core: cloud [OUT.ppm] */
+ * Draws the scene "cloud" with only the core: cloud [OUT.png] */
 #include <stratus.h>
 
 #include <stdio.h>
@@ -7,26 +7,9 @@
 
 enum { SIZE = 512 };
 
-static int write_ppm(const char* path, const float* rgba)
-{
-  FILE* file = fopen(path, "wb");
-  if (!file) {
-    return 0;
-  }
-  fprintf(file, "P6 %d %d 255\n", SIZE, SIZE);
-  for (int i = 0; i < SIZE * SIZE; ++i) { /* ours start at the bottom, PPM at the top */
-    const float* pixel = rgba + 4 * ((SIZE - 1 - i / SIZE) * SIZE + i % SIZE);
-    for (int c = 0; c < 3; ++c) {
-      fputc((int)(255.0f * (pixel[c] + (1.0f - pixel[3]) * 0.1f) + 0.5f), file); /* over dark grey */
-    }
-  }
-  const int whole = !ferror(file);
-  return fclose(file) == 0 && whole;
-}
-
 int main(int argc, char** argv)
 {
-  const char* path = argc > 1 ? argv[1] : "cloud.ppm";
+  const char* path = argc > 1 ? argv[1] : "cloud.png";
   stratus_context* context;
   stratus_scene* scene = NULL;
   stratus_ray_caster* caster = NULL;
@@ -45,11 +28,12 @@ int main(int argc, char** argv)
     stratus_scene_camera(context, bounds, scene->up_axis, 0, 0, 1.0, &camera) == STRATUS_OK &&
     stratus_ray_caster_create(context, &caster) == STRATUS_OK &&
     stratus_ray_caster_render(caster, &scene->volume, &scene->transfer, &camera, NULL, &image, &report) == STRATUS_OK;
-  const int written = drawn && write_ppm(path, rgba);
+  const double dark_grey[3] = { 0.1, 0.1, 0.1 };
+  const int written = drawn && stratus_image_write(context, &image, dark_grey, path) == STRATUS_OK;
   if (written) {
     printf("%s: %.1f ms on %s\n", path, report.cast_ms, stratus_context_device(context));
   } else {
-    fprintf(stderr, "cloud: %s\n", drawn ? "the picture could not be written" : rgba ? stratus_context_message(context) : "out of memory");
+    fprintf(stderr, "cloud: %s\n", rgba ? stratus_context_message(context) : "out of memory");
   }
   stratus_ray_caster_destroy(caster);
   stratus_scene_destroy(context, scene);

@@ -33,6 +33,7 @@ class Unsupported(NotImplementedError):
 _ERRORS = {
     "STRATUS_INVALID_ARGUMENT": ValueError, "STRATUS_OVERFLOW": OverflowError, "STRATUS_OUT_OF_MEMORY": MemoryError,
     "STRATUS_CANCELLED": Cancelled, "STRATUS_NO_DEVICE": ValueError, "STRATUS_DEVICE_ERROR": DeviceError, "STRATUS_UNSUPPORTED": Unsupported,
+    "STRATUS_FILE_ERROR": OSError,
 }
 _ERRORS = {c.ENUMS["stratus_status"][name]: error for name, error in _ERRORS.items()}
 

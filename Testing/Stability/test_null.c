@@ -125,6 +125,13 @@ static void inputs(const small_scene* scene)
   REFUSES(stratus_transfer_check(context, NULL));
   transfer.opacity = NULL;
   IS_SILENT(stratus_transfer_check(context, &transfer));
+  IS_SILENT(stratus_camera_frame(NULL, v, 2, 0, 0, 30, 1, &camera));
+  REFUSES(stratus_camera_frame(context, NULL, 2, 0, 0, 30, 1, &camera));
+  REFUSES(stratus_camera_frame(context, (const double[]){ 0, 1, 0, 1, 0, 1 }, 2, 0, 0, 30, 1, NULL));
+  IS_SILENT(stratus_image_write(NULL, NULL, NULL, NULL));
+  REFUSES(stratus_image_write(context, NULL, NULL, "a.png"));
+  REFUSES(stratus_image_write(context, &(const stratus_image){ .width = 1, .height = 1 }, NULL, "a.png"));
+  REFUSES(stratus_image_write(context, &(const stratus_image){ .width = 1, .height = 1, .rgba = &(float){ 0 } }, NULL, NULL));
   IS_SILENT(stratus_camera_perspective(NULL, v, v, v, 30, 1, &camera));
   REFUSES(stratus_camera_perspective(context, NULL, v, v, 30, 1, &camera));
   REFUSES(stratus_camera_perspective(context, v, NULL, v, 30, 1, &camera));

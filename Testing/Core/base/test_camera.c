@@ -77,6 +77,54 @@ static void far_and_tiny_scenes_are_aimed_at(void** state)
   stratus_context_destroy(context);
 }
 
+/* Every corner is inside of the window, and one of them touches the frame. */
+static void framed_boxes_fill_the_window(void** state)
+{
+  uint32_t random = 3;
+  (void)state;
+  stratus_context* context = make_context("host", 1);
+  for (int repeat = 0; repeat < 300; ++repeat) {
+    double bounds[6], most = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      bounds[2 * a] = (double)random_below(&random, 2000) - 1000.0;
+      bounds[2 * a + 1] = bounds[2 * a] + (double)random_below(&random, repeat % 3 == a ? 1 : 500);
+    }
+    bounds[1] += 1.0;
+    const double azimuth = (double)random_below(&random, 720) - 360.0, elevation = (double)random_below(&random, 179) - 89.0;
+    const double angle = repeat % 2 ? 1.0 + (double)random_below(&random, 120) : 0.0,
+                 aspect = 0.2 + (double)random_below(&random, 40) / 10.0;
+    stratus_camera camera;
+    assert_int_equal(stratus_camera_frame(context, bounds, repeat % 3, azimuth, elevation, angle, aspect, &camera), STRATUS_OK);
+    assert_int_equal(camera.parallel, angle == 0.0);
+    assert_true(camera.up[repeat % 3] > 0.0);
+    assert_near(-camera.forward[repeat % 3], sin(elevation * 3.14159265358979323846 / 180.0));
+    for (int corner = 0; corner < 8; ++corner) {
+      double p[3];
+      for (int a = 0; a < 3; ++a) {
+        p[a] = bounds[2 * a + (corner >> a & 1)] - camera.eye[a];
+      }
+      const double k = dot(p, camera.forward), scale = camera.parallel ? 1.0 : k;
+      assert_true(k > 0.0);
+      const double u = dot(p, camera.right) / dot(camera.right, camera.right) / scale;
+      const double v = dot(p, camera.up) / dot(camera.up, camera.up) / scale;
+      most = fmax(most, fmax(fabs(u), fabs(v)));
+    }
+    assert_true(fabs(most - 0.95) < 1e-9);
+  }
+  stratus_camera camera;
+  const double box[6] = { 0, 1, 0, 1, 0, 1 }, point[6] = { 1, 1, 2, 2, 3, 3 }, turned[6] = { 1, 0, 0, 1, 0, 1 };
+  assert_int_equal(stratus_camera_frame(context, box, 3, 0, 0, 30, 1, &camera), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "up_axis 3 outside 0..2"));
+  assert_int_equal(stratus_camera_frame(context, box, 2, 0, 90, 30, 1, &camera), STRATUS_INVALID_ARGUMENT);
+  assert_int_equal(stratus_camera_frame(context, box, 2, 0, 0, 180, 1, &camera), STRATUS_INVALID_ARGUMENT);
+  assert_int_equal(stratus_camera_frame(context, box, 2, NAN, 0, 30, 1, &camera), STRATUS_INVALID_ARGUMENT);
+  assert_int_equal(stratus_camera_frame(context, box, 2, 0, 0, 30, 0, &camera), STRATUS_INVALID_ARGUMENT);
+  assert_int_equal(stratus_camera_frame(context, point, 2, 0, 0, 30, 1, &camera), STRATUS_INVALID_ARGUMENT);
+  assert_non_null(strstr(stratus_context_message(context), "diagonal"));
+  assert_int_equal(stratus_camera_frame(context, turned, 2, 0, 0, 30, 1, &camera), STRATUS_INVALID_ARGUMENT);
+  stratus_context_destroy(context);
+}
+
 static void what_is_no_camera_is_refused_with_the_value(void** state)
 {
   (void)state;
@@ -118,6 +166,7 @@ int test_camera(void)
     cmocka_unit_test(axes_are_orthogonal_and_as_long_as_the_window),
     cmocka_unit_test(right_is_right),
     cmocka_unit_test(far_and_tiny_scenes_are_aimed_at),
+    cmocka_unit_test(framed_boxes_fill_the_window),
     cmocka_unit_test(what_is_no_camera_is_refused_with_the_value),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
