@@ -2,11 +2,13 @@
  * Draws the blocks of a volume that was cut into grids of their own: from front to back, each by its own caster in the part of the picture
  * that it covers, and blends the parts as floats. */
 #include "block_order.h"
+#include "block_window.h"
 #include "camera.h"
 #include "picture.h"
 #include "ray_caster.h"
 #include "ray_kept.h"
 #include "ray_light.h"
+#include "ray_probe_blocks.h"
 #include "ray_several_picture.h"
 #include "vector.h"
 #include "volume.h"
@@ -29,29 +31,6 @@ typedef struct blocks {
   stratus_kept* kept; /* modes whose rays keep a number, and surfaces of blocks that overlap; else NULL */
   bool more;          /* surfaces: farther ones may be seen */
 } blocks;
-
-/* Finds the pixels that a block may cover. */
-static void find_window(const blocks* b, const stratus_volume* volume, int window[4])
-{
-  double index_to_world[16], world_to_index[16], eye[3], right[3], up[3], forward[3], lo[3], hi[3];
-  const int sides[2] = { b->image->width, b->image->height };
-  stratus_volume_index_to_world(volume, index_to_world);
-  if (!stratus_matrix_invert_affine(index_to_world, world_to_index)) { /* the block's own picture refuses it */
-    window[0] = window[2] = 0;
-    window[1] = sides[0];
-    window[3] = sides[1];
-    return;
-  }
-  stratus_matrix_point(world_to_index, b->camera->eye, eye);
-  stratus_matrix_vector(world_to_index, b->camera->right, right);
-  stratus_matrix_vector(world_to_index, b->camera->up, up);
-  stratus_matrix_vector(world_to_index, b->camera->forward, forward);
-  for (int axis = 0; axis < 3; ++axis) { /* solid voxels reach half a voxel beyond their points */
-    lo[axis] = -0.5;
-    hi[axis] = (double)volume->dimensions[axis] - 0.5;
-  }
-  stratus_camera_window(eye, right, up, forward, b->camera->parallel, lo, hi, sides, window);
-}
 
 /* The camera of a part of the picture, whose pixels have the rays that they have in the whole. */
 static stratus_camera camera_of(const blocks* b, const int window[4])
@@ -108,7 +87,7 @@ static stratus_status draw_block(blocks* b, int number, stratus_ray_cast_report*
   stratus_image part = b->part;
   int window[4];
   bool ends = false;
-  find_window(b, in->volume, window);
+  stratus_block_window(in->volume, b->camera, b->image, window);
   if (window[0] >= window[1] || window[2] >= window[3] ||
     !stratus_kept_ends(b->kept, number, b->image, b->camera, window, stratus_kept_least(&options), b->ends, &ends)) {
     snprintf(report->why, sizeof report->why, "not drawn: nothing of the block can be seen");
@@ -117,8 +96,7 @@ static stratus_status draw_block(blocks* b, int number, stratus_ray_cast_report*
   part.width = window[1] - window[0];
   part.height = window[3] - window[2];
   part.opaque_depth = ends ? b->ends : NULL;
-  options.sampling.tolerance /=
-    sqrt(cbrt((double)b->count)); /* of errors of as many blocks as a ray may meet, which add up by their squares */
+  options.sampling.tolerance = stratus_block_tolerance(options.sampling.tolerance, b->count);
   const stratus_camera camera = camera_of(b, window);
   if (b->kept) {
     TRY(stratus_kept_draw(b->kept, number, &camera, &options, &part, report));
@@ -319,8 +297,13 @@ stratus_status stratus_ray_caster_render_blocks(const stratus_ray_cast_input* in
   if (kept.mode != STRATUS_MODE_QUANTITIES) { /* which leave a picture's maps as they are */
     status = stratus_ray_light_update_several(inputs, count, true, camera, stratus_ray_caster_render_blocks, &light);
   }
-  if (status == STRATUS_OK) {
-    status = (b.kept ? draw_kept : draw_all)(&b, order, reports);
+  if (status == STRATUS_OK && !b.kept) {
+    const stratus_probe_blocks shared = { inputs, count, camera, image };
+    stratus_probe_blocks_share(&shared, &shared);
+    status = draw_all(&b, order, reports);
+    stratus_probe_blocks_share(&shared, NULL);
+  } else if (status == STRATUS_OK) {
+    status = draw_kept(&b, order, reports);
   }
   stratus_ray_light_return(inputs, count);
   stratus_ray_light_report(&light, reports, count);

@@ -15,6 +15,7 @@
 
 typedef struct stratus_ray_device stratus_ray_device;
 typedef struct stratus_first_hit stratus_first_hit;
+typedef struct stratus_probe_blocks stratus_probe_blocks;
 
 /* Casters within a caster: of up to four independent components, of the quantities of one, and of the matter that absorbs light. */
 #define STRATUS_RAY_PARTS 6
@@ -51,6 +52,8 @@ struct stratus_ray_caster {
   stratus_ray_choice_inputs inputs;       /* of integrator.choice */
   stratus_ray_choice measured;            /* the last that the probe made; its sample distance is 0 before the first */
   stratus_ray_choice_inputs measured_for; /* the inputs of `measured`; tolerance -1: data or function have changed since */
+  int measured_beyond;                    /* of `measured` by rule local: blocks of classes below it are rough */
+  const stratus_probe_blocks* blocks;     /* of the picture that is drawn, with which it shares a probe; NULL: it has its own */
   char tried[256];                        /* the settings that the probe tried; empty: there was no probe */
   stratus_ray_trial trial;
   const stratus_ray_costs* forced; /* taken instead of all measured times, for tests; NULL: none */
@@ -97,10 +100,11 @@ stratus_status stratus_ray_make_map(stratus_ray_caster* caster, stratus_structur
 stratus_status stratus_ray_update_structures(stratus_ray_caster* caster, stratus_structure wanted, bool times, stratus_structure* used,
   char* why, size_t capacity, stratus_ray_cast_report* report);
 
-/* ray_caster_render.c. stratus_ray_check_input() checks the input of an image except camera and image. stratus_ray_fill_report() reports
- * the counts and choices. */
+/* ray_caster_check.c: checks the input of an image except camera and image. */
 stratus_status stratus_ray_check_input(
   stratus_context* context, const stratus_volume* volume, const stratus_transfer* transfer, const stratus_ray_cast_options* options);
+
+/* ray_caster_render.c. stratus_ray_fill_report() reports the counts and choices. */
 void stratus_ray_fill_report(
   const stratus_ray_caster* caster, const stratus_ray_counts* counts, stratus_structure used, stratus_ray_cast_report* report);
 /* Returns how many pixels differ in their bits. */

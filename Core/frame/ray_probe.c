@@ -159,17 +159,21 @@ static void draw_patch(const void* data, int number, uint64_t counts[STRATUS_TIL
   counts[1] += mine.samples;
 }
 
+stratus_status stratus_ray_make_rough(
+  stratus_context* context, const stratus_probe_classes* classes, int beyond, stratus_distance_map** rough)
+{
+  stratus_occupancy* blocks = NULL;
+  TRY(stratus_occupancy_below(context, classes->blocks, classes->block_size, classes->of, (uint8_t)beyond, &blocks));
+  const stratus_status status = stratus_distance_map_create(context, blocks, STRATUS_DISTANCE_FULL, rough);
+  stratus_occupancy_destroy(blocks);
+  return status;
+}
+
 /* Makes the map of rough blocks for a setting the caster's, on loan. */
 static stratus_status lend_rough(probe* p, int beyond)
 {
-  stratus_context* context = p->caster->context;
-  const stratus_probe_classes* k = &p->classes;
   if (!p->rough[beyond]) {
-    stratus_occupancy* blocks = NULL;
-    TRY(stratus_occupancy_below(context, k->blocks, k->block_size, k->of, (uint8_t)beyond, &blocks));
-    const stratus_status status = stratus_distance_map_create(context, blocks, STRATUS_DISTANCE_FULL, &p->rough[beyond]);
-    stratus_occupancy_destroy(blocks);
-    TRY(status);
+    TRY(stratus_ray_make_rough(p->caster->context, &p->classes, beyond, &p->rough[beyond]));
   }
   p->caster->structure.rough = p->rough[beyond];
   return STRATUS_OK;
@@ -654,6 +658,7 @@ stratus_status stratus_ray_probe(stratus_ray_caster* caster, const stratus_volum
   caster->integrator.choice.provisional = false;
   caster->probe_builds += p.count > 0;
   caster->measured = caster->integrator.choice;
+  caster->measured_beyond = beyond;
   caster->measured_for = caster->inputs;
   TRY(stratus_ray_update_table(caster, options));
   report->probe_samples = p.samples;

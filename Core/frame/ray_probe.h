@@ -4,6 +4,7 @@
 #define STRATUS_RAY_PROBE_H
 
 #include "ray_caster.h"
+#include "ray_probe_rays.h"
 
 /* Draws a thousand or so rays with the settings that the options leave open and with a finer one, and makes the cheapest setting that keeps
  * the tolerance the caster's choice. Needs value ranges, transfer functions, occupancy and map. Deterministic: counts and errors decide,
@@ -11,5 +12,9 @@
  * the camera stay where it has them, since there are no others; without maps they move with the probe's rays. */
 stratus_status stratus_ray_probe(stratus_ray_caster* caster, const stratus_volume* volume, const stratus_camera* camera,
   const stratus_ray_cast_options* options, stratus_ray_cast_report* report);
+
+/* Makes the map by which rule local finds rough blocks, whose classes are below `beyond`. */
+stratus_status stratus_ray_make_rough(
+  stratus_context* context, const stratus_probe_classes* classes, int beyond, stratus_distance_map** rough);
 
 #endif

@@ -495,3 +495,20 @@ stratus_status stratus_ray_probe_rays(
   return caster->field.ranges->block_size == size ? make_patches(caster, patches, count, classes)
                                                   : make_patches_by(caster, size, patches, count, classes);
 }
+
+stratus_status stratus_ray_probe_changes(const stratus_ray_caster* caster, double* changes, double* cells)
+{
+  const double size = caster->field.ranges->block_size, voxel = stratus_ray_voxel_length(&caster->field.volume);
+  stratus_probe_classes k = { .of = NULL };
+  *changes = *cells = 0.0;
+  if (caster->structure.occupancy->count == 0) {
+    return STRATUS_OK;
+  }
+  TRY(classify(caster, voxel, &k));
+  stratus_release(caster->context, k.of);
+  for (int c = 0; c < CLASSES; ++c) {
+    *cells += (double)k.count[c] * size * size * size;
+    *changes += c < CLASSES - 1 ? (double)k.count[c] * size * size * size * exp2(-2.0 * c) : 0.0;
+  }
+  return STRATUS_OK;
+}

@@ -35,4 +35,8 @@ typedef struct stratus_probe_classes {
 stratus_status stratus_ray_probe_rays(
   stratus_ray_caster* caster, stratus_probe_patch patches[STRATUS_PROBE_PATCHES], int* count, stratus_probe_classes* classes);
 
+/* Adds up, over the cells of all occupied blocks, how much the transfer functions change within a cell's block, to the nearest class. Both
+ * are 0 if no block is occupied. Needs value ranges, transfer functions and occupancy. */
+stratus_status stratus_ray_probe_changes(const stratus_ray_caster* caster, double* changes, double* cells);
+
 #endif

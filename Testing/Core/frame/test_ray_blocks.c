@@ -376,6 +376,105 @@ static void what_is_hidden_is_not_drawn(void** state)
   case_destroy(&c);
 }
 
+/* ---- one probe for all blocks */
+
+static uint64_t probes_of(const stratus_ray_cast_report* reports, int count)
+{
+  uint64_t probes = 0;
+  for (int i = 0; i < count; ++i) {
+    probes += reports[i].probe_builds;
+  }
+  return probes;
+}
+
+/* A picture of many blocks measures one of them. Another camera measures nothing, other functions once more. The picture keeps the
+ * tolerance. */
+static void one_block_is_measured_for_all(void** state)
+{
+  stratus_ray_cast_report reports[BLOCKS_MOST];
+  for (uint32_t seed = 0; seed < 6; ++seed) {
+    picture_case c;
+    cut b = { .count = 0 };
+    double squares = 0.0;
+    int lit = 0;
+    case_create(*state, &c, STRATUS_FLOAT32, 30, 26, 34, seed);
+    case_camera(*state, &c, (int)seed, (int)(seed % 2));
+    case_render(*state, &c, &whole);
+    c.options.sampling = stratus_ray_cast_options_default().sampling;
+    c.options.sampling.tolerance = 0.01;
+    cut_at_random(*state, &c, 40, seed, &b);
+    assert_int_equal(draw_blocks(&c, &b, &drawn, reports), STRATUS_OK);
+    assert_int_equal(probes_of(reports, b.count), 1);
+    int measured = 0;
+    while (reports[measured].probe_builds == 0) {
+      ++measured;
+    }
+    for (int i = 0; i < b.count; ++i) {
+      if (reports[i].occupied_blocks > 0 && !strstr(reports[i].why, "not drawn")) {
+        assert_int_equal(reports[i].sampling, reports[measured].sampling);
+        assert_true(reports[i].sample_distance == reports[measured].sample_distance);
+        assert_true(i == measured || strstr(reports[i].why, "as measured in another block"));
+      }
+    }
+    for (int i = 0; i < 4 * CASE_PIXELS; ++i) {
+      squares += (double)(whole.rgba[i] - drawn.rgba[i]) * (double)(whole.rgba[i] - drawn.rgba[i]);
+      lit += i % 4 == 3 && whole.rgba[i] > 0.0f;
+    }
+    print_message("             error %.2g of %.2g\n", sqrt(squares / (4.0 * lit)), c.options.sampling.tolerance);
+    assert_true(lit > CASE_PIXELS / 20);
+    assert_true(sqrt(squares / (4.0 * lit)) <= c.options.sampling.tolerance);
+
+    case_camera(*state, &c, (int)seed + 1, 0); /* which shows further blocks, perhaps */
+    assert_int_equal(draw_blocks(&c, &b, &drawn, reports), STRATUS_OK);
+    assert_int_equal(probes_of(reports, b.count), 1);
+    c.opacity[1] *= 0.5;
+    c.opacity[3] *= 0.5;
+    c.opacity[5] *= 0.5;
+    assert_int_equal(draw_blocks(&c, &b, &drawn, reports), STRATUS_OK);
+    assert_int_equal(probes_of(reports, b.count), 2);
+    destroy_blocks(&b);
+    case_destroy(&c);
+  }
+}
+
+/* Of two blocks, the one whose values change most from voxel to voxel is measured, whichever comes first. A block of other voxels takes as
+ * many of its own a step. */
+static void the_roughest_block_is_measured(void** state)
+{
+  enum { SIDE = 17 };
+  static float values[2][SIDE * SIDE * SIDE];
+  stratus_ray_cast_report reports[BLOCKS_MOST];
+  for (int rough = 0; rough < 2; ++rough) {
+    picture_case c;
+    cut b = { .count = 2 };
+    uint32_t random = 5;
+    case_create(*state, &c, STRATUS_FLOAT32, 2 * SIDE, SIDE, SIDE, 1);
+    for (int i = 0; i < SIDE * SIDE * SIDE; ++i) {
+      values[rough][i] = (float)case_uniform(&random, -23.0, -17.0);
+      values[1 - rough][i] = -19.0f + 0.001f * (float)(i % SIDE);
+    }
+    for (int n = 0; n < 2; ++n) {
+      b.volume[n] = c.volume;
+      b.volume[n].values = values[n];
+      for (int axis = 0; axis < 3; ++axis) {
+        b.volume[n].dimensions[axis] = SIDE;
+        b.volume[n].spacing[axis] = n == 1 ? 0.5 : 1.0;
+      }
+      b.volume[n].origin[0] = n * SIDE;
+      assert_int_equal(stratus_ray_caster_create(*state, &b.caster[n]), STRATUS_OK);
+    }
+    c.options.sampling = stratus_ray_cast_options_default().sampling;
+    c.options.sampling.rule = STRATUS_SAMPLING_MIDPOINT;
+    assert_int_equal(draw_blocks(&c, &b, &drawn, reports), STRATUS_OK);
+    assert_int_equal(reports[rough].probe_builds, 1);
+    assert_int_equal(reports[1 - rough].probe_builds, 0);
+    assert_true(reports[0].samples > 0 && reports[1].samples > 0);
+    assert_true(fabs(reports[0].sample_distance - 2.0 * reports[1].sample_distance) < 1e-12);
+    destroy_blocks(&b);
+    case_destroy(&c);
+  }
+}
+
 static void uncut_volumes_are_refused(void** state)
 {
   stratus_ray_cast_report reports[BLOCKS_MOST];
@@ -418,6 +517,8 @@ int test_ray_blocks(void)
     cmocka_unit_test(blocks_with_layers_of_others_draw_the_whole_lit),
     cmocka_unit_test(other_modes_draw_the_whole),
     cmocka_unit_test(what_is_hidden_is_not_drawn),
+    cmocka_unit_test(one_block_is_measured_for_all),
+    cmocka_unit_test(the_roughest_block_is_measured),
     cmocka_unit_test(uncut_volumes_are_refused),
   };
   return cmocka_run_group_tests(tests, case_set_up, case_tear_down);
