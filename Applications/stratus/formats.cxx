@@ -19,6 +19,7 @@
 #include "vtkStratusVDBReader.h"
 #endif
 #include "vtkStratusVariableReader.h"
+#include "vtkStratusXMLImageReader.h"
 #include "vtkStratusZarrReader.h"
 
 #include <vtkDataArray.h>
@@ -121,6 +122,18 @@ made hdf(const std::string& path)
   return reader_for<vtkHDFReader>(path);
 }
 
+// Values that are raw bytes by our reader, which leaves them in the file; others, and files that are damaged, by VTK's.
+made vti(const std::string& path)
+{
+  if (vtkStratusXMLImageReader::CanReadFile(path.c_str())) {
+    auto reader = vtkSmartPointer<vtkStratusXMLImageReader>::New();
+    reader->SetFileName(path.c_str());
+    reader->MapFileOn(); // as of netCDF
+    return reader;
+  }
+  return reader_for<vtkXMLImageDataReader>(path);
+}
+
 made vdb(const std::string& path)
 {
 #ifdef STRATUS_VDB
@@ -203,7 +216,7 @@ constexpr struct {
   const char* extension;
   made (*make)(const std::string& path);
 } formats[] = {
-  { ".vti", reader_for<vtkXMLImageDataReader> },
+  { ".vti", vti },
   { ".pvti", reader_for<vtkXMLPImageDataReader> },
   { ".vtr", reader_for<vtkXMLRectilinearGridReader> },
   { ".pvtr", reader_for<vtkXMLPRectilinearGridReader> },

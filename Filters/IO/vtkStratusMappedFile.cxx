@@ -2,20 +2,21 @@
 #include "vtkStratusMappedFile.h"
 
 #include "vtkStratusBricks.h"
+#include "vtkStratusIdentity.h"
 #include "vtkStratusMapped.h"
+#include "vtkStratusOpenFile.h"
 
 #include "stratus/volume.h"
 
+#include "vtkByteSwap.h"
 #include "vtkDataArray.h"
 
 #if defined(__unix__) || defined(__APPLE__)
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <fcntl.h>
 #include <memory>
 #include <mutex>
 #include <sys/mman.h>
@@ -139,48 +140,6 @@ uint64_t IdentityOf(int file, const struct stat& status, int64_t begin, int64_t 
   return hash ? hash : 1;
 }
 
-// A file that is open as long as this is.
-class OpenFile
-{
-public:
-  explicit OpenFile(const std::string& path) : Handle(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~OpenFile()
-  {
-    if (this->Handle >= 0) {
-      close(this->Handle);
-    }
-  }
-  OpenFile(const OpenFile&) = delete;
-  void operator=(const OpenFile&) = delete;
-
-  // Reads all of the bytes; false if there are fewer, or the disk fails.
-  bool Read(int64_t at, void* to, size_t bytes) const
-  {
-    for (size_t done = 0; done < bytes;) {
-      const ssize_t got =
-        pread(this->Handle, static_cast<char*>(to) + done, bytes - done, static_cast<off_t>(at) + static_cast<off_t>(done));
-      if (got == 0 || (got < 0 && errno != EINTR)) {
-        return false;
-      }
-      done += got > 0 ? static_cast<size_t>(got) : 0;
-    }
-    return true;
-  }
-
-  // Lets the system read ahead.
-  void Expect(int64_t at, int64_t bytes) const
-  {
-#ifdef POSIX_FADV_WILLNEED
-    (void)posix_fadvise(this->Handle, static_cast<off_t>(at), static_cast<off_t>(bytes), POSIX_FADV_WILLNEED);
-#else
-    (void)at;
-    (void)bytes;
-#endif
-  }
-
-  const int Handle;
-};
-
 // Takes the whole pages of a part of a mapping out of the process. They stay in the system's memory as long as it has room.
 void Forget(const char* begin, size_t bytes)
 {
@@ -220,11 +179,12 @@ vtkSmartPointer<vtkDataArray> MapOpen(int file, int64_t begin, const char* name,
   return array;
 }
 // Returns the points of a box as bricks; null where they can't be made.
-vtkSmartPointer<vtkDataArray> MakeRawBricks(
-  const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3], const vtkStratusBox& box)
+vtkSmartPointer<vtkDataArray> MakeRawBricks(const std::string& path, int64_t begin, const char* name, int type, int components,
+  const int64_t sizes[3], const vtkStratusBox& box, bool swaps)
 {
-  const auto file = std::make_shared<OpenFile>(path);
-  const int64_t value = components * vtkDataArray::GetDataTypeSize(type), row = sizes[0] * value, rows = sizes[1], across = sizes[0];
+  const auto file = std::make_shared<vtkStratusOpenFile>(path);
+  const int64_t word = vtkDataArray::GetDataTypeSize(type), value = components * word, row = sizes[0] * value, rows = sizes[1],
+                across = sizes[0];
   vtkStratusBrickSource source;
   source.Name = name;
   source.Type = type;
@@ -232,12 +192,14 @@ vtkSmartPointer<vtkDataArray> MakeRawBricks(
   std::copy_n(sizes, 3, source.Dimensions.begin());
   source.Brick = { { 1, 1, 1 } }; // any box
   source.Identity = vtkStratusIdentityOfFile(path, begin, row * rows * sizes[2]);
-  const auto mapped = vtkStratusMapFile(path, begin, name, type, components, sizes[0] * sizes[1] * sizes[2]);
+  source.Identity = swaps ? vtkStratusIdentityOfPart(source.Identity, "swapped", {}) : source.Identity;
+  const auto mapped = vtkStratusMapFile(path, begin, name, VTK_UNSIGNED_CHAR, 1, row * rows * sizes[2]); // bytes, wherever they begin
   stratus_volume volume = stratus_volume_default();
   vtkStratusSetSource(mapped, 0, volume);
   const char* const first = mapped ? static_cast<const char*>(mapped->GetVoidPointer(0)) : nullptr;
   const volatile uint64_t* const missing = volume.missing;
-  source.Read = [file, mapped, first, missing, begin, value, row, rows, across](const int64_t lo[3], const int64_t size[3], void* values) {
+  source.Read = [file, mapped, first, missing, begin, word, value, row, rows, across, swaps](
+                  const int64_t lo[3], const int64_t size[3], void* values) {
     const bool wide = size[0] == across; // whole rows follow one another
     const int64_t runs = wide ? 1 : size[1];
     const size_t bytes = static_cast<size_t>(size[0] * value * (wide ? size[1] : 1));
@@ -260,46 +222,49 @@ vtkSmartPointer<vtkDataArray> MakeRawBricks(
     if (first) {
       Forget(first + at(0), static_cast<size_t>(at(size[2] - 1) + size[1] * row - at(0)));
     }
+    if (swaps) {
+      vtkByteSwap::SwapVoidRange(values, static_cast<size_t>((to - static_cast<char*>(values)) / word), static_cast<size_t>(word));
+    }
     return whole && (!missing || *missing == before);
   };
   vtkStratusCutSource(source, box.Low, box.Size);
-  return file->Handle < 0 ? nullptr : vtkStratusMakeBricks(source);
+  return !file->IsOpen() ? nullptr : vtkStratusMakeBricks(source);
 }
 } // namespace
 
 vtkSmartPointer<vtkDataArray> vtkStratusMapFile(
   const std::string& path, int64_t begin, const char* name, int type, int components, vtkIdType tuples)
 {
-  const OpenFile file(path);
-  return file.Handle < 0 ? nullptr : MapOpen(file.Handle, begin, name, type, components, tuples);
+  const vtkStratusOpenFile file(path);
+  return !file.IsOpen() ? nullptr : MapOpen(file.GetHandle(), begin, name, type, components, tuples);
 }
 
-vtkSmartPointer<vtkDataArray> vtkStratusLeaveRaw(
-  const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3], const vtkStratusBox& box)
+vtkSmartPointer<vtkDataArray> vtkStratusLeaveRaw(const std::string& path, int64_t begin, const char* name, int type, int components,
+  const int64_t sizes[3], const vtkStratusBox& box, bool bricks, bool swaps)
 {
   const int64_t points = box.Size[0] * box.Size[1] * box.Size[2], value = components * vtkDataArray::GetDataTypeSize(type);
   const bool rows = box.Size[0] == sizes[0], layers = rows && box.Size[1] == sizes[1];
   const bool one_run = layers || (rows && box.Size[2] == 1) || (box.Size[1] == 1 && box.Size[2] == 1);
   const bool beyond = vtkStratusHasBrickMemory() && points * value > vtkStratusGetBrickMemory(); // else the system forgets pages
   vtkSmartPointer<vtkDataArray> array;
-  if (beyond || !one_run) {
-    array = MakeRawBricks(path, begin, name, type, components, sizes, box);
+  if (beyond || !one_run || swaps) {
+    array = MakeRawBricks(path, begin, name, type, components, sizes, box, swaps);
   }
-  if (!array && one_run) {
+  if (!array && one_run && !swaps) {
     const int64_t first = (box.Low[2] * sizes[1] + box.Low[1]) * sizes[0] + box.Low[0];
     array = vtkStratusMapFile(path, begin + first * value, name, type, components, points);
   }
-  return array;
+  return array || !bricks ? array : MakeRawBricks(path, begin, name, type, components, sizes, box, swaps);
 }
 
 uint64_t vtkStratusIdentityOfFile(const std::string& path, int64_t begin, int64_t bytes)
 {
-  const OpenFile file(path);
+  const vtkStratusOpenFile file(path);
   struct stat status;
-  if (file.Handle < 0 || fstat(file.Handle, &status) != 0) {
+  if (!file.IsOpen() || fstat(file.GetHandle(), &status) != 0) {
     return 0;
   }
-  return IdentityOf(file.Handle, status, begin, bytes < 0 ? static_cast<int64_t>(status.st_size) - begin : bytes);
+  return IdentityOf(file.GetHandle(), status, begin, bytes < 0 ? static_cast<int64_t>(status.st_size) - begin : bytes);
 }
 #else
 vtkSmartPointer<vtkDataArray> vtkStratusMapFile(const std::string&, int64_t, const char*, int, int, vtkIdType)
@@ -307,7 +272,8 @@ vtkSmartPointer<vtkDataArray> vtkStratusMapFile(const std::string&, int64_t, con
   return nullptr;
 }
 
-vtkSmartPointer<vtkDataArray> vtkStratusLeaveRaw(const std::string&, int64_t, const char*, int, int, const int64_t[3], const vtkStratusBox&)
+vtkSmartPointer<vtkDataArray> vtkStratusLeaveRaw(
+  const std::string&, int64_t, const char*, int, int, const int64_t[3], const vtkStratusBox&, bool, bool)
 {
   return nullptr;
 }

@@ -29,7 +29,9 @@ VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMapFile(
 
 // Returns the points of a box of such values, of sizes x, y, z, as an array that is mapped; or as bricks, if the box is not one run of the
 // file's bytes, or if a limit of memory is set (vtkStratusHasBrickMemory()) that it exceeds. Null where it can't be made.
-VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusLeaveRaw(
-  const std::string& path, int64_t begin, const char* name, int type, int components, const int64_t sizes[3], const vtkStratusBox& box);
+// bricks: also as bricks where the values can't be mapped because of the place at which they begin. swaps: the file has the other order of
+// bytes, which only bricks can have.
+VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusLeaveRaw(const std::string& path, int64_t begin, const char* name, int type,
+  int components, const int64_t sizes[3], const vtkStratusBox& box, bool bricks = false, bool swaps = false);
 
 #endif
