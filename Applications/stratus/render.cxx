@@ -53,12 +53,12 @@ std::string set_by_data(
   return cli::set_sun(o, given, in, grid, step);
 }
 
-// Reads a step into memory of its own, so that the reader is free for the next one in another thread.
+// Reads a step and keeps it when the reader reads the next one, in another thread: other readers than ours may write that over its arrays.
 cli::routed read_apart(cli::series& in, size_t step, const cli::options& o, const cli::cloud* water)
 {
   const vtkSmartPointer<vtkDataObject> shared = in.read(step);
   const auto own = vtkSmartPointer<vtkDataObject>::Take(shared->NewInstance());
-  own->DeepCopy(shared);
+  in.makes_new_arrays() ? own->ShallowCopy(shared) : own->DeepCopy(shared);
   return route_for(own, step, o, water);
 }
 

@@ -25,8 +25,9 @@ public:
   const std::string& units() const { return this->Units; }         // as the file has them ("hours since 2001-01-01"), "" if it has none
   std::string calendar() const;                                    // of the units, as the file has it ("noleap"), "" if it has none
   // Reads a step. Any complaint of VTK is a failure, so that a damaged file is never drawn in part. The result may share arrays with the
-  // reader: take a deep copy where the next step is read while this one is used.
+  // reader: unless it makes new ones for each step, take a deep copy where the next step is read while this one is used.
   vtkSmartPointer<vtkDataObject> read(size_t step);
+  bool makes_new_arrays() const { return this->Reader && this->Reader->IsA("vtkStratusVariableReader"); }
   // "1.5 hours since ...", "" for a file without time.
   std::string time_of(size_t step) const;
   // The name and unit of an axis of coordinates, and the unit of the variable: "" if the file or the format has none.

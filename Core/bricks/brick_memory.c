@@ -11,7 +11,8 @@
 #include <unistd.h>
 
 #define PATH_MOST 4096
-#define LOOK_MS 10.0 /* between two looks at the process's memory */
+#define LEAST_LEFT ((uint64_t)32 << 20) /* bytes for bricks, if the limit has so many: rays read parts over and over if few are there */
+#define LOOK_MS 10.0                    /* between two looks at the process's memory */
 
 /* Returns the number in a file, or `otherwise` if there is none: a group without a limit says "max". */
 static uint64_t number_in(const char* path, uint64_t otherwise)
@@ -101,5 +102,6 @@ uint64_t stratus_brick_memory_left(stratus_brick_pool* pool)
     pool->grown = bytes > pool->began ? bytes - pool->began : 0;
     pool->looked = now;
   }
-  return pool->memory - (pool->grown < pool->memory / 2 ? pool->grown : pool->memory / 2);
+  const uint64_t half = pool->memory / 2, few = pool->memory < LEAST_LEFT ? pool->memory : LEAST_LEFT, least = half > few ? half : few;
+  return pool->grown < pool->memory - least ? pool->memory - pool->grown : least;
 }

@@ -48,7 +48,7 @@ typedef struct stratus_brick_pool_options {
   uint64_t memory;
   int threads; /* 0..64 that read bricks. 0 (default): as many as the context has, but at least 2 */
   /* 1: other memory that the process took since the pool was made counts in `memory`, too, such as value ranges and pictures, until half of
-   * it is left to bricks. Needs Linux's /proc. 0 (default): only bricks count. */
+   * it, and 32 MiB, is left to bricks. Needs Linux's /proc. 0 (default): only bricks count. */
   int whole_process;
 } stratus_brick_pool_options;
 

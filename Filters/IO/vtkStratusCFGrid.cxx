@@ -476,6 +476,7 @@ vtkStratusCFField vtkStratusCFGrid::ReadField(const Variable& variable, size_t s
     const bool space = std::find(axes.begin(), axes.end(), dimension) != axes.end();
     start.push_back(space ? 0 : this->Layout.IndexOf(dimension, step));
     count.push_back(space ? this->File.LengthOf(dimension) : 1);
+    this->ReadsTime = this->ReadsTime || (dimension == this->GetTime() && &variable != &this->Of);
   }
   size_t stride = 1;
   for (size_t i = count.size(); i-- > 0;) {

@@ -79,7 +79,11 @@ public:
   // hidden_points: 1 for points that have no place, hidden_cells: 1 for cells that longitudes around a pole tear apart; empty: none
   vtkSmartPointer<vtkDataArray> ReadPoints(size_t step, std::vector<char>& hidden_points, std::vector<char>& hidden_cells) const;
 
+  // Whether coordinates that were read so far differ between time steps.
+  bool Moves() const { return this->ReadsTime; }
+
 private:
+  mutable bool ReadsTime = false;
   void CheckSize() const;
   void FindCoordinates();
   void FindHorizontal(const std::vector<const Variable*>& others);

@@ -2,6 +2,7 @@
 #include "vtkStratusCFReader.h"
 
 #include "vtkStratusCFGrid.h"
+#include "vtkStratusMappedFile.h"
 #include "vtkStratusParts.h"
 #include "vtkStratusSphere.h"
 
@@ -69,11 +70,10 @@ stratus_globe_lattice LatticeOf(const vtkStratusCFGrid& grid, const std::vector<
   return vtkStratusSphere::FindLattice(grid.GetLength(0), grid.GetLength(1), degrees);
 }
 
-// Builds the grid on the sphere. factor: of heights, 0: automatic. Returns the one that is used.
-double BuildSphere(const vtkStratusCFGrid& grid, size_t step, double factor, vtkStructuredGrid* output)
+// Places the grid on the sphere. factor: of heights, 0: automatic. Returns the one that is used.
+double SetPointsOnSphere(const vtkStratusCFGrid& grid, const std::vector<double>& degrees, const stratus_globe_lattice& lattice,
+  size_t step, double factor, vtkStructuredGrid* output)
 {
-  const std::vector<double> degrees = grid.ReadDegrees(step);
-  const stratus_globe_lattice lattice = LatticeOf(grid, degrees);
   const size_t levels = grid.GetLength(2);
   std::vector<char> hidden, torn; // torn: none on the Earth
   const vtkSmartPointer<vtkDoubleArray> flat = vtkDoubleArray::SafeDownCast(grid.ReadPoints(step, hidden, torn));
@@ -86,12 +86,51 @@ double BuildSphere(const vtkStratusCFGrid& grid, size_t step, double factor, vtk
     static_cast<int>(stratus_globe_columns(&lattice)), static_cast<int>(stratus_globe_rows(&lattice)), static_cast<int>(levels));
   output->SetPoints(points);
   Hide(output->GetPointData(), hidden, vtkDataSetAttributes::HIDDENPOINT);
-  const vtkSmartPointer<vtkDataArray> values = vtkStratusSphere::Spread(lattice, levels, grid.ReadValues(step));
-  output->GetPointData()->AddArray(values);
-  output->GetPointData()->SetActiveScalars(values->GetName());
   return factor;
 }
+
+void SetPointsOnPlane(const vtkStratusCFGrid& grid, size_t step, vtkStructuredGrid* output)
+{
+  vtkNew<vtkPoints> points;
+  std::vector<char> hidden_points, hidden_cells;
+  points->SetData(grid.ReadPoints(step, hidden_points, hidden_cells));
+  output->SetDimensions(static_cast<int>(grid.GetLength(0)), static_cast<int>(grid.GetLength(1)), static_cast<int>(grid.GetLength(2)));
+  output->SetPoints(points);
+  Hide(output->GetPointData(), hidden_points, vtkDataSetAttributes::HIDDENPOINT);
+  Hide(output->GetCellData(), hidden_cells, vtkDataSetAttributes::HIDDENCELL);
+}
+
+void SetValues(vtkDataSet* output, vtkDataArray* values)
+{
+  output->GetPointData()->AddArray(values);
+  output->GetPointData()->SetActiveScalars(values->GetName());
+}
 } // namespace
+
+vtkStratusCFReader::vtkStratusCFReader()
+{
+  this->GivesParts = true;
+}
+
+vtkStratusCFReader::~vtkStratusCFReader() = default;
+
+bool vtkStratusCFReader::TakePlaces(vtkStructuredGrid* output)
+{
+  if (!this->Places || this->PlacesTime != this->GetMTime() || this->PlacesFile != vtkStratusIdentityOfFile(this->FileName, 0, -1)) {
+    this->Places = nullptr;
+    return false;
+  }
+  output->ShallowCopy(this->Places);
+  return true;
+}
+
+void vtkStratusCFReader::KeepPlaces(vtkStructuredGrid* output)
+{
+  this->Places = vtkSmartPointer<vtkStructuredGrid>::New();
+  this->Places->ShallowCopy(output);
+  this->PlacesFile = vtkStratusIdentityOfFile(this->FileName, 0, -1);
+  this->PlacesTime = this->GetMTime();
+}
 
 std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFModel& file)
 {
@@ -156,8 +195,18 @@ std::string vtkStratusCFReader::InspectFile(const vtkStratusNetCDFModel& file)
 void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFModel& file, size_t step, vtkDataSet* output)
 {
   const vtkStratusCFGrid grid(file, *file.Find(this->ChosenName()), this->Coordinates == SPHERE);
+  vtkStructuredGrid* const curved = vtkStructuredGrid::SafeDownCast(output);
+  const bool placed = curved && this->TakePlaces(curved);
   if (this->Coordinates == SPHERE) {
-    this->UsedHeightFactor = BuildSphere(grid, step, this->HeightFactor, vtkStructuredGrid::SafeDownCast(output));
+    const std::vector<double> degrees = grid.ReadDegrees(step);
+    const stratus_globe_lattice lattice = LatticeOf(grid, degrees);
+    if (!placed) {
+      this->UsedHeightFactor = SetPointsOnSphere(grid, degrees, lattice, step, this->HeightFactor, curved);
+      if (!grid.Moves()) {
+        this->KeepPlaces(curved);
+      }
+    }
+    SetValues(output, vtkStratusSphere::Spread(lattice, grid.GetLength(2), grid.ReadValues(step)));
     return;
   }
   const int n[3] = { static_cast<int>(grid.GetLength(0)), static_cast<int>(grid.GetLength(1)), static_cast<int>(grid.GetLength(2)) };
@@ -177,14 +226,11 @@ void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFModel& file, size_t ste
       std::copy(grid.GetAxis(a).begin(), grid.GetAxis(a).end(), at->GetPointer(0));
       (a == 0 ? axes->SetXCoordinates(at) : a == 1 ? axes->SetYCoordinates(at) : axes->SetZCoordinates(at));
     }
-  } else if (vtkStructuredGrid* curved = vtkStructuredGrid::SafeDownCast(output)) {
-    curved->SetDimensions(n[0], n[1], n[2]);
-    vtkSmartPointer<vtkPoints> points = vtkSmartPointer<vtkPoints>::New();
-    std::vector<char> hidden_points, hidden_cells;
-    points->SetData(grid.ReadPoints(step, hidden_points, hidden_cells));
-    curved->SetPoints(points);
-    Hide(curved->GetPointData(), hidden_points, vtkDataSetAttributes::HIDDENPOINT);
-    Hide(curved->GetCellData(), hidden_cells, vtkDataSetAttributes::HIDDENCELL);
+  } else if (curved && !placed) {
+    SetPointsOnPlane(grid, step, curved);
+    if (!grid.Moves()) {
+      this->KeepPlaces(curved);
+    }
   }
   vtkSmartPointer<vtkDataArray> values;
   const vtkStratusBox box = vtkStratusBoxOf(this->WholeExtent, this->Part, false);
@@ -193,8 +239,7 @@ void vtkStratusCFReader::BuildFile(const vtkStratusNetCDFModel& file, size_t ste
   }
   this->Mapped = values ? 1 : 0;
   values = values ? values : grid.ReadValues(step);
-  output->GetPointData()->AddArray(values);
-  output->GetPointData()->SetActiveScalars(values->GetName());
+  SetValues(output, values);
 }
 
 void vtkStratusCFReader::PrintSelf(ostream& os, vtkIndent indent)

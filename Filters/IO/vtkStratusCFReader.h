@@ -53,6 +53,10 @@
 
 #include "vtkStratusNetCDFReader.h"
 
+#include "vtkSmartPointer.h"
+
+class vtkStructuredGrid;
+
 class STRATUSFILTERSIO_EXPORT vtkStratusCFReader : public vtkStratusNetCDFReader
 {
 public:
@@ -61,13 +65,21 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
 protected:
-  vtkStratusCFReader() { this->GivesParts = true; }
-  ~vtkStratusCFReader() override = default;
+  vtkStratusCFReader();
+  ~vtkStratusCFReader() override;
 
   std::string InspectFile(const vtkStratusNetCDFModel& file) override;
   void BuildFile(const vtkStratusNetCDFModel& file, size_t step, vtkDataSet* output) override;
 
 private:
+  // The places of points that stay at all time steps, with blanking, and for which file and settings.
+  vtkSmartPointer<vtkStructuredGrid> Places;
+  vtkTypeUInt64 PlacesFile = 0;
+  vtkMTimeType PlacesTime = 0;
+
+  bool TakePlaces(vtkStructuredGrid* output);
+  void KeepPlaces(vtkStructuredGrid* output);
+
   vtkStratusCFReader(const vtkStratusCFReader&) = delete;
   void operator=(const vtkStratusCFReader&) = delete;
 };
