@@ -98,11 +98,16 @@ void vtkStratusCutSource(vtkStratusBrickSource& source, const std::array<int64_t
   };
 }
 
+bool vtkStratusHasBricks()
+{
+  return ThePool().Bricks && ThePool().Report().paged;
+}
+
 vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& source)
 {
   Pool& pool = ThePool();
   stratus_brick_source core = {};
-  if (!pool.Bricks || !pool.Report().paged || !vtkStratusCoreType(source.Type, core.type)) {
+  if (!vtkStratusHasBricks() || !vtkStratusCoreType(source.Type, core.type)) {
     return nullptr;
   }
   for (int a = 0; a < 3; ++a) {

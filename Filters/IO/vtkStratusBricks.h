@@ -30,7 +30,9 @@ struct vtkStratusBrickSource {
 VTK_STRATUS_PRIVATE void vtkStratusCutSource(
   vtkStratusBrickSource& source, const std::array<int64_t, 3>& lo, const std::array<int64_t, 3>& size);
 
-// Returns the array; null where the system cannot stop who reads a page that is not there.
+// Whether the system can stop who reads a page that is not there.
+VTK_STRATUS_PRIVATE bool vtkStratusHasBricks();
+// Returns the array; null where the system cannot do that.
 VTK_STRATUS_PRIVATE vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& source);
 
 // Lets the system read values of the array ahead, where values of another array of its shape are in memory, such as the time step that is

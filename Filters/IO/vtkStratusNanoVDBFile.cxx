@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Grids of a .nvdb file, by NanoVDB. A file's grid is used in its memory layout, pointers and all, so no node is read before it is known to
-// be within the grid's bytes.
+// be within the grid's bytes. Of a grid that is not compressed, leaves can stay in the file: they come behind all other nodes, and are most
+// of the grid. They are copied to where they are read from, because NanoVDB's alignment holds from the grid's first byte, not the file's.
+#include "vtkStratusOpenFile.h"
 #include "vtkStratusSparseGrid.h"
 
 #include <nanovdb/util/IO.h>
 
+#include <algorithm>
 #include <exception>
 #include <fstream>
+#include <limits>
 #include <new>
 #include <type_traits>
 
@@ -32,28 +36,82 @@ template <class T> struct Traits<nanovdb::Vec3<T>> {
   static const Type* Get(const nanovdb::Vec3<T>& value) { return &value[0]; }
 };
 
-// The bytes of a grid, and its nodes.
+// The bytes of a grid, and its nodes: all bytes, or those before the leaves, which stay in the file.
 class GridBytes
 {
 public:
-  GridBytes(nanovdb::GridHandle<>&& handle, const std::string& name) : Handle(std::move(handle)), Name(name) {}
+  GridBytes(nanovdb::GridHandle<>&& handle, const std::string& name)
+      : Held(std::move(handle.buffer())), Length(this->Held.size()), Name(name)
+  {
+  }
+  // Reads the first `held` bytes of the grid of `length` bytes at `begin` of the file.
+  GridBytes(std::shared_ptr<const vtkStratusOpenFile> file, uint64_t begin, uint64_t held, uint64_t length, const std::string& name)
+      : Held(nanovdb::HostBuffer::create(held)), File(std::move(file)), FileBegin(begin), Length(length), Name(name)
+  {
+    if (!this->Held.data()) {
+      throw std::bad_alloc();
+    }
+    this->Load(0, this->Held.data(), held);
+  }
 
-  // Returns what lies `offset` bytes behind `from`. Fails where that is not within the grid, or not aligned.
+  // Returns what lies `offset` bytes behind `from`. Fails where that is not within the bytes that are held, or not aligned.
   template <class T> const T& At(const void* from, int64_t offset, uint64_t size = sizeof(T)) const
   {
-    const int64_t place = reinterpret_cast<const uint8_t*>(from) - this->Handle.data();
-    const uint64_t to = static_cast<uint64_t>(place) + static_cast<uint64_t>(offset); // of two's complement, so that -1 is huge
-    if (to > this->Handle.size() || size > this->Handle.size() - to || to % NANOVDB_DATA_ALIGNMENT != 0) {
-      throw vtkStratusReadError{ this->Name + ": the grid is damaged: a node lies outside of its " + std::to_string(this->Handle.size()) +
-        " bytes" };
-    }
-    return *reinterpret_cast<const T*>(this->Handle.data() + to);
+    return *reinterpret_cast<const T*>(this->Begin() + this->Find(from, offset, size, this->Size()));
   }
-  const uint8_t* Begin() const { return this->Handle.data(); }
-  uint64_t Size() const { return this->Handle.size(); }
+
+  // A place that a leaf is read to, with the codes that follow leaves of FpN: at most 128 bits for each of 512 values.
+  template <class Leaf> struct alignas(NANOVDB_DATA_ALIGNMENT) Room {
+    uint8_t Bytes[sizeof(Leaf) + (Leaf::FIXED_SIZE ? 0 : 8192)];
+  };
+  // Returns a leaf, as At() does, from the room where leaves stay in the file.
+  template <class Leaf> const Leaf& LeafAt(const void* from, int64_t offset, Room<Leaf>& room) const
+  {
+    if (!this->File) {
+      const Leaf& one = this->At<Leaf>(from, offset);
+      return this->At<Leaf>(&one, 0, static_cast<uint64_t>(one.memUsage())); // some leaves' size depends on their flags
+    }
+    const uint64_t place = this->Find(from, offset, sizeof(Leaf), this->Length);
+    this->Load(place, room.Bytes, sizeof(Leaf));
+    const Leaf& one = *reinterpret_cast<const Leaf*>(room.Bytes);
+    const uint64_t all = static_cast<uint64_t>(one.memUsage());
+    if (all > sizeof(Leaf)) {
+      this->Find(from, offset, all, all <= sizeof room.Bytes ? this->Length : 0);
+      this->Load(place + sizeof(Leaf), room.Bytes + sizeof(Leaf), all - sizeof(Leaf));
+    }
+    return one;
+  }
+  // Fails where there can be no leaf.
+  template <class Leaf> void CheckLeaf(const void* from, int64_t offset) const { this->Find(from, offset, sizeof(Leaf), this->Length); }
+
+  const uint8_t* Begin() const { return this->Held.data(); }
+  uint64_t Size() const { return this->Held.size(); }
+  uint64_t SizeOfAll() const { return this->Length; }
+  bool LeavesStay() const { return this->File != nullptr; }
 
 private:
-  nanovdb::GridHandle<> Handle;
+  // Returns where `size` bytes are among the bytes of the grid, of which there are `end`.
+  uint64_t Find(const void* from, int64_t offset, uint64_t size, uint64_t end) const
+  {
+    const int64_t place = reinterpret_cast<const uint8_t*>(from) - this->Begin();
+    const uint64_t to = static_cast<uint64_t>(place) + static_cast<uint64_t>(offset); // of two's complement, so that -1 is huge
+    if (to > end || size > end - to || to % NANOVDB_DATA_ALIGNMENT != 0) {
+      throw vtkStratusReadError{ this->Name + ": the grid is damaged: a node lies outside of its " + std::to_string(end) + " bytes" };
+    }
+    return to;
+  }
+
+  void Load(uint64_t place, uint8_t* to, uint64_t bytes) const
+  {
+    if (!this->File->Read(static_cast<int64_t>(this->FileBegin + place), to, static_cast<size_t>(bytes))) {
+      throw vtkStratusReadError{ this->Name + ": a node at byte " + std::to_string(this->FileBegin + place) +
+        " cannot be read: the file is cut short, or the disk fails" };
+    }
+  }
+
+  nanovdb::HostBuffer Held;
+  std::shared_ptr<const vtkStratusOpenFile> File; // null: all bytes are held
+  uint64_t FileBegin = 0, Length;
   std::string Name;
 };
 
@@ -76,11 +134,20 @@ public:
     this->Components = Traits<Value>::Components;
     this->Active = tree.mVoxelCount;
     this->Leaves = tree.mNodeCount[0];
-    this->Bytes = this->Source.Size();
+    this->Bytes = this->Source.SizeOfAll();
+    this->InFile = this->Source.LeavesStay();
     this->Empty = this->Active == 0;
     for (int a = 0; a < 3; ++a) {
       this->Low[a] = this->Empty ? 0 : this->Top->mBBox.min()[a];
       this->High[a] = this->Empty ? 0 : this->Top->mBBox.max()[a];
+    }
+    if (this->InFile) { // an image of a damaged grid is an error now, not once something looks at it
+      const auto& low = this->Low;
+      const auto& high = this->High;
+      this->Visit(
+        { { low[0] - 1, low[1] - 1, low[2] - 1 }, { high[0] + 1, high[1] + 1, high[2] + 1 } },
+        [](const int64_t*, int64_t, const Value&, bool) {},
+        [this](const int64_t*, const Lower& inner, int64_t child) { this->Source.template CheckLeaf<Leaf>(&inner, child); });
     }
   }
 
@@ -88,9 +155,12 @@ public:
   {
     vtkStratusDenseBox<Component> box(values, low, high, this->Components);
     box.SetBackground(Traits<Value>::Get(this->Top->mBackground));
-    this->Visit([&box](const int64_t first[3], int64_t size) { return !box.Misses(first, size); },
+    this->Visit(
+      { { low[0], low[1], low[2] }, { high[0], high[1], high[2] } },
       [&box](const int64_t first[3], int64_t size, const Value& value, bool) { box.SetCube(first, size, Traits<Value>::Get(value)); },
-      [&box](const int64_t first[3], const Leaf& leaf) {
+      [this, &box](const int64_t first[3], const Lower& inner, int64_t child) {
+        GridBytes::Room<Leaf> room;
+        const Leaf& leaf = this->Source.LeafAt(&inner, child, room);
         Value value;
         box.Fill(first, 8, [&](int64_t x, int64_t y, int64_t z) {
           value = leaf.getValue(static_cast<uint32_t>((x * 8 + y) * 8 + z));
@@ -102,14 +172,16 @@ public:
   std::vector<vtkStratusCellBox> ListActive() const override
   {
     std::vector<vtkStratusCellBox> boxes;
-    this->Visit([](const int64_t*, int64_t) { return true; },
+    this->Visit(
+      Cube::All(),
       [&boxes](const int64_t first[3], int64_t size, const Value&, bool active) {
         if (active) {
           boxes.push_back(vtkStratusCellsAt(first, size));
         }
       },
-      [&boxes](const int64_t first[3], const Leaf& leaf) {
-        if (!leaf.mValueMask.isOff()) {
+      [this, &boxes](const int64_t first[3], const Lower& inner, int64_t child) {
+        GridBytes::Room<Leaf> room;
+        if (!this->Source.LeafAt(&inner, child, room).mValueMask.isOff()) {
           boxes.push_back(vtkStratusCellsAt(first, 8));
         }
       });
@@ -117,39 +189,45 @@ public:
   }
 
 private:
-  // Where a node's entry lies: entries are counted with z fastest.
-  template <class Node> static void Place(const int64_t first[3], uint32_t n, int64_t place[3])
-  {
-    constexpr uint32_t side = 1u << Node::LOG2DIM;
-    const int64_t step = Node::DIM / side;
-    place[0] = first[0] + step * static_cast<int64_t>(n / (side * side));
-    place[1] = first[1] + step * static_cast<int64_t>(n / side % side);
-    place[2] = first[2] + step * static_cast<int64_t>(n % side);
-  }
+  // Voxels, ends included.
+  struct Cube {
+    int64_t Low[3], High[3];
 
-  // Calls tile(first, size, value, active) or leaf(first, leaf) for each of the tree's cubes for which wanted(first, size) and wanted() of
-  // all cubes around it return true.
-  template <class Wanted, class OnTile, class OnLeaf> void Visit(const Wanted& wanted, const OnTile& tile, const OnLeaf& leaf) const
+    static Cube All()
+    {
+      constexpr int64_t least = std::numeric_limits<int32_t>::min(), most = std::numeric_limits<int32_t>::max();
+      return { { least, least, least }, { most, most, most } };
+    }
+    // Whether none of the voxels of a node at `first` is in the cube.
+    bool Misses(const int64_t first[3], int64_t size) const
+    {
+      bool misses = false;
+      for (int a = 0; a < 3; ++a) {
+        misses = misses || first[a] > this->High[a] || first[a] + size <= this->Low[a];
+      }
+      return misses;
+    }
+  };
+
+  // Calls tile(first, size, value, active) or leaf(first, inner, child) for each of the tree's tiles and leaves that has voxels in the
+  // cube; a leaf is `child` bytes behind its lower node `inner`.
+  template <class OnTile, class OnLeaf> void Visit(const Cube& cube, const OnTile& tile, const OnLeaf& leaf) const
   {
     this->Source.template At<Root>(this->Top, 0, sizeof(Root) + this->Top->mTableSize * sizeof(typename Root::Tile));
     for (uint32_t n = 0; n < this->Top->mTableSize; ++n) {
       const typename Root::Tile& entry = *this->Top->tile(n);
       const nanovdb::Coord origin = entry.origin();
       const int64_t first[3] = { origin[0], origin[1], origin[2] };
-      if (!wanted(first, nanovdb::NanoUpper<Build>::DIM)) {
+      if (cube.Misses(first, nanovdb::NanoUpper<Build>::DIM)) {
         continue;
       }
       if (entry.child != 0) {
         const Upper& node = this->Source.template At<Upper>(this->Top, entry.child);
-        this->template VisitNode<nanovdb::NanoUpper<Build>, nanovdb::NanoLower<Build>>(
-          node, first, wanted, tile, [&](const int64_t place[3], uint64_t child) {
+        VisitNode<nanovdb::NanoUpper<Build>, nanovdb::NanoLower<Build>>(
+          node, first, cube, tile, [&](const int64_t place[3], int64_t child) {
             const Lower& inner = this->Source.template At<Lower>(&node, child);
-            this->template VisitNode<nanovdb::NanoLower<Build>, nanovdb::NanoLeaf<Build>>(
-              inner, place, wanted, tile, [&](const int64_t at[3], uint64_t last) {
-                const Leaf& one = this->Source.template At<Leaf>(&inner, last);
-                this->Source.template At<Leaf>(&one, 0, static_cast<uint64_t>(one.memUsage())); // some leaves' size depends on their flags
-                leaf(at, one);
-              });
+            VisitNode<nanovdb::NanoLower<Build>, nanovdb::NanoLeaf<Build>>(
+              inner, place, cube, tile, [&](const int64_t at[3], int64_t last) { leaf(at, inner, last); });
           });
       } else {
         tile(first, nanovdb::NanoUpper<Build>::DIM, entry.value, entry.state != 0);
@@ -157,19 +235,27 @@ private:
     }
   }
 
-  template <class Node, class Child, class Data, class Wanted, class OnTile, class OnChild>
-  static void VisitNode(const Data& node, const int64_t first[3], const Wanted& wanted, const OnTile& tile, const OnChild& child)
+  // Visits the entries of a node that has voxels in the cube. Entries are counted with z fastest.
+  template <class Node, class Child, class Data, class OnTile, class OnChild>
+  static void VisitNode(const Data& node, const int64_t first[3], const Cube& cube, const OnTile& tile, const OnChild& child)
   {
-    for (uint32_t n = 0; n < Node::SIZE; ++n) {
-      int64_t place[3];
-      Place<Node>(first, n, place);
-      if (!wanted(place, Child::DIM)) {
-        continue;
-      }
-      if (node.mChildMask.isOn(n)) {
-        child(place, node.mTable[n].child);
-      } else {
-        tile(place, Child::DIM, node.mTable[n].value, node.mValueMask.isOn(n));
+    constexpr int64_t side = int64_t(1) << Node::LOG2DIM, step = Child::DIM;
+    int64_t from[3], to[3], i[3];
+    for (int a = 0; a < 3; ++a) {
+      from[a] = std::max<int64_t>(cube.Low[a] - first[a], 0) / step;
+      to[a] = std::min((cube.High[a] - first[a]) / step, side - 1);
+    }
+    for (i[0] = from[0]; i[0] <= to[0]; ++i[0]) {
+      for (i[1] = from[1]; i[1] <= to[1]; ++i[1]) {
+        for (i[2] = from[2]; i[2] <= to[2]; ++i[2]) {
+          const auto n = static_cast<uint32_t>((i[0] * side + i[1]) * side + i[2]);
+          const int64_t place[3] = { first[0] + step * i[0], first[1] + step * i[1], first[2] + step * i[2] };
+          if (node.mChildMask.isOn(n)) {
+            child(place, node.mTable[n].child);
+          } else {
+            tile(place, step, node.mTable[n].value, node.mValueMask.isOn(n));
+          }
+        }
       }
     }
   }
@@ -204,6 +290,25 @@ constexpr struct {
 #undef KIND
 };
 
+// Reads what comes before the leaves of a grid that is not compressed. Null where that is not possible: there is no leaf, or it is not
+// behind all other nodes.
+std::unique_ptr<GridBytes> LeaveLeaves(const std::string& path, uint64_t begin, uint64_t length)
+{
+  constexpr uint64_t heads = sizeof(nanovdb::GridData) + sizeof(nanovdb::TreeData<>);
+  const auto file = std::make_shared<const vtkStratusOpenFile>(path);
+  if (!file->IsOpen() || length <= heads) {
+    return nullptr;
+  }
+  const GridBytes first(file, begin, heads, length, path);
+  const auto& tree = first.At<nanovdb::TreeData<>>(first.Begin(), sizeof(nanovdb::GridData));
+  const uint64_t leaves = tree.mNodeOffset[0];
+  bool last = tree.mNodeCount[0] > 0 && leaves < length - sizeof(nanovdb::GridData);
+  for (int level = 1; level < 4; ++level) {
+    last = last && tree.mNodeOffset[level] < leaves;
+  }
+  return last ? std::make_unique<GridBytes>(file, begin, sizeof(nanovdb::GridData) + leaves, length, path) : nullptr;
+}
+
 class File : public vtkStratusSparseFile
 {
 public:
@@ -211,9 +316,10 @@ public:
   {
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     const auto length = static_cast<uint64_t>(std::max<std::streamoff>(file.tellg(), 0));
-    this->Guard([&] { this->Grids = nanovdb::io::readGridMetaData(path); });
+    this->Guard([&] { this->FindGrids(); });
     uint64_t needed = 0;
-    for (const nanovdb::io::GridMetaData& one : this->Grids) {
+    for (const Place& place : this->Grids) {
+      const nanovdb::io::GridMetaData& one = place.Head;
       needed += one.fileSize;
       if (one.fileSize > length || needed > length) {
         throw vtkStratusReadError{ path + ": the file is cut short: it has " + std::to_string(length) + " bytes, the grid '" +
@@ -225,36 +331,72 @@ public:
     }
   }
 
-  std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name) override
+  std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name, bool leave) override
   {
     std::unique_ptr<vtkStratusSparseGrid> result;
     size_t number = 0;
     while (number + 1 < this->Entries.size() && this->Entries[number].Name != name) {
       ++number;
     }
+    const Place& place = this->Grids[number];
     this->Guard([&] {
-      GridBytes bytes(nanovdb::io::readGrid(this->Path, number), this->Path);
-      const nanovdb::GridData head = bytes.At<nanovdb::GridData>(bytes.Begin(), 0);
-      const auto* kind = FindKind(head.mGridType);
-      if (head.mMagic != NANOVDB_MAGIC_NUMBER || !kind || head.mGridType != this->Grids[number].gridType) {
-        throw vtkStratusReadError{ this->Path + ": the grid '" + name + "' is damaged: its header has another type than the file's" };
+      if (leave && place.Codec == nanovdb::io::Codec::NONE && place.Head.fileSize == place.Head.gridSize) {
+        try {
+          std::unique_ptr<GridBytes> bytes = LeaveLeaves(this->Path, place.Begin, place.Head.gridSize);
+          result = bytes ? this->Make(std::move(*bytes), number) : nullptr;
+        } catch (const vtkStratusReadError&) { // reading all of it gives the error, if it is one
+        }
       }
-      result = kind->make(std::move(bytes));
-      for (size_t i = 0; i < 9; ++i) {
-        result->Matrix[i] = head.mMap.mMatD[i];
-        result->Offset[i % 3] = head.mMap.mVecD[i % 3];
+      if (!result) {
+        result = this->Make(GridBytes(nanovdb::io::readGrid(this->Path, number), this->Path), number);
       }
-      const auto what = static_cast<uint32_t>(head.mGridClass);
-      result->Kind = std::string(what == 1 ? "level set"
-                         : what == 2       ? "fog volume"
-                         : what == 3       ? "staggered vectors"
-                                           : "grid") +
-        " of " + kind->name;
     });
     return result;
   }
 
 private:
+  struct Place {
+    nanovdb::io::GridMetaData Head;
+    nanovdb::io::Codec Codec;
+    uint64_t Begin; // in the file
+  };
+
+  void FindGrids()
+  {
+    std::ifstream file(this->Path, std::ios::binary);
+    nanovdb::io::Segment segment;
+    while (segment.read(file)) {
+      uint64_t at = static_cast<uint64_t>(static_cast<std::streamoff>(file.tellg()));
+      for (const nanovdb::io::GridMetaData& one : segment.meta) {
+        this->Grids.push_back({ one, segment.header.codec, at });
+        at += one.fileSize;
+      }
+      file.seekg(static_cast<std::streamoff>(at));
+    }
+  }
+
+  std::unique_ptr<vtkStratusSparseGrid> Make(GridBytes&& bytes, size_t number) const
+  {
+    const nanovdb::GridData head = bytes.At<nanovdb::GridData>(bytes.Begin(), 0);
+    const auto* kind = FindKind(head.mGridType);
+    if (head.mMagic != NANOVDB_MAGIC_NUMBER || !kind || head.mGridType != this->Grids[number].Head.gridType) {
+      throw vtkStratusReadError{ this->Path + ": the grid '" + this->Entries[number].Name +
+        "' is damaged: its header has another type than the file's" };
+    }
+    std::unique_ptr<vtkStratusSparseGrid> result = kind->make(std::move(bytes));
+    for (size_t i = 0; i < 9; ++i) {
+      result->Matrix[i] = head.mMap.mMatD[i];
+      result->Offset[i % 3] = head.mMap.mVecD[i % 3];
+    }
+    const auto what = static_cast<uint32_t>(head.mGridClass);
+    result->Kind = std::string(what == 1 ? "level set"
+                       : what == 2       ? "fog volume"
+                       : what == 3       ? "staggered vectors"
+                                         : "grid") +
+      " of " + kind->name;
+    return result;
+  }
+
   static decltype(&kinds[0]) FindKind(nanovdb::GridType type)
   {
     for (const auto& kind : kinds) {
@@ -288,7 +430,7 @@ private:
   }
 
   std::string Path;
-  std::vector<nanovdb::io::GridMetaData> Grids;
+  std::vector<Place> Grids;
 };
 } // namespace
 

@@ -112,7 +112,7 @@ public:
     });
   }
 
-  std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name) override
+  std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name, bool) override
   {
     std::unique_ptr<vtkStratusSparseGrid> result;
     this->Guard([&] {

@@ -57,16 +57,6 @@ public:
     std::copy(high, high + 3, this->High);
   }
 
-  // Whether none of the cube's voxels is inside the box.
-  bool Misses(const int64_t first[3], int64_t size) const
-  {
-    bool misses = false;
-    for (int a = 0; a < 3; ++a) {
-      misses = misses || first[a] > this->High[a] || first[a] + size <= this->Low[a];
-    }
-    return misses;
-  }
-
   // Sets every voxel, before any other is written.
   void SetBackground(const T* value)
   {
@@ -137,7 +127,8 @@ class vtkStratusSparseGrid
 public:
   virtual ~vtkStratusSparseGrid() = default;
 
-  // Writes all voxels of the box, active and inactive ones, into memory that holds zeros: values of Type, Components a voxel.
+  // Writes all voxels of the box, active and inactive ones, into memory that holds zeros: values of Type, Components a voxel. Several
+  // threads may do so at once.
   virtual void Write(void* values, const int64_t low[3], const int64_t high[3]) const = 0;
 
   // Lists the cells with an active voxel at a corner: the cells of each leaf that has one, and the cells of each active tile.
@@ -151,6 +142,7 @@ public:
   std::array<double, 9> Matrix{ { 0.0 } };    // row-major: world = Matrix * index + Offset
   std::array<double, 3> Offset{ { 0.0 } };    //
   uint64_t Active = 0, Leaves = 0, Bytes = 0; // voxels; blocks of 8^3; memory of the sparse grid
+  bool InFile = false;                        // leaves stay in the file, and are read by Write()
   std::string Kind;                           // "fog volume of float", for people
 };
 
@@ -165,8 +157,8 @@ public:
     bool Known;       // its values can be drawn
   };
   const std::vector<Entry>& GetEntries() const { return this->Entries; }
-  // Reads a grid of those that are Known.
-  virtual std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name) = 0;
+  // Reads a grid of those that are Known. leave: its leaves stay in the file, where that can be.
+  virtual std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name, bool leave) = 0;
 
   // Opens a file by its first bytes.
   static std::unique_ptr<vtkStratusSparseFile> Open(const std::string& path);

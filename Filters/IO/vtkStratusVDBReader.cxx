@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusVDBReader.h"
 
+#include "vtkStratusBricks.h"
+#include "vtkStratusIdentity.h"
 #include "vtkStratusMakeArray.h"
+#include "vtkStratusMappedFile.h"
 #include "vtkStratusSparseGrid.h"
 
 #include "vtkDataArray.h"
@@ -17,11 +20,15 @@
 #include <climits>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <new>
 
 vtkStandardNewMacro(vtkStratusVDBReader);
 
 namespace {
-constexpr double Orthogonal = 1e-6; // largest cosine of the angle between two axes: the rounding error of a rotation in floats
+constexpr double Orthogonal = 1e-6;       // largest cosine of the angle between two axes: the rounding error of a rotation in floats
+constexpr double MostBrickBytes = 0x1p40; // addresses, of the 2^47 that a process has
+constexpr int64_t BrickSide = 32;         // voxels: 64 leaves
 
 std::string WriteBytes(double bytes)
 {
@@ -37,6 +44,20 @@ std::string WriteBox(const vtkStratusSparseGrid& grid)
     text += (a ? ", " : "") + std::to_string(grid.Low[a]) + ".." + std::to_string(grid.High[a]);
   }
   return text;
+}
+
+double VoxelBytes(const vtkStratusSparseGrid& grid)
+{
+  return static_cast<double>(vtkDataArray::GetDataTypeSize(grid.Type)) * grid.Components;
+}
+
+double ImageBytes(const vtkStratusSparseGrid& grid)
+{
+  double bytes = VoxelBytes(grid);
+  for (int a = 0; a < 3; ++a) {
+    bytes *= static_cast<double>(grid.High[a] - grid.Low[a] + 3);
+  }
+  return bytes;
 }
 
 double Length(const vtkStratusSparseGrid& grid, size_t axis)
@@ -70,7 +91,7 @@ std::string vtkStratusVDBReader::Inspect()
     this->Fail("there is no grid of numbers or vectors; the file has: " + (others.empty() ? "no grid" : others));
   }
   this->GridName = this->ChosenName();
-  this->Grid = file->Read(this->GridName);
+  this->Grid = file->Read(this->GridName, this->MapFile || vtkStratusHasBrickMemory());
   this->Description = this->Grid->Kind + ", " + std::to_string(this->Grid->Active) + " active voxels in " +
     std::to_string(this->Grid->Leaves) + " leaves and tiles of " + WriteBytes(static_cast<double>(this->Grid->Bytes));
   this->CheckMap();
@@ -100,29 +121,33 @@ bool vtkStratusVDBReader::ChooseBlocks()
 {
   constexpr size_t most = 256; // pictures take a time that grows with them
   const vtkStratusSparseGrid& grid = *this->Grid;
-  const double voxel = static_cast<double>(vtkDataArray::GetDataTypeSize(grid.Type)) * grid.Components;
-  const double limit = 1048576.0 * static_cast<double>(this->MemoryLimit);
-  const std::string memory = ". The sparse grid takes " + WriteBytes(static_cast<double>(grid.Bytes)) + "; the limit is " +
+  const double limit = 1048576.0 * static_cast<double>(this->MemoryLimit), image = ImageBytes(grid);
+  const double memory = vtkStratusHasBrickMemory() ? static_cast<double>(vtkStratusGetBrickMemory()) : 0.0; // 0: no limit is set
+  const bool wanted = this->MapFile ? image >= static_cast<double>(this->MappedBytesLeast) : memory > 0.0 && image > memory;
+  const bool bricks = wanted && grid.InFile && image <= MostBrickBytes && vtkStratusHasBricks();
+  const std::string takes = ". The sparse grid takes " + WriteBytes(static_cast<double>(grid.Bytes)) + "; the limit is " +
     std::to_string(this->MemoryLimit) + " MiB (MemoryLimit)";
-  double image = voxel, blocks = 0.0;
+  double blocks = 0.0;
   this->Blocks.clear();
-  for (int a = 0; a < 3; ++a) {
-    image *= static_cast<double>(grid.High[a] - grid.Low[a] + 3);
-  }
+  this->LeavesImage = bricks;
   if (this->Layout == IMAGE_LAYOUT || grid.Empty || (this->Layout == AUTO_LAYOUT && image <= limit)) {
-    if (image > limit) {
+    if (image > limit && !bricks) {
       this->Fail("the grid '" + this->GridName + "' would take " + WriteBytes(image) + " as an image: its active voxels are within " +
-        WriteBox(grid) + memory);
+        WriteBox(grid) + takes);
     }
     return false;
   }
   this->Blocks = vtkStratusDivide(grid.ListActive(), most);
   for (const vtkStratusCellBox& box : this->Blocks) {
-    blocks += voxel * vtkStratusVoxelsOf(box);
+    blocks += VoxelBytes(grid) * vtkStratusVoxelsOf(box);
+  }
+  if (bricks && (blocks > limit || (memory > 0.0 && blocks > memory))) {
+    this->Blocks.clear();
+    return false;
   }
   if (blocks > limit) {
     this->Fail("the grid '" + this->GridName + "' would take " + WriteBytes(blocks) + " as " + std::to_string(this->Blocks.size()) +
-      " blocks, and " + WriteBytes(image) + " as an image" + memory);
+      " blocks, and " + WriteBytes(image) + " as an image" + takes);
   }
   this->Description +=
     "; " + std::to_string(this->Blocks.size()) + " blocks of " + WriteBytes(blocks) + " in place of an image of " + WriteBytes(image);
@@ -151,7 +176,43 @@ void vtkStratusVDBReader::CheckMap()
   }
 }
 
-void vtkStratusVDBReader::BuildImage(vtkImageData* image, const vtkStratusSparseGrid& grid, const int extent[6]) const
+// Returns the image's values as bricks. Null where they can't be.
+vtkSmartPointer<vtkDataArray> vtkStratusVDBReader::LeaveValues(const std::shared_ptr<vtkStratusSparseGrid>& grid) const
+{
+  vtkStratusBrickSource source;
+  std::array<int64_t, 3> origin;
+  source.Name = this->GridName;
+  source.Type = grid->Type;
+  source.Components = grid->Components;
+  source.Identity = vtkStratusIdentityOfPart(vtkStratusIdentityOfFile(this->FileName, 0, -1), this->GridName, {});
+  for (size_t a = 0; a < 3; ++a) {
+    origin[a] = this->WholeExtent[2 * a];
+    source.Dimensions[a] = this->WholeExtent[2 * a + 1] - origin[a] + 1;
+    source.Brick[a] = BrickSide;
+    source.Before[a] = origin[a] & (BrickSide - 1); // nodes begin at multiples of their side, also below 0
+  }
+  const size_t voxel = static_cast<size_t>(vtkDataArray::GetDataTypeSize(grid->Type)) * static_cast<size_t>(grid->Components);
+  source.Read = [grid, origin, voxel](const int64_t lo[3], const int64_t size[3], void* values) {
+    int64_t low[3], high[3];
+    for (size_t a = 0; a < 3; ++a) {
+      low[a] = origin[a] + lo[a];
+      high[a] = low[a] + size[a] - 1;
+    }
+    std::memset(values, 0, voxel * static_cast<size_t>(size[0] * size[1] * size[2]));
+    try {
+      grid->Write(values, low, high);
+    } catch (const vtkStratusReadError&) { // the mapper reports it
+      return false;
+    } catch (const std::bad_alloc&) {
+      return false;
+    }
+    return true;
+  };
+  return vtkStratusMakeBricks(source);
+}
+
+void vtkStratusVDBReader::BuildImage(
+  vtkImageData* image, const vtkStratusSparseGrid& grid, const int extent[6], vtkSmartPointer<vtkDataArray> values) const
 {
   double spacing[3], direction[9];
   int64_t low[3], high[3];
@@ -167,9 +228,11 @@ void vtkStratusVDBReader::BuildImage(vtkImageData* image, const vtkStratusSparse
   image->SetOrigin(grid.Offset.data());
   image->SetSpacing(spacing);
   image->SetDirectionMatrix(direction);
-  const vtkSmartPointer<vtkDataArray> values = vtkStratusMakeArray(grid.Type, grid.Components, image->GetNumberOfPoints());
-  grid.Write(values->GetVoidPointer(0), low, high);
-  values->SetName(this->GridName.c_str());
+  if (!values) {
+    values = vtkStratusMakeArray(grid.Type, grid.Components, image->GetNumberOfPoints());
+    grid.Write(values->GetVoidPointer(0), low, high);
+    values->SetName(this->GridName.c_str());
+  }
   image->GetPointData()->AddArray(values);
   if (grid.Components == 1) {
     image->GetPointData()->SetActiveScalars(this->GridName.c_str());
@@ -178,14 +241,23 @@ void vtkStratusVDBReader::BuildImage(vtkImageData* image, const vtkStratusSparse
   }
 }
 
-void vtkStratusVDBReader::Build(size_t, vtkDataObject* output)
+void vtkStratusVDBReader::Build(size_t step, vtkDataObject* output)
 {
-  std::unique_ptr<vtkStratusSparseGrid> grid = std::move(this->Grid);
+  std::shared_ptr<vtkStratusSparseGrid> grid = std::move(this->Grid);
   if (!grid) {
-    grid = vtkStratusSparseFile::Open(this->FileName)->Read(this->GridName);
+    grid = vtkStratusSparseFile::Open(this->FileName)->Read(this->GridName, this->MapFile || vtkStratusHasBrickMemory());
   }
+  this->Mapped = 0;
   if (vtkImageData* image = vtkImageData::SafeDownCast(output)) {
-    this->BuildImage(image, *grid, this->WholeExtent);
+    vtkSmartPointer<vtkDataArray> values;
+    if (this->LeavesImage && grid->InFile) {
+      values = this->BricksOf(step, [this, &grid](size_t) { return this->LeaveValues(grid); });
+    }
+    if (!values && ImageBytes(*grid) > 1048576.0 * static_cast<double>(this->MemoryLimit)) {
+      throw std::bad_alloc();
+    }
+    this->Mapped = values ? 1 : 0;
+    this->BuildImage(image, *grid, this->WholeExtent, values);
     return;
   }
   vtkPartitionedDataSet* parts = vtkPartitionedDataSet::SafeDownCast(output);

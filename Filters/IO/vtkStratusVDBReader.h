@@ -11,10 +11,15 @@
  * including tiles and inactive voxels; voxels outside the box are dropped. VTK's indices are the grid's indices. Values are points, placed
  * by the grid's map (voxel size, rotation, translation). A map with shear, or a frustum map, is an error.
  *
- * The image is dense: it needs memory for the whole box. Pages of it that only hold 0 are never written, and use no memory on systems that
- * allocate pages on the first write. If the image needs more than MemoryLimit, the output is a vtkPartitionedDataSet of images instead,
- * unless Layout chooses. The images are blocks of the same grid that meet in faces and cover all cells with an active voxel at a corner.
- * They are divided until at least half of their voxels are in leaves and active tiles, or there are 256 of them.
+ * Values of an image of at least MappedBytesLeast bytes stay in a .nvdb file that is not compressed if MapFile is on (default off), or if
+ * they are more than a memory limit that is set. They are bricks: the nodes above the leaves are kept, and leaves are read when something
+ * looks at their voxels. Elsewhere nothing is read. Such an image may be larger than MemoryLimit: it is the output where blocks would be
+ * too large as well.
+ *
+ * Another image is dense: it needs memory for the whole box. Pages of it that only hold 0 are never written, and use no memory on systems
+ * that allocate pages on the first write. If the image needs more than MemoryLimit, the output is a vtkPartitionedDataSet of images
+ * instead, unless Layout chooses. The images are blocks of the same grid that meet in faces and cover all cells with an active voxel at a
+ * corner. They are divided until at least half of their voxels are in leaves and active tiles, or there are 256 of them.
  * vtkStratusMultiBlockVolumeMapper draws them as one volume, without seams; the space between blocks is empty, whatever the background's
  * value. Blocks that need more than MemoryLimit are an error that reports the bytes.
  */
@@ -23,7 +28,7 @@
 
 #include "vtkStratusVariableReader.h"
 
-#include <memory> // For std::unique_ptr
+#include <memory> // For std::shared_ptr
 
 class vtkImageData;
 class vtkStratusSparseGrid;
@@ -48,7 +53,8 @@ public:
 
   //@{
   /**
-   * Set/Get the most that the image or the blocks may take, in MiB, at least 1. Default 4096.
+   * Set/Get the most that the image or the blocks may take, in MiB, at least 1. Default 4096. An image of bricks takes what
+   * vtkStratusVariableReader::SetMemoryLimit() says.
    */
   vtkSetClampMacro(MemoryLimit, vtkIdType, 1, VTK_ID_MAX / 1048576);
   vtkGetMacro(MemoryLimit, vtkIdType);
@@ -68,15 +74,18 @@ private:
 
   void FindExtent();
   bool ChooseBlocks();
-  void BuildImage(vtkImageData* image, const vtkStratusSparseGrid& grid, const int extent[6]) const;
+  vtkSmartPointer<vtkDataArray> LeaveValues(const std::shared_ptr<vtkStratusSparseGrid>& grid) const;
+  void BuildImage(
+    vtkImageData* image, const vtkStratusSparseGrid& grid, const int extent[6], vtkSmartPointer<vtkDataArray> values = nullptr) const;
   void CheckMap();
   [[noreturn]] void Fail(const std::string& why) const;
 
   int Layout = AUTO_LAYOUT;
   vtkIdType MemoryLimit = 4096;
-  std::unique_ptr<vtkStratusSparseGrid> Grid; // from where it is looked at to where it is put out
+  std::shared_ptr<vtkStratusSparseGrid> Grid; // from where it is looked at to where it is put out
   std::string GridName;
   std::vector<vtkStratusCellBox> Blocks; // empty: the output is an image
+  bool LeavesImage = false;              // its values stay in the file
 };
 
 #endif

@@ -71,10 +71,10 @@ public:
    * Values stay in the file where the reader can leave them there, and are read when something looks at them. Values of fewer bytes than
    * MappedBytesLeast (default 16 MiB) are read at once, which is as quick. The array then has the file's values as long as nothing writes
    * to the file; after that, its values are undefined. Where a file is cut short, the values that are missing become 0 or NaN, and the
-   * mappers report an error. Readers of images leave uncompressed values in the file by default. Those of netCDF, Zarr, HDF5 and .vti do so
-   * if MapFile is on (default off), and read a row of the file's chunks at a time; these arrays, and all of more bytes than a memory limit
-   * that is set, are *bricks*. Nothing may write into bricks; and system calls that read them (such as a file's write or a message of MPI)
-   * fail where values are not in memory, so that such arrays are for mappers, not for writers.
+   * mappers report an error. Readers of images leave uncompressed values in the file by default. Those of netCDF, Zarr, HDF5, .vti and
+   * .nvdb do so if MapFile is on (default off), and read a row of the file's chunks at a time; these arrays, and all of more bytes than a
+   * memory limit that is set, are *bricks*. Nothing may write into bricks; and system calls that read them (such as a file's write or a
+   * message of MPI) fail where values are not in memory, so that such arrays are for mappers, not for writers.
    */
   vtkSetMacro(MapFile, vtkTypeBool);
   vtkGetMacro(MapFile, vtkTypeBool);

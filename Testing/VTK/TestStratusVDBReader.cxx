@@ -15,6 +15,8 @@
 
 #include <openvdb/tools/LevelSetSphere.h>
 
+#include <cstring>
+#include <filesystem>
 #include <functional>
 #include <sys/resource.h>
 
@@ -348,6 +350,85 @@ void test_pages(const std::string& folder)
   check(data->GetPointData()->GetArray(0)->GetRange()[1] == 2, "the far voxel is lost");
 }
 
+// Bricks have the bits of the values that are read as a whole: of all kinds, on both sides of 0, of a background that is not 0, of tiles.
+template <class Grid, class Build = void> void test_bricks(const std::string& folder, const std::string& kind)
+{
+  const auto grid = vdb::make_grid<Grid>("density"), other = vdb::make_grid<Grid>("density");
+  grid->tree().setValue(openvdb::Coord(-150, -140, 230), vdb::of<typename Grid::ValueType>(3));
+  grid->tree().addTile(2, openvdb::Coord(-128, -128, 128), vdb::of<typename Grid::ValueType>(4), true);
+  const std::string file = folder + "/bricks_" + kind + ".nvdb";
+  std::ofstream both(file, std::ios::binary);
+  nanovdb::io::writeGrid(both, vdb::to_nano<Grid, Build>(other), nanovdb::io::Codec::ZIP);
+  nanovdb::io::writeGrid(both, vdb::to_nano<Grid, Build>(grid));
+  both.close();
+  reader whole(file, "density[1]"), bricks(file, "density[1]");
+  vtkDataArray* expected = whole.read()->GetPointData()->GetArray(0);
+  bricks.reader->MapFileOn();
+  bricks.reader->SetMappedBytesLeast(1);
+  vtkDataArray* values = bricks.read()->GetPointData()->GetArray(0);
+  check(bricks.errors->heard.empty() && !whole.reader->GetMapped(), file + ": " + bricks.errors->heard);
+  const auto bytes = static_cast<size_t>(expected->GetDataSize() * expected->GetDataTypeSize());
+  check(values && values->GetDataSize() == expected->GetDataSize() &&
+      std::memcmp(values->GetVoidPointer(0), expected->GetVoidPointer(0), bytes) == 0,
+    file + ": bricks have other values than the whole");
+  check(bricks.reader->GetMapped() || vtkStratusVDBReader::GetMemoryUsed() == 0, file + ": values do not stay in the file");
+  bricks.reader->SetVariableName("density");
+  bricks.read();
+  check(bricks.errors->heard.empty() && !bricks.reader->GetMapped(), file + ": compressed values stay in the file");
+}
+
+// A grid of which neither image nor blocks fit becomes an image of bricks, of which little is read.
+void test_limit(const std::string& folder)
+{
+  const auto grid = openvdb::FloatGrid::create(0.0F);
+  const std::string file = folder + "/limit.nvdb";
+  for (int x = 0; x < 2000; x += 8) {
+    for (int y = 0; y < 2000; y += 200) {
+      grid->tree().setValue(openvdb::Coord(x, y, (x + 3 * y) % 1000), 1.0F + static_cast<float>(x));
+    }
+  }
+  nanovdb::io::writeGrid(file, vdb::to_nano(grid));
+  reader r(file, nullptr);
+  r.reader->SetMemoryLimit(4);
+  r.read();
+  check(r.errors->heard.find("the limit is 4 MiB") != std::string::npos, "without a place for it: " + r.errors->heard);
+  r.reader->MapFileOn();
+  vtkImageData* image = vtkImageData::SafeDownCast(r.read());
+  if (!r.errors->heard.empty()) { // the system has no bricks
+    check(r.errors->heard.find("the limit is 4 MiB") != std::string::npos, r.errors->heard);
+    return;
+  }
+  int wrong = 0;
+  const vtkTypeInt64 before = vtkStratusVDBReader::GetBytesRead();
+  for (int x = 0; x < 16; x += 8) {
+    const float* value = image ? static_cast<float*>(image->GetScalarPointer(x, 200, (x + 600) % 1000)) : nullptr;
+    wrong += value && *value == 1.0F + static_cast<float>(x) ? 0 : 1;
+  }
+  check(wrong == 0 && r.reader->GetMapped(), "an image of bricks beyond the limit");
+  check(vtkStratusVDBReader::GetBytesRead() - before < 64 << 20, "two values of a large image bring more than the bricks around them");
+}
+
+// A file that is cut after it was opened: its leaves cannot be read, which is counted.
+void test_cut_later(const std::string& folder)
+{
+  const auto grid = vdb::make_grid<openvdb::FloatGrid>("density");
+  const std::string file = folder + "/cut_later.nvdb";
+  nanovdb::io::writeGrid(file, vdb::to_nano(grid));
+  reader r(file, nullptr);
+  r.reader->MapFileOn();
+  r.reader->SetMappedBytesLeast(1);
+  vtkDataArray* values = r.read()->GetPointData()->GetArray(0);
+  check(r.errors->heard.empty(), file + ": " + r.errors->heard);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 512 * 8); // the last leaves
+  if (r.reader->GetMapped()) {
+    int missing = 0;
+    for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i) {
+      missing += std::isnan(values->GetComponent(i, 0)) ? 1 : 0;
+    }
+    check(missing > 0, "leaves behind the file's end have values");
+  }
+}
+
 void test_wrong(const std::string& folder)
 {
   const auto grid = vdb::make_grid<openvdb::FloatGrid>("density");
@@ -370,6 +451,10 @@ void test_wrong(const std::string& folder)
   for (const char* name : { "/float.vdb", "/float.nvdb", "/sphere.vdb", "/sphere.nvdb", "/turned.nvdb" }) {
     for (double part : { .02, .3, .7, .999 }) {
       refuse<vtkStratusVDBReader>(cut(folder + name, folder + "/cut.vdb", part), nullptr, "cut.vdb: ");
+      reader bricks(folder + "/cut.vdb", nullptr);
+      bricks.reader->MapFileOn();
+      bricks.read();
+      check(bricks.errors->heard.find("cut.vdb: ") != std::string::npos, "bricks of a file that is cut: " + bricks.errors->heard);
     }
   }
 }
@@ -380,6 +465,7 @@ void test_damaged(const std::string& folder)
   std::ifstream in(folder + "/float.nvdb", std::ios::binary);
   const std::string all((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   int refused = 0, read = 0;
+  double sum = 0.0;
   uint64_t random = 1;
   for (int i = 0; i < 300; ++i) {
     std::string text = all;
@@ -392,11 +478,17 @@ void test_damaged(const std::string& folder)
     std::ofstream(folder + "/damaged.nvdb", std::ios::binary) << text;
     reader r(folder + "/damaged.nvdb", nullptr);
     r.reader->SetMemoryLimit(64);
+    r.reader->SetMapFile(i % 2);
+    r.reader->SetMappedBytesLeast(1);
     r.read();
     ++(r.errors->heard.empty() ? read : refused);
     vtkDataObject* data = r.reader->GetOutputDataObject(0);
     check(!r.errors->heard.empty() || (data && data->GetNumberOfElements(vtkDataObject::POINT) > 0), "neither an error nor an image");
+    if (vtkImageData* image = r.reader->GetMapped() ? vtkImageData::SafeDownCast(data) : nullptr) {
+      sum += image->GetNumberOfPoints() < 1 << 24 ? image->GetPointData()->GetScalars()->GetRange()[1] : 0.0; // reads all leaves
+    }
   }
+  std::printf("damaged: %d refused, %d read, %g\n", refused, read, sum);
   check(refused > 30 && read > 30, "of 300 damaged files " + std::to_string(refused) + " are refused, " + std::to_string(read) + " read");
 }
 } // namespace
@@ -423,6 +515,18 @@ int main(int argc, char* argv[])
   test_memory(folder);
   test_blocks(folder);
   test_pages(folder);
+  test_bricks<openvdb::FloatGrid>(folder, "float");
+  test_bricks<openvdb::DoubleGrid>(folder, "double");
+  test_bricks<openvdb::Int32Grid>(folder, "int32");
+  test_bricks<openvdb::Int64Grid>(folder, "int64");
+  test_bricks<openvdb::Vec3SGrid>(folder, "vec3s");
+  test_bricks<openvdb::BoolGrid>(folder, "bool");
+  test_bricks<openvdb::FloatGrid, nanovdb::Fp4>(folder, "fp4");
+  test_bricks<openvdb::FloatGrid, nanovdb::Fp8>(folder, "fp8");
+  test_bricks<openvdb::FloatGrid, nanovdb::Fp16>(folder, "fp16");
+  test_bricks<openvdb::FloatGrid, nanovdb::FpN>(folder, "fpn");
+  test_limit(folder);
+  test_cut_later(folder);
   test_wrong(folder);
   test_damaged(folder);
   return failures ? 1 : 0;
