@@ -229,7 +229,9 @@ void render_film(const cli::options& given, cli::series& in, const cli::cloud* w
     for (size_t step = 0; step < in.steps(); ++step) {
       std::future<cli::routed> next;
       if (step + 1 < in.steps()) {
-        next = std::async(std::launch::async, [&in, &given, water, step] { return read_apart(in, step + 1, given, water); });
+        // bricks of the next step are read ahead by threads of their own, as long as the reader shows this one
+        next = std::async(in.reads_ahead() ? std::launch::deferred : std::launch::async,
+          [&in, &given, water, step] { return read_apart(in, step + 1, given, water); });
       }
       cli::set_sun(o, given, &in, data.image ? data.image : data.grid, step); // which moves
       drawing->take(data);

@@ -3,6 +3,7 @@
 
 #include "reading.h"
 #include "support.h"
+#include "vtkStratusVariableReader.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkInformation.h>
@@ -283,6 +284,12 @@ vtkSmartPointer<vtkDataObject> series::read(size_t step)
     }
   });
   return this->Reader->GetOutputDataObject(0);
+}
+
+bool series::reads_ahead() const
+{
+  vtkStratusVariableReader* const reader = vtkStratusVariableReader::SafeDownCast(this->Reader);
+  return reader && reader->GetMapped();
 }
 
 vtkSmartPointer<vtkDataObject> series::read_parts(const collection_step& step)

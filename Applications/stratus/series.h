@@ -28,6 +28,7 @@ public:
   // reader: unless it makes new ones for each step, take a deep copy where the next step is read while this one is used.
   vtkSmartPointer<vtkDataObject> read(size_t step);
   bool makes_new_arrays() const { return this->Reader && this->Reader->IsA("vtkStratusVariableReader"); }
+  bool reads_ahead() const; // the values are bricks in their file
   // "1.5 hours since ...", "" for a file without time.
   std::string time_of(size_t step) const;
   // The name and unit of an axis of coordinates, and the unit of the variable: "" if the file or the format has none.

@@ -5,6 +5,7 @@ picture of all values in memory.
 
 progress.py measure FILE...     prints rows scene,method,metric,value,unit. Needs the packages stratus and vtk.
   --memory BYTES                limit of the bricks (default: half of what is free)
+  --larger                      the files are larger than memory: none is read whole, and the first picture is the true one
 progress.py chart CSV PICTURE   draws these rows
 
 Methods: SOURCE/coarse and SOURCE/exact: pictures of a program that draws again at the mapper's UpdateEvent, of a file whose ranges are
@@ -74,14 +75,14 @@ def draw(path, whole, memory, keep):
     return pictures
 
 
-def measure(paths, memory):
+def measure(paths, memory, larger):
     import numpy
     keep = tempfile.mkdtemp()
     try:
         for path in paths:
             scene, source = os.path.basename(path).split("-", 1)[1].rsplit(".", 1)[0], os.path.basename(path).split("-")[0]
             truth, told = None, []
-            for method in ("whole", "first", ""):
+            for method in ("whole", "first", "")[larger:]:
                 command = [sys.executable, __file__, "draw", path, "whole" if method == "whole" else "bricks", str(memory), keep]
                 result = subprocess.run(command, env=dict(os.environ, STRATUS_CACHE_DIR=os.path.join(keep, "cache")), stdout=subprocess.PIPE,
                     check=True)
@@ -169,8 +170,9 @@ if __name__ == "__main__":
     elif len(sys.argv) > 2 and sys.argv[1] == "measure":
         parser = argparse.ArgumentParser()
         parser.add_argument("--memory", type=int, default=0)
+        parser.add_argument("--larger", action="store_true")
         parser.add_argument("files", nargs="+")
         options = parser.parse_args(sys.argv[2:])
-        measure(options.files, options.memory)
+        measure(options.files, options.memory, options.larger)
     else:
         sys.exit(__doc__)
