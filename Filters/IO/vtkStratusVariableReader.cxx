@@ -48,6 +48,14 @@ vtkTypeInt64 vtkStratusVariableReader::GetMemoryLimit()
   return vtkStratusGetBrickMemory();
 }
 
+void vtkStratusVariableReader::SetMemoryLimitInMiB(vtkTypeInt64 size)
+{
+  constexpr int bits = 20;
+  if (size > 0) {
+    SetMemoryLimit(std::min(size, VTK_TYPE_INT64_MAX >> bits) << bits);
+  }
+}
+
 vtkTypeInt64 vtkStratusVariableReader::GetMemoryUsed()
 {
   return vtkStratusGetBrickMemoryUsed();

@@ -96,6 +96,11 @@ public:
   //@}
 
   /**
+   * Set the same limit in MiB for user interfaces, where every reader has a value: 0 leaves it as it is.
+   */
+  void SetMemoryLimitInMiB(vtkTypeInt64 size);
+
+  /**
    * Get how many bytes of memory all bricks of the process take now.
    */
   static vtkTypeInt64 GetMemoryUsed();

@@ -7,9 +7,9 @@
 
 vtkStandardNewMacro(vtkStratusZarrReader);
 
-bool vtkStratusZarrReader::CanReadFile(const char* name)
+int vtkStratusZarrReader::CanReadFile(const char* name)
 {
-  return name && *name && vtkStratusZarrFile::IsZarr(name);
+  return name && *name && vtkStratusZarrFile::IsZarr(name) ? 1 : 0;
 }
 
 std::unique_ptr<vtkStratusNetCDFModel> vtkStratusZarrReader::OpenFile()

@@ -37,9 +37,9 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Returns whether a path is the folder of a group or an array of Zarr, or a file of its metadata.
+   * Returns 1 if a path is the folder of a group or an array of Zarr, or a file of its metadata, else 0.
    */
-  static bool CanReadFile(const char* name);
+  static int CanReadFile(const char* name);
 
 protected:
   vtkStratusZarrReader() = default;

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pvbatch with the plugin: File > Open and Save Data. The project's readers open its writers' files by their extension; meshes in layers,
-CF's grids, sparse grids and scans give their variables, times, values and places.
+CF's grids, Zarr, HDF5, sparse grids and scans give their variables, times, values and places.
 pvbatch test_files.py PLUGIN STRATUS COMPARE-PICTURES FOLDER; sparse grids are read where the test of their reader has left them in FOLDER/.."""
 import gzip
+import json
 import os
+import subprocess
 import sys
 
 import numpy
@@ -128,6 +130,46 @@ def grid_of_cf():
           "a selected index")
 
 
+def folder_of_zarr():
+    values = numpy.arange(60, dtype="<f4").reshape(3, 4, 5)
+    path = os.path.join(folder, "field.zarr")
+    os.makedirs(os.path.join(path, "rho"), exist_ok=True)
+    for name, document in ((".zgroup", {"zarr_format": 2}), ("rho/.zarray", {
+            "zarr_format": 2, "shape": values.shape, "chunks": (2, 4, 3), "dtype": "<f4", "compressor": None, "fill_value": 0, "order": "C",
+            "filters": None})):
+        with open(os.path.join(path, name), "w") as file:
+            json.dump(document, file)
+    for k in range(2):
+        for i in range(2):
+            chunk = numpy.zeros((2, 4, 3), "<f4")
+            part = values[2 * k:2 * k + 2, :, 3 * i:3 * i + 3]
+            chunk[tuple(map(slice, part.shape))] = part
+            chunk.tofile(os.path.join(path, "rho", f"{k}.0.{i}"))
+    metadata = os.path.join(path, ".zgroup")
+    check("StratusZarrReader" in readers_of(path) and "StratusZarrReader" in readers_of(metadata), f"{readers_of(path)}, {readers_of(metadata)}")
+    for name in path, metadata:
+        check((values_of(opened(name, "StratusZarrReader"), "rho") == values.ravel()).all(), f"values of {name}")
+
+
+def files_of_hdf5():
+    """Values are left in the file, in memory that is limited for all readers; a reader without a limit leaves it as it is."""
+    subprocess.run(["/usr/bin/python3", os.path.join(os.path.dirname(os.path.abspath(__file__)), "hdf5.py"), folder], check=True)
+    values = numpy.arange(210)
+    plain = opened(os.path.join(folder, "plain.h5"), "StratusHDF5Reader")
+    check(variables_of(plain) == ["/run/rho"] and (values_of(plain, "/run/rho") == values).all(), "a data set by its path")
+    path = os.path.join(folder, "image.vtkhdf")
+    check("StratusHDF5Reader" in readers_of(path), f"ours is offered, not {readers_of(path)}")
+    image = simple.StratusHDF5Reader(FileName=path, Variable="salt", MapFile=1, MemoryLimit=64)
+    image.UpdatePipeline()
+    reader = image.GetClientSideObject()
+    check((values_of(image, "salt") == 2 * values).all() and variables_of(image) == ["heat", "salt"], "an array of an image")
+    check(reader.GetMapFile() == 1 and reader.GetMemoryLimit() == 64 << 20, f"the limit is {reader.GetMemoryLimit()}")
+    for other in simple.StratusHDF5Reader, simple.StratusZarrReader, simple.StratusCFReader, simple.StratusImageReader:
+        other().UpdateVTKObjects()
+    check(reader.GetMemoryLimit() == 64 << 20, "another reader leaves the limit")
+    check(simple.StratusImageReader().MapFile == 1 and simple.StratusCFReader().MapFile == 0, "only images are left in the file by default")
+
+
 def images_of_scans():
     """Big-endian and compressed, turned and mirrored; ParaView's own reader leaves both out."""
     values = numpy.arange(24, dtype=">i2").reshape(4, 3, 2)
@@ -165,5 +207,7 @@ tetgen_files()
 pictures_as_floats()
 mesh_in_layers()
 grid_of_cf()
+folder_of_zarr()
+files_of_hdf5()
 images_of_scans()
 leave(sparse_grids())
