@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusRankWhole.h"
 
+#include "vtkStratusMapped.h"
+
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -276,7 +278,13 @@ vtkSmartPointer<vtkDataSet> stratus::gather_whole(vtkMultiProcessController* con
     }
     const size_t size = static_cast<size_t>(joined->GetDataTypeSize()) * static_cast<size_t>(joined->GetNumberOfComponents());
     vtkDataArray* own = piece ? attributes_of(piece, cells)->GetArray(names[i].c_str()) : nullptr;
-    pieces.Gather(own ? own->GetVoidPointer(0) : nullptr, size, cells, root ? joined->GetVoidPointer(0) : nullptr);
+    std::vector<unsigned char> values;
+    if (own && vtkStratusReadsOf(own)) { // bricks, which MPI cannot read
+      const auto* const from = static_cast<const unsigned char*>(own->GetVoidPointer(0));
+      values.assign(from, from + size * static_cast<size_t>(own->GetNumberOfTuples()));
+    }
+    const void* const mine_of = !own ? nullptr : values.empty() ? own->GetVoidPointer(0) : values.data();
+    pieces.Gather(mine_of, size, cells, root ? joined->GetVoidPointer(0) : nullptr);
   }
   gather_hidden(pieces, piece, false, whole);
   gather_hidden(pieces, piece, true, whole);

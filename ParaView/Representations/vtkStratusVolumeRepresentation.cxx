@@ -4,6 +4,7 @@
 #include "vtkStratusCompositePass.h"
 #include "vtkStratusGather.h"
 #include "vtkStratusLODVolume.h"
+#include "vtkStratusMapped.h"
 #include "vtkStratusMultiBlockVolumeMapper.h"
 #include "vtkStratusPanelLight.h"
 #include "vtkStratusPanelUpdate.h"
@@ -26,6 +27,7 @@
 #include "vtkOverlappingAMR.h"
 #include "vtkPVRenderView.h"
 #include "vtkPlaneCollection.h"
+#include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkRenderer.h"
@@ -192,7 +194,7 @@ void vtkStratusVolumeRepresentation::ReportProblem(vtkMultiProcessController* ra
 
 // Sets whether segments end at the borders of ranks. Otherwise each rank draws whole segments, assigned by their middles. A rank knows only
 // the translucent surfaces in its own part, and a segment that reaches beyond the part would be drawn in front of all surfaces of the next
-// part.
+// part. They end there, too, where values stay in a file: without flags of cells, value ranges are kept, and no flags are read.
 void vtkStratusVolumeRepresentation::EndAtBorders(bool end)
 {
   auto* piece = vtkDataSet::SafeDownCast(this->Cache);
@@ -209,12 +211,19 @@ void vtkStratusVolumeRepresentation::EndAtBorders(bool end)
   }
   const auto all = vtkSmartPointer<vtkDataSet>::Take(piece->NewInstance());
   all->ShallowCopy(piece);
-  vtkNew<vtkUnsignedCharArray> hidden; // but who owns cells: planes cut instead
-  hidden->SetName(vtkDataSetAttributes::GhostArrayName());
-  for (vtkIdType cell = 0; cell < flags->GetNumberOfValues(); ++cell) {
-    hidden->InsertNextValue(static_cast<unsigned char>(flags->GetValue(cell) & ~vtkDataSetAttributes::DUPLICATECELL));
+  if (vtkStratusHasOnlyDuplicates(flags)) {
+    all->GetCellData()->RemoveArray(flags->GetName());
+    if (vtkStratusHasOnlyDuplicates(piece->GetPointGhostArray())) {
+      all->GetPointData()->RemoveArray(flags->GetName());
+    }
+  } else {
+    vtkNew<vtkUnsignedCharArray> hidden; // but who owns cells: planes cut instead
+    hidden->SetName(vtkDataSetAttributes::GhostArrayName());
+    for (vtkIdType cell = 0; cell < flags->GetNumberOfValues(); ++cell) {
+      hidden->InsertNextValue(static_cast<unsigned char>(flags->GetValue(cell) & ~vtkDataSetAttributes::DUPLICATECELL));
+    }
+    all->GetCellData()->AddArray(hidden);
   }
-  all->GetCellData()->AddArray(hidden);
   this->VolumeMapper->SetInputDataObject(all);
   vtkNew<vtkMatrix4x4> matrix;
   this->Actor->GetMatrix(matrix);
@@ -320,7 +329,9 @@ void vtkStratusVolumeRepresentation::AgreeOnSampling(vtkRenderer* renderer, vtkM
   }
   this->ShareTransfer2D(ranks);
   const bool open_rule = this->Sampling == vtkStratusVolumeMapper::AUTO_SAMPLING;
-  const int mine[2] = { this->GetSamplingTime() > this->AgreedFor, stratus::has_translucent(renderer) };
+  auto* piece = vtkDataSet::SafeDownCast(this->Cache);
+  const bool in_file = piece && vtkStratusHasOnlyDuplicates(piece->GetCellGhostArray());
+  const int mine[2] = { this->GetSamplingTime() > this->AgreedFor, in_file || stratus::has_translucent(renderer) };
   int any[2] = { 0, 0 };
   ranks->AllReduce(mine, any, 2, vtkCommunicator::MAX_OP);
   if (this->Cache) {

@@ -149,6 +149,7 @@ SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POIN
           ("rectilinear-two-variables", "levels.vtr", "POINTS", [two_variables]),
           ("rectilinear-second-array", "levels.vtr", "POINTS", [second_array]),
           ("image-series", "even.vti", "POINTS", [after_another]), ("image-cloud", "even.vti", "POINTS", [cloud]),
+          ("image-in-file", "even.nc", "POINTS", []), ("image-in-file-opaque", "even.nc", "POINTS", [opaque]),
           ("unstructured-cloud", "cells.vtu", "POINTS", [cloud]),
           ("unstructured-shade", "cells.vtu", "POINTS", [shade, strict]), ("unstructured-isosurface", "cells.vtu", "POINTS", [isosurface]),
           ("unstructured", "cells.vtu", "POINTS", []), ("unstructured-opaque", "cells.vtu", "POINTS", [opaque])]

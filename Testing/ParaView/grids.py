@@ -6,9 +6,10 @@ import sys
 
 import numpy
 from paraview.vtk import vtkIOXML, vtkCommonCore, vtkCommonDataModel, vtkFiltersCore, vtkFiltersExtraction
-from paraview.vtk.util.numpy_support import numpy_to_vtk
+from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "VTK"))
+sys.path[:0] = [os.path.dirname(os.path.abspath(__file__)), os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "VTK")]
+import netcdf
 from refined import Refined, uneven
 
 COUNTS = (40, 36, 30)
@@ -128,12 +129,23 @@ def unstructured(grid):
     return join.GetOutput()
 
 
+def write_netcdf(data, path):
+    """Values of an image of whole layers along its axes, for readers of netCDF that leave them in the file."""
+    counts, origin, spacing = data.GetDimensions(), data.GetOrigin(), data.GetSpacing()
+    variables = {name: ((name,), origin[a] + spacing[a] * numpy.arange(counts[a], dtype=float), {"units": "m", "axis": name.upper()})
+                 for a, name in enumerate("xyz")}
+    values = vtk_to_numpy(data.GetPointData().GetArray("hill")).astype(float).reshape(counts[::-1])
+    variables["hill"] = (tuple("zyx"), values, {})
+    netcdf.write(path, dict(zip("xyz", counts)), variables)
+
+
 def write_all(folder):
     """Returns the names of four files: levels.vtr, hills.vts, cells.vtu (the cells of hills.vts) and parts.vtm (blocks of levels.vtr).
-    Also writes even.vti, and early.vti before it in time; refined.vthb, which is AMR; boxes.vti, whose values are of cells; and two.vti, of
+    Also writes even.vti, even.nc of the same points, and early.vti before it in time; refined.vthb, which is AMR; boxes.vti, whose values are of cells; and two.vti, of
     two cells."""
     for name, made in ("even.vti", image()), ("early.vti", image(ripple=25)), ("boxes.vti", image(cells=True)):
         write(made, vtkIOXML.vtkXMLImageDataWriter(), folder, name)
+    write_netcdf(image(), os.path.join(folder, "even.nc"))
     write(refined(), vtkIOXML.vtkXMLUniformGridAMRWriter(), folder, "refined.vthb")
     two = vtkCommonDataModel.vtkImageData()
     two.SetDimensions(3, 2, 2)

@@ -7,6 +7,7 @@ from paraview import simple
 READERS = {".vti": ("XMLImageDataReader", "UniformGridRepresentation"), ".vtr": ("XMLRectilinearGridReader", "UniformGridRepresentation"),
            ".vtu": ("XMLUnstructuredGridReader", "UnstructuredGridRepresentation"),
            ".vts": ("XMLStructuredGridReader", "StructuredGridRepresentation"),
+           ".nc": ("StratusCFReader", "UniformGridRepresentation"),
            ".vtm": ("XMLMultiBlockDataReader", "UnstructuredGridRepresentation"), ".vthb": ("XMLUniformGridAMRReader", "AMRRepresentation")}
 
 
@@ -27,6 +28,10 @@ def show_volume(path, array, opacity, color, unit, view, representation=None, co
     source = getattr(simple, reader)(FileName=[path])
     if hasattr(source, "DefaultNumberOfLevels"):
         source.DefaultNumberOfLevels = 0  # all of them
+    if reader == "StratusCFReader":  # values stay in the file, however few they are
+        source.MapFile = 1
+        source.UpdateVTKObjects()
+        source.GetClientSideObject().SetMappedBytesLeast(0)
     source.UpdatePipeline()
     shown = simple.Show(source, view, representation or usual)
     simple.ColorBy(shown, (of, array, component) if component else (of, array))
