@@ -14,6 +14,8 @@ failures = 0
 
 def check(condition, what):
     global failures
+    if isinstance(condition, str):
+        raise TypeError(f"'{condition}' is no condition")
     if not condition:
         failures += 1
         print("does not hold:", what)

@@ -81,29 +81,29 @@ def picture(data, errors=None, least=0.3):
 
 Reader = stratus.vtkStratusVariableReader
 Reader.SetMemoryLimit(LIMIT)
-check("the limit", Reader.GetMemoryLimit() == LIMIT)
+check(Reader.GetMemoryLimit() == LIMIT, "the limit")
 Reader.SetMemoryLimit(1)
-check("the least limit", Reader.GetMemoryLimit() == LIMIT)
+check(Reader.GetMemoryLimit() == LIMIT, "the least limit")
 
 paged = reader_of(write("plain.nc", chunksizes=(1, 32, 32, 32), zlib=True, complevel=1), True)
 if not paged.GetMapped():
     print("SKIPPED: this system offers no pages that stop their readers")
     sys.exit(77)
-check("nothing is read before something looks", Reader.GetMemoryUsed() == 0)
+check(Reader.GetMemoryUsed() == 0, "nothing is read before something looks")
 one = values_of(paged)[(80 * NY + 100) * NX + 50]
-check("a value", one == FIELD[80, 100, 50])
-check("one value needs a row of chunks", 0 < Reader.GetMemoryUsed() <= 2 * 32 * 32 * NX * 4 + (1 << 20))
+check(one == FIELD[80, 100, 50], "a value")
+check(0 < Reader.GetMemoryUsed() <= 2 * 32 * 32 * NX * 4 + (1 << 20), "one value needs a row of chunks")
 plain = reader_of("plain.nc", False)
-check("plain values are in memory", not plain.GetMapped())
+check(not plain.GetMapped(), "plain values are in memory")
 reference = picture(plain.GetOutputDataObject(0))
-check("something shows", reference.max() > 50)
-check("a picture in little memory has the same bits", (picture(paged.GetOutputDataObject(0)) == reference).all())
-check("memory is within the limit", Reader.GetMemoryUsed() <= LIMIT)
+check(reference.max() > 50, "something shows")
+check((picture(paged.GetOutputDataObject(0)) == reference).all(), "a picture in little memory has the same bits")
+check(Reader.GetMemoryUsed() <= LIMIT, "memory is within the limit")
 
 # Value ranges read all values once. Rays then read only chunks that they meet, of an array that is larger than the limit.
 fresh, begin = reader_of("plain.nc", True), Reader.GetBytesRead()
-check("something shows of the middle", picture(fresh.GetOutputDataObject(0), least=0.9).max() > 20)
-check("only chunks of the middle are read twice", Reader.GetBytesRead() - begin < 1.4 * FIELD.nbytes)
+check(picture(fresh.GetOutputDataObject(0), least=0.9).max() > 20, "something shows of the middle")
+check(Reader.GetBytesRead() - begin < 1.4 * FIELD.nbytes, "only chunks of the middle are read twice")
 del fresh
 
 for name, options in {
@@ -114,21 +114,21 @@ for name, options in {
     write(name, **options)
     for step in range(2):
         bricks, whole = reader_of(name, True, step), reader_of(name, False, step)
-        check(f"{name} is in bricks", bool(bricks.GetMapped()) and not whole.GetMapped())
+        check(bool(bricks.GetMapped()) and not whole.GetMapped(), f"{name} is in bricks")
         got, expected = values_of(bricks), values_of(whole)
-        check(f"{name} at {step} has its values", got.dtype == expected.dtype and numpy.array_equal(got, expected))
-        check(f"{name} at {step} is on its grid", bricks.GetOutputDataObject(0).GetBounds() == whole.GetOutputDataObject(0).GetBounds())
-    check(f"{name} stays within the limit", Reader.GetMemoryUsed() <= LIMIT)
+        check(got.dtype == expected.dtype and numpy.array_equal(got, expected), f"{name} at {step} has its values")
+        check(bricks.GetOutputDataObject(0).GetBounds() == whole.GetOutputDataObject(0).GetBounds(), f"{name} at {step} is on its grid")
+    check(Reader.GetMemoryUsed() <= LIMIT, f"{name} stays within the limit")
 
 # Bricks outlive their reader, and end with their array.
 data = vtk.vtkImageData()
 data.ShallowCopy(paged.GetOutputDataObject(0))
 del paged, bricks, got
 used = Reader.GetMemoryUsed()
-check("values outlive their reader", vtk_to_numpy(data.GetPointData().GetScalars())[7] == FIELD.ravel()[7])
-check("bricks of another array went", used <= LIMIT)
+check(vtk_to_numpy(data.GetPointData().GetScalars())[7] == FIELD.ravel()[7], "values outlive their reader")
+check(used <= LIMIT, "bricks of another array went")
 del data
-check("bricks end with their arrays", Reader.GetMemoryUsed() == 0)
+check(Reader.GetMemoryUsed() == 0, "bricks end with their arrays")
 
 # Once the time changes, parts of the next step are read before something looks at them; steps that were shown are not read again.
 with netCDF4.Dataset("steps.nc", "w") as file:
@@ -148,24 +148,24 @@ def first_value(step):
 
 
 begin = Reader.GetBytesRead()
-check("the first step", first_value(0) == 5)
+check(first_value(0) == 5, "the first step")
 one_step = Reader.GetBytesRead() - begin
 time.sleep(0.3)
-check("no step is read ahead before the time changes", one_step > 0 and Reader.GetBytesRead() - begin == one_step)
-check("the second step", first_value(1) == 64 ** 3 + 5)
+check(one_step > 0 and Reader.GetBytesRead() - begin == one_step, "no step is read ahead before the time changes")
+check(first_value(1) == 64 ** 3 + 5, "the second step")
 for _ in range(500):
     if Reader.GetBytesRead() - begin >= 3 * one_step:
         break
     time.sleep(0.02)
-check("the next step is read ahead where this one was", Reader.GetBytesRead() - begin == 3 * one_step)
-check("the third step", first_value(2) == 2 * 64 ** 3 + 5 and Reader.GetBytesRead() - begin == 3 * one_step)
-check("a step that was shown is not read again", first_value(0) == 5 and Reader.GetBytesRead() - begin == 3 * one_step)
+check(Reader.GetBytesRead() - begin == 3 * one_step, "the next step is read ahead where this one was")
+check(first_value(2) == 2 * 64 ** 3 + 5 and Reader.GetBytesRead() - begin == 3 * one_step, "the third step")
+check(first_value(0) == 5 and Reader.GetBytesRead() - begin == 3 * one_step, "a step that was shown is not read again")
 del playing
 
 # Arrays of few values are read at once.
 small = stratus.vtkStratusCFReader()
 small.SetFileName("plain.nc"), small.MapFileOn(), small.SetMappedBytesLeast(1 << 30), small.Update()
-check("less than the least is in memory", not small.GetMapped())
+check(not small.GetMapped(), "less than the least is in memory")
 
 # A chunk whose bytes are wrong: its values are NaN, and the mapper says so.
 with open("checked.nc", "r+b") as file:
@@ -174,10 +174,10 @@ with open("checked.nc", "r+b") as file:
     file.write(bytes(range(256)))
 damaged = reader_of("checked.nc", True)
 values = values_of(damaged)
-check("only values of the damaged chunk are missing", 0 < numpy.isnan(values).sum() <= 10 * NY * NX)
+check(0 < numpy.isnan(values).sum() <= 10 * NY * NX, "only values of the damaged chunk are missing")
 heard = []
 picture(damaged.GetOutputDataObject(0), heard)
-check("the mapper reports values that are missing", any("missing" in text for text in heard[0]))
+check(any("missing" in text for text in heard[0]), "the mapper reports values that are missing")
 del values, damaged
 
 # A raw file of more than the limit is in bricks, a smaller one is mapped.
@@ -185,15 +185,15 @@ for count, bricks in ((NZ, True), (60, False)):
     FIELD[:count].tofile("field.raw")
     raw = stratus.vtkStratusImageReader()
     raw.SetFileName("field.raw"), raw.SetRawLayout((NX, NY, count), vtk.VTK_FLOAT, False, (1, 1, 1), 0), raw.Update()
-    check(f"{count} layers stay in the file", bool(raw.GetMapped()))
-    check(f"{count} layers of a raw file", numpy.array_equal(values_of(raw), FIELD[:count].ravel()))
-    check(f"{count} layers are {'bricks' if bricks else 'mapped'}", (Reader.GetMemoryUsed() > 0) == bricks)
-    check("a raw file stays within the limit", Reader.GetMemoryUsed() <= LIMIT)
+    check(bool(raw.GetMapped()), f"{count} layers stay in the file")
+    check(numpy.array_equal(values_of(raw), FIELD[:count].ravel()), f"{count} layers of a raw file")
+    check((Reader.GetMemoryUsed() > 0) == bricks, f"{count} layers are {'bricks' if bricks else 'mapped'}")
+    check(Reader.GetMemoryUsed() <= LIMIT, "a raw file stays within the limit")
     with open("field.raw", "r+b") as file:
         file.truncate(1000)
     heard = []
     picture(raw.GetOutputDataObject(0), heard)
-    check("a file that is cut short is an error", any("missing" in text for text in heard[0]))
+    check(any("missing" in text for text in heard[0]), "a file that is cut short is an error")
     del raw
 # A large file that was drawn before: while a camera moves, and before the exact picture if someone waits for it, a coarse copy is shown.
 os.environ["STRATUS_CACHE_DIR"] = os.path.join(os.getcwd(), "cache")
@@ -229,29 +229,29 @@ class Scene:
 
 scene = Scene()
 exact = scene.draw()
-check("a picture that is drawn once is exact", exact.max() > 50 and not scene.mapper.GetLastPictureIsCoarse())
+check(exact.max() > 50 and not scene.mapper.GetLastPictureIsCoarse(), "a picture that is drawn once is exact")
 del scene
 scene = Scene()
 asked = []
 scene.mapper.AddObserver("UpdateEvent", lambda *_: asked.append(1))
 first = scene.draw()
-check("the first picture is coarse", scene.mapper.GetLastPictureIsCoarse() and len(asked) == 1)
+check(scene.mapper.GetLastPictureIsCoarse() and len(asked) == 1, "the first picture is coarse")
 error = numpy.sqrt(numpy.mean((first - exact) ** 2.0))
-check(f"it looks like the exact one ({error:.2f} of 255)", 0 < error < 6)
-check("nothing was read for it", Reader.GetMemoryUsed() < 1 << 20)
+check(0 < error < 6, f"it looks like the exact one ({error:.2f} of 255)")
+check(Reader.GetMemoryUsed() < 1 << 20, "nothing was read for it")
 second = scene.draw()
-check("the next one is exact, to the bit", not scene.mapper.GetLastPictureIsCoarse() and (second == exact).all() and len(asked) == 1)
+check(not scene.mapper.GetLastPictureIsCoarse() and (second == exact).all() and len(asked) == 1, "the next one is exact, to the bit")
 scene.window.SetDesiredUpdateRate(30)
 scene.renderer.GetActiveCamera().Azimuth(40)
 scene.draw()
-check("a moving camera does not wait", scene.mapper.GetLastPictureIsCoarse())
+check(scene.mapper.GetLastPictureIsCoarse(), "a moving camera does not wait")
 scene.window.SetDesiredUpdateRate(0.0001)
 while True:
     scene.draw()
     if not scene.mapper.GetLastPictureIsCoarse():
         break
-check("memory is within the limit", 0 < Reader.GetMemoryUsed() <= LIMIT)
+check(0 < Reader.GetMemoryUsed() <= LIMIT, "memory is within the limit")
 del scene
-check("the sum of errors is the mapper's", Reader.GetMemoryUsed() == 0)
+check(Reader.GetMemoryUsed() == 0, "the sum of errors is the mapper's")
 
 done()
