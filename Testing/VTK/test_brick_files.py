@@ -92,7 +92,7 @@ if not paged.GetMapped():
 check(Reader.GetMemoryUsed() == 0, "nothing is read before something looks")
 one = values_of(paged)[(80 * NY + 100) * NX + 50]
 check(one == FIELD[80, 100, 50], "a value")
-check(0 < Reader.GetMemoryUsed() <= 2 * 32 * 32 * NX * 4 + (1 << 20), "one value needs a row of chunks")
+check(0 < Reader.GetMemoryUsed() <= 32 * NY * NX * 4 + (1 << 20), "one value needs a row of chunks, and its neighbour that shares a page")
 plain = reader_of("plain.nc", False)
 check(not plain.GetMapped(), "plain values are in memory")
 reference = picture(plain.GetOutputDataObject(0))
@@ -184,7 +184,8 @@ del values, damaged
 for count, bricks in ((NZ, True), (60, False)):
     FIELD[:count].tofile("field.raw")
     raw = stratus.vtkStratusImageReader()
-    raw.SetFileName("field.raw"), raw.SetRawLayout((NX, NY, count), vtk.VTK_FLOAT, False, (1, 1, 1), 0), raw.Update()
+    raw.SetFileName("field.raw"), raw.SetRawLayout((NX, NY, count), vtk.VTK_FLOAT, False, (1, 1, 1), 0)
+    raw.SetMappedBytesLeast(1), raw.Update()
     check(bool(raw.GetMapped()), f"{count} layers stay in the file")
     check(numpy.array_equal(values_of(raw), FIELD[:count].ravel()), f"{count} layers of a raw file")
     check((Reader.GetMemoryUsed() > 0) == bricks, f"{count} layers are {'bricks' if bricks else 'mapped'}")
@@ -229,7 +230,7 @@ class Scene:
 
 scene = Scene()
 exact = scene.draw()
-check(exact.max() > 50 and not scene.mapper.GetLastPictureIsCoarse(), "a picture that is drawn once is exact")
+check(exact.max() > 30 and not scene.mapper.GetLastPictureIsCoarse(), "a picture that is drawn once is exact")
 del scene
 scene = Scene()
 asked = []
