@@ -30,7 +30,6 @@ bool vtkStratusLattice::Set(vtkStructuredGrid* grid, std::string& error)
   vtkUnsignedCharArray* points = nullptr;
   vtkUnsignedCharArray* cells = nullptr;
   grid->GetDimensions(this->Points);
-  this->Hidden.clear();
   if (*std::min_element(this->Points, this->Points + 3) < 2) {
     error = "the structured grid has " + WriteExtent(this->Points) +
       " points and so no cell with a volume, at least 2 along each axis are needed";
@@ -44,11 +43,26 @@ bool vtkStratusLattice::Set(vtkStructuredGrid* grid, std::string& error)
     !vtkStratusFindGhosts(grid->GetCellData(), Product(between), "cells of the grid", cells, error)) {
     return false;
   }
+  const auto time_of = [](vtkObject* object) { return object ? object->GetMTime() : 0; };
+  const Origin from = { grid->GetPoints(), points, cells, { { time_of(grid->GetPoints()), time_of(points), time_of(cells) } },
+    { { this->Points[0], this->Points[1], this->Points[2] } } };
+  if (this->IsFrom(from)) { // of a film, whose points stay
+    return true;
+  }
+  this->From = Origin();
+  this->Hidden.clear();
   if (points || cells) {
     this->Hide(points, cells);
   }
   this->FindBounds();
+  this->From = from;
   return true;
+}
+
+bool vtkStratusLattice::IsFrom(const Origin& origin) const
+{
+  return origin.Points == this->From.Points && origin.PointGhosts == this->From.PointGhosts && origin.CellGhosts == this->From.CellGhosts &&
+    origin.Times == this->From.Times && origin.Extent == this->From.Extent;
 }
 
 bool vtkStratusLattice::SetPoints(vtkStructuredGrid* grid, std::string& error)

@@ -12,6 +12,7 @@
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,15 @@ private:
   void Hide(vtkUnsignedCharArray* points, vtkUnsignedCharArray* cells);
   void FindBounds();
 
+  // The objects that Hidden and Bounds were found from, and when these were changed last.
+  struct Origin {
+    vtkSmartPointer<vtkObject> Points, PointGhosts, CellGhosts;
+    std::array<vtkMTimeType, 3> Times;
+    std::array<int, 3> Extent;
+  };
+  bool IsFrom(const Origin& origin) const;
+
+  Origin From;
   int Points[3] = { 0, 0, 0 };
   const double* Doubles = nullptr;
   const float* Floats = nullptr;
