@@ -29,7 +29,7 @@ def show_volume(path, array, opacity, color, unit, view, representation=None, co
     if hasattr(source, "DefaultNumberOfLevels"):
         source.DefaultNumberOfLevels = 0  # all of them
     if reader == "StratusCFReader":  # values stay in the file, however few they are
-        source.MapFile = 1
+        source.LeaveValuesInFile = 1
         source.UpdateVTKObjects()
         source.GetClientSideObject().SetMappedBytesLeast(0)
     source.UpdatePipeline()

@@ -84,6 +84,10 @@ Reader.SetMemoryLimit(LIMIT)
 check(Reader.GetMemoryLimit() == LIMIT, "the limit")
 Reader.SetMemoryLimit(1)
 check(Reader.GetMemoryLimit() == LIMIT, "the least limit")
+stratus.vtkStratusCFReader().SetMemoryLimitInMiB(64)
+stratus.vtkStratusImageReader().SetMemoryLimitInMiB(0)
+check(Reader.GetMemoryLimit() == 64 << 20, "the limit is all readers', and 0 leaves it")
+Reader.SetMemoryLimit(LIMIT)
 
 paged = reader_of(write("plain.nc", chunksizes=(1, 32, 32, 32), zlib=True, complevel=1), True)
 if not paged.GetMapped():
