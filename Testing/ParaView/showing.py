@@ -30,8 +30,7 @@ def show_volume(path, array, opacity, color, unit, view, representation=None, co
         source.DefaultNumberOfLevels = 0  # all of them
     if reader == "StratusCFReader":  # values stay in the file, however few they are
         source.LeaveValuesInFile = 1
-        source.UpdateVTKObjects()
-        source.GetClientSideObject().SetMappedBytesLeast(0)
+        source.LeastBytesLeftInFile = 0
     source.UpdatePipeline()
     shown = simple.Show(source, view, representation or usual)
     simple.ColorBy(shown, (of, array, component) if component else (of, array))
