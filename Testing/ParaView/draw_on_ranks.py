@@ -141,7 +141,8 @@ SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POIN
           ("image-solid", "even.vti", "POINTS", [never_coloured]), ("two-cells", "two.vti", "POINTS", [close]),
           ("rectilinear", "levels.vtr", "POINTS", []), ("rectilinear-shade", "levels.vtr", "POINTS", [shade]),
           ("rectilinear-shade-strict", "levels.vtr", "POINTS", [shade, strict]),
-          ("blocks", "parts.vtm", "POINTS", []), ("refined", "refined.vthb", "CELLS", []), ("structured", "hills.vts", "POINTS", []),
+          ("blocks", "parts.vtm", "POINTS", []), ("refined", "refined.vthb", "CELLS", []),
+          ("refined-strict", "refined.vthb", "CELLS", [strict]), ("structured", "hills.vts", "POINTS", []),
           ("structured-shade", "hills.vts", "POINTS", [shade]), ("structured-shade-strict", "hills.vts", "POINTS", [shade, strict]),
           ("structured-translucent", "hills.vts", "POINTS", [translucent]), ("image-hit", "even.vti", "POINTS", [hit]),
           ("image-isosurface", "even.vti", "POINTS", [isosurface]), ("image-isosurface-shade", "even.vti", "POINTS", [isosurface, shade]),
@@ -156,8 +157,9 @@ SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POIN
 # Scenes whose lit samples are up to two voxels long where the field is smooth. A rank's border cuts them and moves those behind it, so that
 # a third of the lit pixels differ from one rank's by 1, and few by up to 4. Nothing promises that such pictures are alike. The tolerance
 # promises that each is near the exact picture, so they are compared with NAME-strict of one rank. The pictures of several ranks at the
-# strict tolerance, whose samples are short, are compared with one rank's as all other scenes are.
-PROMISED = ["image-shade", "rectilinear-shade"]
+# strict tolerance, whose samples are short, are compared with one rank's as all other scenes are. Boxes of a refined grid take the samples
+# that one of them needs, and ranks look at boxes of their own.
+PROMISED = ["image-shade", "rectilinear-shade", "refined"]
 # By how much more than 1 the other scenes may differ, and in how many pixels. A border cuts the part of a ray that is lit at one place, so
 # that its light is computed at two. A mesh's light is integrated by as many pieces a cell as the tolerance
 # needs, and a cell that a border cuts in two parts: pictures of 1 and 4 ranks are within 1 of the picture of a strict tolerance, on either
