@@ -8,10 +8,10 @@ progress.py measure FILE...     prints rows scene,method,metric,value,unit. Need
   --larger                      the files are larger than memory: none is read whole, and the first picture is the true one
 progress.py chart CSV PICTURE   draws these rows
 
-Methods: SOURCE/coarse and SOURCE/exact: pictures of a program that draws again at the mapper's UpdateEvent, of a file whose ranges are
-kept; SOURCE first/exact: of one that was never drawn; SOURCE whole/exact: all values are read into memory before the picture. Each picture
-is drawn by a process of its own, and its seconds are those from opening the file on. Errors are RMS of the window's colours, of 1; 0 is the
-same picture to the bit. Files as large.py makes them."""
+Methods: later/coarse and later/exact: pictures of a program that draws again at the mapper's UpdateEvent, of a file whose ranges are kept;
+first/exact: of one that was never drawn; whole/exact: all values are read into memory before the picture. Each is drawn by a process of its
+own, and its seconds are those from opening the file on. Errors are RMS of the window's colours, of 1; 0 is the same picture to the bit;
+nothing: of an empty window. Files as large.py makes them."""
 import argparse
 import json
 import os
@@ -80,9 +80,9 @@ def measure(paths, memory, larger):
     keep = tempfile.mkdtemp()
     try:
         for path in paths:
-            scene, source = os.path.basename(path).split("-", 1)[1].rsplit(".", 1)[0], os.path.basename(path).split("-")[0]
+            scene = os.path.splitext(os.path.basename(path))[0]
             truth, told = None, []
-            for method in ("whole", "first", "")[larger:]:
+            for method in ("whole", "first", "later")[larger:]:
                 command = [sys.executable, __file__, "draw", path, "whole" if method == "whole" else "bricks", str(memory), keep]
                 result = subprocess.run(command, env=dict(os.environ, STRATUS_CACHE_DIR=os.path.join(keep, "cache")), stdout=subprocess.PIPE,
                     check=True)
@@ -95,7 +95,7 @@ def measure(paths, memory, larger):
                         blank = float(numpy.sqrt(numpy.mean((truth - truth[0]) ** 2)))  # the window's corner is background
                         print(f"{scene},nothing,error,{blank:.6g},1")
                     error = float(numpy.sqrt(numpy.mean((picture - truth) ** 2)))
-                    told.append((f"{source} {method}".strip() + "/" + name, seconds, error))
+                    told.append((method + "/" + name, seconds, error))
             for method, seconds, error in told:
                 print(f"{scene},{method},seconds,{seconds:.6g},s\n{scene},{method},error,{error:.6g},1", flush=True)
             shutil.rmtree(os.path.join(keep, "cache"), ignore_errors=True)
@@ -110,35 +110,34 @@ def chart(table, picture):
     from vtk.util.numpy_support import numpy_to_vtk
     import numpy
     pictures, nothing = {}, {}
-    for scene, method, metric, value, *_ in csv.reader(line for line in open(table) if not line.startswith("#")):
+    for *_, scene, method, metric, value, _ in csv.reader(line for line in open(table) if not line.startswith("#")):
         if method == "nothing":
             nothing[scene] = float(value)
         elif metric in ("seconds", "error") and "/" in method:
-            pictures.setdefault((scene, *method.split("/")[0].split(" ")), {}).setdefault(method, {})[metric] = float(value)
+            pictures.setdefault((scene, method.split("/")[0]), {}).setdefault(method, {})[metric] = float(value)
     seconds = [point["seconds"] for points in pictures.values() for point in points.values()]
     begin, end = min(seconds) / 2, max(seconds) * 1.3
     colors = [(11, 79, 138), (44, 160, 44), (214, 39, 40), (255, 127, 14), (94, 60, 153), (23, 190, 207)]
-    styles = {"": vtk.vtkPen.SOLID_LINE, "first": vtk.vtkPen.DASH_LINE, "whole": vtk.vtkPen.DOT_LINE}
-    view, plot, kept, sources = vtk.vtkContextView(), vtk.vtkChartXY(), [], []
-    for (scene, source, *way), points in sorted(pictures.items()):
-        if (scene, source) not in sources:
-            sources.append((scene, source))
+    styles = {"later": (vtk.vtkPen.SOLID_LINE, "ranges kept"), "first": (vtk.vtkPen.DASH_LINE, "first time"),
+        "whole": (vtk.vtkPen.DOT_LINE, "read whole")}
+    view, plot, kept, scenes = vtk.vtkContextView(), vtk.vtkChartXY(), [], []
+    for (scene, way), points in sorted(pictures.items()):
+        if scene not in scenes:
+            scenes.append(scene)
         line = [(begin, nothing[scene])]
         for point in sorted(points.values(), key=lambda p: p["seconds"]):
             line += [(point["seconds"], line[-1][1]), (point["seconds"], max(point["error"], NOTHING))]
         line.append((end, line[-1][1]))
         data = vtk.vtkTable()
-        way = way[0] if way else ""
-        for name, values in zip(("seconds", f"{source} {scene}" + {"": ", ranges kept", "first": ", first time", "whole": ", read whole"}[way]),
-                zip(*line)):
+        for name, values in zip(("seconds", f"{scene}, {styles[way][1]}"), zip(*line)):
             column = numpy_to_vtk(numpy.array(values, "f4"), deep=1)
             column.SetName(name)
             data.AddColumn(column)
         drawn = plot.AddPlot(vtk.vtkChart.LINE)
         drawn.SetInputData(data, 0, 1)
-        drawn.SetColor(*colors[sources.index((scene, source)) % len(colors)], 255)
+        drawn.SetColor(*colors[scenes.index(scene) % len(colors)], 255)
         drawn.SetWidth(2)
-        drawn.GetPen().SetLineType(styles[way])
+        drawn.GetPen().SetLineType(styles[way][0])
         kept.append(data)
     for axis, title, low, high in ((vtk.vtkAxis.BOTTOM, "seconds from opening the file", begin, end),
             (vtk.vtkAxis.LEFT, "RMS error of the window, of 1 (none: 1e-5)", NOTHING / 1.5, 2 * max(nothing.values()))):
