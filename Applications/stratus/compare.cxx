@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compare.h"
 
+#include "json.h"
 #include "output.h"
 #include "support.h"
 
@@ -14,33 +15,6 @@
 
 namespace cli {
 namespace {
-
-void write_text(const std::string& path, const std::string& text)
-{
-  output_file(path).write(std::vector<uint8_t>(text.begin(), text.end()));
-}
-
-std::string json_text(const std::string& text)
-{
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      quoted += format("\\u%04x", static_cast<unsigned>(c));
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + "\"";
-}
-
-// JSON has no infinity.
-std::string json_number(double value)
-{
-  return std::isfinite(value) ? format("%.9g", value) : "null";
-}
 
 std::string json_of(const options& o, vtkStratusImageTest* test, bool alike)
 {
@@ -119,10 +93,11 @@ bool compare(const options& o)
   test->SetLeastSSIM(o.least_ssim);
   const bool alike = test->Compare();
   if (!o.json.empty()) {
-    write_text(o.json, json_of(o, test, alike));
+    write_json(o.json, json_of(o, test, alike));
   }
   if (!o.junit.empty()) {
-    write_text(o.junit, junit_of(o, test, alike));
+    const std::string text = junit_of(o, test, alike);
+    output_file(o.junit).write(std::vector<uint8_t>(text.begin(), text.end()));
   }
   if (test->GetFailed()) {
     throw failure(test->GetReason());

@@ -45,6 +45,7 @@ void print_array(const char* where, vtkAbstractArray* array)
 {
   std::string text = cli::format("'%s', %s, %d component%s", array->GetName() ? array->GetName() : "", array->GetDataTypeAsString(),
     array->GetNumberOfComponents(), array->GetNumberOfComponents() == 1 ? "" : "s");
+  std::vector<double> range;
   vtkDataArray* numbers = vtkDataArray::SafeDownCast(array);
   if (numbers && numbers->GetNumberOfComponents() == 1 && numbers->GetNumberOfTuples() > 0) {
     double low = INFINITY, high = -INFINITY;
@@ -56,9 +57,10 @@ void print_array(const char* where, vtkAbstractArray* array)
       not_finite += std::isfinite(value) ? 0 : 1;
     }
     text += low <= high ? cli::format(", %.9g .. %.9g", low, high) : std::string();
+    range = low <= high ? std::vector<double>{ low, high } : std::vector<double>();
     text += not_finite > 0 ? ", " + count(not_finite) + " not finite" : std::string();
   }
-  cli::row(where, text);
+  cli::row(where, text, range);
 }
 
 void print_arrays(vtkDataSet* grid)
@@ -143,14 +145,16 @@ void cli::print_grid(const options& o, vtkDataSet* grid)
 {
   context core(o.device, o.threads);
   double b[6] = { 0, 0, 0, 0, 0, 0 };
-  row("grid", count(grid->GetNumberOfCells()) + " cells, " + count(grid->GetNumberOfPoints()) + " points");
+  row("grid", count(grid->GetNumberOfCells()) + " cells, " + count(grid->GetNumberOfPoints()) + " points",
+    { static_cast<double>(grid->GetNumberOfCells()), static_cast<double>(grid->GetNumberOfPoints()) });
   vtkUnstructuredGrid* const listed = vtkUnstructuredGrid::SafeDownCast(grid);
   if (listed) {
     print_cells(listed);
   }
   if (grid->GetNumberOfPoints() > 0) {
     grid->GetBounds(b);
-    row("bounds", format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", b[0], b[1], b[2], b[3], b[4], b[5]));
+    row("bounds", format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", b[0], b[1], b[2], b[3], b[4], b[5]),
+      std::vector<double>(b, b + 6));
   }
   print_arrays(grid);
   if (listed) {

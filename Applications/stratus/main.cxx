@@ -7,6 +7,7 @@
 #include "habits.h"
 #include "heights.h"
 #include "input.h"
+#include "json.h"
 #include "options.h"
 #include "reading.h"
 #include "render.h"
@@ -65,9 +66,11 @@ void print_volume(
   }
   const stratus_look_values h = cli::count_values(core, all);
   row("volume", (blocks.empty() ? "" : "the first block of ") + cli::describe(in.volume));
-  row("origin", cli::format("%.10g %.10g %.10g", in.volume.origin[0], in.volume.origin[1], in.volume.origin[2]));
+  row("origin", cli::format("%.10g %.10g %.10g", in.volume.origin[0], in.volume.origin[1], in.volume.origin[2]),
+    { in.volume.origin[0], in.volume.origin[1], in.volume.origin[2] });
   row("bounds",
-    cli::format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", bounds[0], bounds[1], bounds[2], bounds[3], bounds[4], bounds[5]));
+    cli::format("%.10g .. %.10g, %.10g .. %.10g, %.10g .. %.10g", bounds[0], bounds[1], bounds[2], bounds[3], bounds[4], bounds[5]),
+    std::vector<double>(bounds, bounds + 6));
   row("memory",
     cli::format("%.1f MiB of values", (h.finite + h.not_finite) * static_cast<double>(stratus_type_size(in.volume.type)) / 1048576.0));
   if (in.image) {
@@ -75,9 +78,9 @@ void print_volume(
   }
   row("drawn", "'" + in.array_name + "'");
   if (h.finite > 0.0) {
-    row("range", cli::format("%.9g .. %.9g", h.low, h.high));
+    row("range", cli::format("%.9g .. %.9g", h.low, h.high), { h.low, h.high });
   }
-  row("not finite", cli::grouped(static_cast<unsigned long long>(h.not_finite)) + " values");
+  row("not finite", cli::grouped(static_cast<unsigned long long>(h.not_finite)) + " values", { h.not_finite });
   row("opacity", cli::make_transfer(core, all, in.scene, o).origin);
 }
 
@@ -96,7 +99,7 @@ void print_time(const cli::series& in)
       text += " ...";
     }
   }
-  row("time", text + (in.units().empty() ? "" : " " + in.units()));
+  row("time", text + (in.units().empty() ? "" : " " + in.units()), times);
 }
 
 void info(const cli::options& given)
@@ -105,7 +108,7 @@ void info(const cli::options& given)
   if (cli::is_scene(o.source)) {
     cli::context core("host", o.threads);
     const cli::input in(core, o.source, o.reading());
-    std::printf("%s\n", o.source.c_str());
+    cli::heading(o.source);
     print_volume(o, core, in);
     return;
   }
@@ -116,7 +119,7 @@ void info(const cli::options& given)
   cli::set_heights(o, &in, data.image ? data.image : data.grid);
   cli::context core("host", o.threads);
   const std::unique_ptr<cli::input> image(data.image ? new cli::input(core, o.source, data.image, o.array) : nullptr);
-  std::printf("%s\n", o.source.c_str());
+  cli::heading(o.source);
   row("kind", data.kind + (image ? ", drawn by rays through its cells" : ", drawn as tetrahedra"));
   if (!data.arrays.empty()) {
     row("arrays", data.arrays);
@@ -134,7 +137,8 @@ void info(const cli::options& given)
   for (const cli::variable_entry& one : variables) {
     row("variable",
       "'" + one.name + "'" + (one.units.empty() ? "" : " in " + one.units) + (one.long_name.empty() ? "" : ", " + one.long_name) + ", " +
-        (one.low <= one.high ? cli::format("%.9g .. %.9g", one.low, one.high) : "nothing finite"));
+        (one.low <= one.high ? cli::format("%.9g .. %.9g", one.low, one.high) : "nothing finite"),
+      one.low <= one.high ? std::vector<double>{ one.low, one.high } : std::vector<double>());
   }
   if (!in.choice().empty()) {
     row("", "drawn: " + in.choice());
@@ -216,8 +220,9 @@ bool run(const cli::options& o)
 {
   bool alike = true;
   check_stack();
-  if (o.quiet) {
-    cli::silence();
+  const bool only_json = o.json == "-"; // on the standard output
+  if (o.quiet || only_json) {
+    cli::silence(!only_json);
   }
   cli::set_read_timeout(o.read_timeout);
   cli::set_memory(o.memory);
@@ -225,6 +230,9 @@ bool run(const cli::options& o)
     cli::render(o);
   } else if (o.command == "info") {
     info(o);
+    if (!o.json.empty()) {
+      cli::write_json(o.json, cli::json_of_rows(o.source));
+    }
   } else if (o.command == "tree") {
     cli::print_tree(o);
   } else if (o.command == "sort") {

@@ -44,7 +44,7 @@ std::string help()
   stratus render INPUT --frames OUT-%04d.png  render every time step
   stratus render INPUT INPUT ... -o OUT.png   render up to eight as one medium; --array, --select, --opacity, --color and
                                               --unit-distance are for the INPUT before them
-  stratus info INPUT [--array NAME]           print the contents of a file or scene: sizes, arrays, cell types
+  stratus info INPUT [--array NAME]           print the contents of a file or scene: sizes, arrays, cell types; --json OUT: as JSON
   stratus tree INPUT [options] [-o OUT.vtp]   build the tree by which rays skip empty space, print its statistics, write its nodes' boxes
   stratus sort GRID [--depth N] [--up A]      cut a grid into leaves, sort its cells for 16 views, and count cells in wrong order
   stratus compare A B [options]               compare two images (.exr, .png ...) and exit 1 if they differ by more than a limit
@@ -192,7 +192,7 @@ Comparisons: all given limits must hold; without one, the images must be equal t
   --maximum D             each component of each colour differs by at most D, in 0..1
   --ssim S                the structural similarity is at least S, -1..1; 1 means equal
   --difference OUT        write an image of the differences: .png scaled so that the largest is white, .exr unscaled
-  --json OUT              write the results as JSON
+  --json OUT              write the results, or those of info, as JSON; -: to the standard output, instead of text
   --junit OUT             write the verdict as a JUnit test
 
 The stack limit must be at least 256 KiB (ulimit -s).
@@ -785,6 +785,9 @@ void check_cloud(const options& o)
 
 void check_complete(const options& o)
 {
+  if (!o.json.empty() && o.command != "info" && o.command != "compare") {
+    throw usage("--json is for info and compare, not " + o.command);
+  }
   check_suns(o);
   check_cloud(o);
   check_path(o);

@@ -16,9 +16,9 @@ namespace cli {
 
 static bool silent = false;
 
-void silence()
+void silence(bool everything)
 {
-  silent = std::freopen("/dev/null", "w", stdout) != nullptr;
+  silent = !everything || std::freopen("/dev/null", "w", stdout) != nullptr;
 }
 
 bool shows_progress()
@@ -158,9 +158,30 @@ std::string grouped(unsigned long long value)
   return text;
 }
 
-void row(const char* name, const std::string& value)
+static std::vector<printed_row>& rows()
 {
-  std::printf("  %-11s %s\n", name, value.c_str());
+  static std::vector<printed_row> all;
+  return all;
+}
+
+const std::vector<printed_row>& printed_rows()
+{
+  return rows();
+}
+
+void row(const char* name, const std::string& value, const std::vector<double>& numbers)
+{
+  rows().push_back({ name, value, numbers });
+  if (!silent) {
+    std::printf("  %-11s %s\n", name, value.c_str());
+  }
+}
+
+void heading(const std::string& text)
+{
+  if (!silent) {
+    std::printf("%s\n", text.c_str());
+  }
 }
 
 std::string format(const char* pattern, ...)

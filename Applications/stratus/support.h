@@ -54,10 +54,20 @@ int whole_number(const std::string& text, const std::string& what, int low, int 
 double byte_size(const std::string& text, const std::string& what, double low, double high);
 // 1234567 -> "1,234,567"
 std::string grouped(unsigned long long value);
-// Prints a line of a command's output: a name and its value.
-void row(const char* name, const std::string& value);
-// Prints neither rows nor progress from now on.
-void silence();
+// A line of a command's output: a name, which is empty if the line continues the one before it, and its value. For readers of JSON also the
+// numbers of the value, if it has some.
+struct printed_row {
+  std::string name, text;
+  std::vector<double> numbers;
+};
+// Prints a line.
+void row(const char* name, const std::string& value, const std::vector<double>& numbers = {});
+// Prints the line above rows: what they are about.
+void heading(const std::string& text);
+// All rows so far, also if they are silenced.
+const std::vector<printed_row>& printed_rows();
+// Prints no headings, rows and progress from now on, and if `everything` is true, nothing else to the standard output, either.
+void silence(bool everything);
 // Whether bars of progress are drawn: the standard error is a terminal.
 bool shows_progress();
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));

@@ -8,6 +8,7 @@ import numpy
 
 from . import _declarations as c
 from ._core import context as context_of, library, whole
+from ._dimensions import computed, coordinate_of, space_axes_of
 from ._draw import drawn_of
 from ._look import _METRES
 from ._picture import Picture
@@ -181,7 +182,7 @@ def _content(context, values, factor, density, metres, place):
     else:
         density = numpy.asarray(density)
     if _is_xarray(values):
-        result = values.copy(data=(values.values * (factor * density)).astype(numpy.float32))
+        result = values.copy(data=(computed(values) * (factor * density)).astype(numpy.float32))
         result.attrs["units"] = "kg m-3"
         return result
     return (values * (factor * density)).astype(numpy.float32)
@@ -191,12 +192,11 @@ def _by_height(context, values, metres, place):
     """The density of the standard atmosphere at each level, in a shape that goes with the values'."""
     shape = numpy.shape(values)
     if _is_xarray(values):
-        from ._grid import _HEIGHTS
-        level = next((n for n, name in enumerate(values.dims) if str(name).lower() in _HEIGHTS), 0)
-        name = values.dims[level]
-        if name not in values.coords or place["spacing"] is not None:
+        level = space_axes_of(values).index("z")
+        name, coordinate = values.dims[level], coordinate_of(values, values.dims[level])
+        if coordinate is None or place["spacing"] is not None:
             raise ValueError(f"the dimension {name!r} has no coordinate, so that the air's density is not known: give density=")
-        heights = numpy.asarray(values.coords[name].values, numpy.float64) * metres
+        heights = numpy.asarray(coordinate.values, numpy.float64) * metres
     else:
         level = "zyx".index("z") if place["axes"] is None else str("".join(place["axes"])).index("z")
         spacing, origin = place["spacing"] or (1, 1, 1), place["origin"] or (0, 0, 0)

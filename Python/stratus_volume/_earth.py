@@ -69,15 +69,6 @@ def places_of(context, names, coordinates):
     return None if z is None else ((x, y, z / (one or 1.0)), one or 1.0)
 
 
-def values_of(data):
-    """The values of a DataArray, with its fill values masked."""
-    values = numpy.ma.asarray(data.values)
-    for name in "_FillValue", "missing_value":
-        if name in data.attrs:  # values in the encoding were replaced as the file was read
-            values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | numpy.isin(values.data, data.attrs[name]), values.data)
-    return values
-
-
 _TITLE = 32  # letters of a long_name that is no sentence
 
 

@@ -9,6 +9,7 @@ import numpy
 from . import _declarations as c
 from . import _earth
 from ._core import address, context as context_of, library
+from ._dimensions import space_axes_of, values_of
 from ._tetrahedra import Tetrahedra
 from ._values import number, positive
 from ._view import _AROUND, is_placed
@@ -89,15 +90,14 @@ class Globe(Tetrahedra):
     def __init__(self, data, exaggerate=None, device=None, threads=None):
         if not (hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs")):
             raise ValueError(f"globe is True, but the data are of the type {type(data).__name__}, only an xarray.DataArray has longitudes and latitudes")
-        if len(data.dims) != 3:
-            raise ValueError(f"the DataArray has the dimensions {tuple(data.dims)}, it must have three; choose of the others by .isel()")
+        space_axes_of(data)  # refuses other dimensions than three of space
         places, horizontal = _horizontal(data)
         vertical, = set(data.dims) - set(horizontal)
         context = context_of("host", 1)
         heights = None if vertical not in data.coords else _earth.heights_of(context, vertical, data.coords[vertical])
         if heights is None:
             raise ValueError(f"globe is True, but the dimension {vertical!r} has no coordinate in a unit of length or pressure")
-        values = numpy.ma.asarray(_earth.values_of(data)).transpose([data.dims.index(name) for name in (vertical, *horizontal)])
+        values = values_of(data).transpose([data.dims.index(name) for name in (vertical, *horizontal)])
         degrees = numpy.ascontiguousarray(numpy.stack(places, axis=-1), numpy.float64)
         self.about = _earth.About(data)
         self.bar_title = tuple(str(text or "") for text in (getattr(data, "name", None), data.attrs.get("units")))

@@ -8,6 +8,7 @@ import numpy
 from . import _declarations as c
 from . import _earth
 from ._core import address, context as context_of, library, type_of
+from ._dimensions import space_axes_of, coordinate_of, values_of
 from ._values import Spread, mask_of, native, none_visible, numbers, scaled, visible
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
@@ -155,28 +156,21 @@ def _of_array(array, spacing, origin, axes, coordinates=None):
     return Grid(values, mask, [spacing[axis] for axis in world], origin, world, coordinates=places, own=own)
 
 
-_HEIGHTS = ("z", "lev", "level", "plev", "height", "altitude", "alt", "depth", "elevation", "bottom_top", "k")
-_NORTHS = ("y", "lat", "latitude", "north", "northing", "south_north", "j")
-_EASTS = ("x", "lon", "longitude", "east", "easting", "west_east", "i")
-
-
 def _of_xarray(data, spacing, origin, axes):
-    """Returns the Grid of a DataArray: its dimensions' names give the axes, its coordinates the places, and its fill values are masked."""
-    names = [str(name).lower() for name in data.dims]
-    if len(names) != 3:
-        raise ValueError(f"the DataArray has the dimensions {tuple(data.dims)}, it must have three; choose of the others by .isel()")
-    if axes is None:
-        letters = ["".join(letter for letter, known in (("z", _HEIGHTS), ("y", _NORTHS), ("x", _EASTS)) if name in known) for name in names]
-        axes = letters if sorted(letters) == ["x", "y", "z"] else "zyx"
-    values = _earth.values_of(data)
+    """Returns the Grid of a DataArray: attributes and names of its dimensions give the axes, its coordinates the places, and its fill values are
+    masked."""
+    if axes is None or len(data.dims) != 3:
+        axes = space_axes_of(data)
+    values = values_of(data)
     coordinates, earth, labels = None, None, None
-    if spacing is None and origin is None and all(name in data.coords for name in data.dims):
-        places = [numpy.asarray(data.coords[name].values) for name in data.dims]
-        units = {str(data.coords[name].attrs.get("units", "")) for name in data.dims}
+    own = [coordinate_of(data, name) for name in data.dims]
+    if spacing is None and origin is None and all(each is not None for each in own):
+        places = [numpy.asarray(each.values) for each in own]
+        units = {str(each.attrs.get("units", "")) for each in own}
         if all(place.ndim == 1 and place.size > 1 and place.dtype.kind in "iuf" for place in places):
             places = [numpy.ascontiguousarray(place, numpy.float64) for place in places]
             ordered = ["".join(axes).index(axis) for axis in "xyz"]
-            named = [str(data.dims[at]) for at in ordered], [data.coords[data.dims[at]] for at in ordered]
+            named = [str(data.dims[at]) for at in ordered], [own[at] for at in ordered]
             earth = _earth.places_of(context_of("host", 1), *named)
             if earth is not None:
                 for at, place in zip(ordered, earth[0]):

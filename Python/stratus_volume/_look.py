@@ -7,6 +7,7 @@ import numpy
 
 from . import _declarations as c
 from ._core import address, choice, library
+from ._dimensions import coordinate_of
 from ._picture import Rendering
 from ._values import functions, is_number, number, numbers, pairs, scaled_point
 
@@ -143,7 +144,7 @@ class Units:
         if metres is not None:
             self.metres = [metres] * 3
         elif axes is not None:
-            self.metres = self._of_axes([data.coords[axis] for axis in axes if axis in data.coords])
+            self.metres = self._of_axes([each for each in (coordinate_of(data, axis) for axis in axes) if each is not None])
         elif hasattr(data, "GetFieldData"):
             array = data.GetFieldData().GetArray("MetresPerUnit")
             self.metres = [array.GetComponent(0, 0)] * 3 if array is not None and array.GetNumberOfTuples() and array.GetComponent(0, 0) > 0 else None

@@ -101,16 +101,22 @@ def unit_length(unit_distance, length):
 
 # ---- arrays
 
+def type_in_core(dtype, name="array"):
+    """The type in which the core reads values of a type."""
+    if dtype.kind not in "buif" or dtype.itemsize > 8:
+        raise TypeError(f"the {name} is of type {dtype.str} ({dtype}), it must be one of {TYPES}")
+    if dtype == bool:
+        return numpy.dtype(numpy.uint8)
+    return numpy.dtype(numpy.float32) if dtype.kind == "f" and dtype.itemsize == 2 else dtype.newbyteorder("=")
+
+
 def native(array, name="array"):
     """Returns the array in one of the core's types and the machine's byte order. float16 becomes float32; bool is seen as bytes."""
     array = numpy.asarray(array)
-    if array.dtype.kind not in "buif" or array.dtype.itemsize > 8:
-        raise TypeError(f"the {name} is of type {array.dtype.str} ({array.dtype}), it must be one of {TYPES}")
+    needed = type_in_core(array.dtype, name)
     if array.dtype == bool:
-        return array.view(numpy.uint8)
-    if array.dtype.kind == "f" and array.dtype.itemsize == 2:
-        return array.astype(numpy.float32)
-    return array if array.dtype.isnative else array.astype(array.dtype.newbyteorder("="))
+        return array.view(needed)
+    return array if array.dtype == needed else array.astype(needed)
 
 
 def mask_of(array):

@@ -226,7 +226,7 @@ def labelled():
           "metres next to another unit: each axis by its count")
     filled = Labelled(numpy.where(field < 0.3, -999, field), tuple("zyx"), _FillValue=-999)
     check(apart(render(filled, **host), render(numpy.where(field < 0.3, numpy.nan, field), **host)) == 0, "a fill value is masked")
-    refuse(ValueError, "isel", render, Labelled(field[0], ("lat", "lon")))
+    refuse(ValueError, "must have three", render, Labelled(field[0], ("lat", "lon")))
 
 
 def vtk():

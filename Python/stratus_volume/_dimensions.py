@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Dimensions of an xarray.DataArray: which axis of space each one is, by the attributes of CF's conventions or by its name, and its coordinate.
+Lazy values are computed once."""
+import ctypes
+
+import numpy
+
+from . import _declarations as c
+from ._core import context as context_of, library
+from ._values import type_in_core
+
+_NAMES = {"z": ("z", "lev", "level", "plev", "height", "altitude", "alt", "depth", "elevation", "bottom_top", "k"),
+          "y": ("y", "lat", "latitude", "north", "northing", "south_north", "j"),
+          "x": ("x", "lon", "longitude", "east", "easting", "west_east", "i"),
+          "t": ("t", "time", "times")}
+_STANDARD = {"z": ("height", "altitude", "depth", "air_pressure", "model_level_number"),
+             "y": ("latitude", "grid_latitude", "projection_y_coordinate", "projection_y_angular_coordinate"),
+             "x": ("longitude", "grid_longitude", "projection_x_coordinate", "projection_x_angular_coordinate"),
+             "t": ("time", "forecast_reference_time", "forecast_period")}
+_UNITS = {"z": ("pa", "hpa", "mbar", "millibar", "millibars", "mb"),
+          "y": ("degrees_north", "degree_north", "degrees_n", "degree_n", "degreesn", "degreen"),
+          "x": ("degrees_east", "degree_east", "degrees_e", "degree_e", "degreese", "degreee")}
+
+
+def axis_of(name, coordinate=None):
+    """"x", "y", "z", "t" for time, or "" if neither the coordinate's attributes nor the name say which axis it is."""
+    attributes = {key: str(coordinate.attrs.get(key, "")).strip().lower() for key in ("axis", "standard_name", "positive", "units")} if \
+        coordinate is not None else dict.fromkeys(("axis", "standard_name", "positive", "units"), "")
+    if attributes["axis"] in ("x", "y", "z", "t"):
+        return attributes["axis"]
+    standard = attributes["standard_name"]
+    for axis, names in _STANDARD.items():
+        if standard in names:
+            return axis
+    if attributes["positive"] in ("up", "down") or standard.startswith(("atmosphere_", "ocean_", "height_above_", "depth_below_")):
+        return "z"
+    for axis, units in _UNITS.items():
+        if attributes["units"] in units:
+            return axis
+    if " since " in attributes["units"] or coordinate is not None and numpy.asarray(coordinate.values).dtype.kind == "M":
+        return "t"
+    return next((axis for axis, names in _NAMES.items() if str(name).lower() in names), "")
+
+
+def coordinate_of(data, name):
+    """The coordinate of one dimension along a dimension: the one of its name, or else the only other one that is an axis of space; or None."""
+    if name in data.coords:
+        return data.coords[name]
+    along = [data.coords[other] for other in data.coords if tuple(getattr(data.coords[other], "dims", ())) == (name,)]
+    known = [other for other in along if axis_of("", other) in ("x", "y", "z")]
+    return known[0] if len(known) == 1 else None
+
+
+def _chosen(names):
+    return f".isel({', '.join(f'{name}=0' for name in names)})"
+
+
+def space_axes_of(data):
+    """The axes of the three dimensions of a DataArray, such as ["z", "y", "x"]. Dimensions of which nothing is known have the axes that are left, in
+    the order z, y, x."""
+    names = list(data.dims)
+    axes = [axis_of(name, coordinate_of(data, name)) for name in names]
+    if len(names) != 3:
+        aside = sorted((name for name, axis in zip(names, axes) if axis in ("", "t")), key=lambda name: axes[names.index(name)] != "t")
+        hint = f"choose one index of the others, as by {_chosen(aside[:len(names) - 3])}" if len(aside) >= len(names) - 3 > 0 else \
+            "choose of others by .isel()" if len(names) > 3 else "a picture of a volume needs space's three"
+        raise ValueError(f"the DataArray has the dimensions {tuple(names)}, it must have three; {hint}")
+    if "t" in axes:
+        name = names[axes.index("t")]
+        raise ValueError(f"the dimension {name!r} is time, the DataArray must have three dimensions of space; choose a step by {_chosen([name])}, or "
+                         "draw time as an axis by axes=, such as axes='zyx'")
+    for axis in "xyz":
+        if axes.count(axis) > 1:
+            both = [name for name, own in zip(names, axes) if own == axis]
+            raise ValueError(f"the dimensions {both} are both along {axis}, each axis must have one; name the axes by axes=, such as axes='zyx'")
+    left = iter([axis for axis in "zyx" if axis not in axes])
+    return [axis or next(left) for axis in axes]
+
+
+def _free_memory():
+    """Bytes that the machine or the process's control group has free, by the core, which gives half of them to a pool of bricks."""
+    pool, report, context = ctypes.c_void_p(), c.stratus_brick_pool_report(), context_of("host", 1)
+    with context.lock:
+        context.call(library.stratus_brick_pool_create, context.pointer, None, ctypes.byref(pool))
+    library.stratus_brick_pool_get_report(pool, ctypes.byref(report))
+    library.stratus_brick_pool_destroy(pool)
+    return 2 * report.memory
+
+
+def _size(count):
+    return f"{count / 2**30:.1f} GiB" if count >= 2**30 else f"{count / 2**20:.1f} MiB"
+
+
+def computed(data):
+    """The values of a DataArray. Lazy values are computed once, in the type that the core reads, if they fit in memory."""
+    chunked = getattr(data, "chunks", None) is not None
+    if not chunked and getattr(getattr(data, "variable", None), "_in_memory", True):
+        return data.values
+    needed = type_in_core(data.dtype)
+    count, free = int(data.size) * needed.itemsize, _free_memory()
+    if count > free:
+        raise MemoryError(f"the DataArray {data.name!r} is lazy, and its {' x '.join(map(str, data.shape))} values of type {needed} need {_size(count)}, "
+                          f"but {_size(free)} of memory are free; choose a part by .isel() or .sel(), or a coarser one by .coarsen()")
+    if not chunked:
+        return data.values
+    return (data.data if data.dtype == needed else data.data.astype(needed)).compute()
+
+
+def values_of(data):
+    """The values of a DataArray, with its fill values masked."""
+    values = numpy.ma.asarray(computed(data))
+    for name in "_FillValue", "missing_value":
+        if name in data.attrs:  # values in the encoding were replaced as the file was read
+            values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | numpy.isin(values.data, data.attrs[name]), values.data)
+    return values
