@@ -8,8 +8,8 @@
  * memory: then all parts are dropped. An array that does not fit in the pool's memory has a second file and mapping for rays, in which each
  * tile of the grid has pages of its own.
  *
- * A clock chooses what is dropped: its hand first takes the pages of a part out of the readers' mapping, and drops the part when it comes
- * around again and nothing has read it. */
+ * A clock with two hands chooses what is dropped. One hand takes the pages of parts out of the readers' mapping, so that the next read of
+ * them is noticed. The other one follows later and drops those that nothing has read since. */
 #define _GNU_SOURCE
 #include "bricks.h"
 
@@ -34,6 +34,8 @@
 #define UFFD_USER_MODE_ONLY 1
 #endif
 #endif
+
+#define RESTING_SHARE 4 /* one of so many parts rests: more would stop their readers more often */
 
 /* Puts the runs of a part from the room into the array. Returns how many bytes could not be written, for want of memory. */
 uint64_t stratus_brick_store_part(const stratus_brick_view* view, int64_t part, const stratus_brick_room* room)
@@ -163,35 +165,62 @@ static void hide_part(const stratus_brick_view* view, int64_t part, bool drop)
 
 static void set_state(stratus_brick_view* view, int64_t part, int state)
 {
+  stratus_brick_pool* const pool = view->bricks->pool;
+  pool->resting += (uint64_t)(state == STRATUS_PART_RESTING) - (uint64_t)((view->state[part] & STRATUS_PART_STATE) == STRATUS_PART_RESTING);
   view->state[part] = (uint8_t)((view->state[part] & ~STRATUS_PART_STATE) | state);
 }
 
-/* Moves the clock's hand until the pool is within its limit, or has gone around twice. Part `kept` of `keeper` stays. */
-static void make_room(stratus_brick_pool* pool, const stratus_brick_view* keeper, int64_t kept)
+/* Moves a hand by one part. Gives the part that it was at. */
+static stratus_brick_view* next_part(const stratus_brick_pool* pool, stratus_brick_hand* hand, int64_t* part)
 {
-  int64_t parts = 0;
+  if (!hand->view || hand->part >= hand->view->parts) {
+    hand->view = hand->view && hand->view->next ? hand->view->next : pool->first;
+    hand->part = 0;
+  }
+  *part = hand->part++;
+  return hand->view;
+}
+
+static void rest_part(stratus_brick_view* view, int64_t part)
+{
+  hide_part(view, part, false);
+  set_state(view, part, STRATUS_PART_RESTING);
+}
+
+static void drop_part(stratus_brick_view* view, int64_t part)
+{
+  uint64_t edges = 0;
+  hide_part(view, part, true);
+  set_state(view, part, STRATUS_PART_ABSENT);
+  view->bricks->pool->resident -= bytes_of(view, part, &edges);
+  --view->bricks->pool->parts_here;
+  --view->bricks->report.parts_here;
+  ++view->bricks->report.parts_dropped;
+}
+
+/* Drops parts that rest until the pool is within its limit. If these are too few, others rest and are dropped. Then some more come to rest:
+ * those that are read before the next call are not dropped by it. */
+static void make_room(stratus_brick_pool* pool)
+{
+  int64_t parts = 0, part = 0;
   for (const stratus_brick_view* b = pool->first; b; b = b->next) {
     parts += b->parts;
   }
   const uint64_t memory = stratus_brick_memory_left(pool);
-  for (int64_t visit = 0; pool->resident > memory && visit < 2 * parts; ++visit) {
-    if (!pool->hand || pool->hand_part >= pool->hand->parts) {
-      pool->hand = pool->hand && pool->hand->next ? pool->hand->next : pool->first;
-      pool->hand_part = 0;
-    }
-    stratus_brick_view* const view = pool->hand;
-    const int64_t part = pool->hand_part++;
+  for (int64_t visit = 0; pool->resident > memory && visit < 3 * parts; ++visit) {
+    stratus_brick_view* const view = next_part(pool, &pool->drops, &part);
     const int state = view->state[part] & STRATUS_PART_STATE;
-    if ((view == keeper && part == kept) || (state != STRATUS_PART_HERE && state != STRATUS_PART_RESTING)) {
-      continue;
-    }
-    hide_part(view, part, state == STRATUS_PART_RESTING);
-    set_state(view, part, state == STRATUS_PART_RESTING ? STRATUS_PART_ABSENT : STRATUS_PART_RESTING);
     if (state == STRATUS_PART_RESTING) {
-      uint64_t edges = 0;
-      pool->resident -= bytes_of(view, part, &edges);
-      --view->bricks->report.parts_here;
-      ++view->bricks->report.parts_dropped;
+      drop_part(view, part);
+    } else if (state == STRATUS_PART_HERE && visit >= parts) {
+      rest_part(view, part);
+    }
+  }
+  const uint64_t rest = pool->resident > memory / 2 ? pool->parts_here / RESTING_SHARE : 0;
+  for (int64_t visit = 0; pool->resting < rest && visit < parts; ++visit) {
+    stratus_brick_view* const view = next_part(pool, &pool->rests, &part);
+    if ((view->state[part] & STRATUS_PART_STATE) == STRATUS_PART_HERE) {
+      rest_part(view, part);
     }
   }
 }
@@ -212,9 +241,11 @@ static void empty(stratus_brick_view* view)
   view->bricks->pool->resident -= stratus_brick_resident(view);
   for (int64_t part = 0; part < view->parts; ++part) {
     const int here = (view->state[part] & STRATUS_PART_STATE) != STRATUS_PART_ABSENT;
+    view->bricks->pool->parts_here -= (uint64_t)here;
     report->parts_here -= (uint64_t)here;
     report->parts_dropped += (uint64_t)here;
-    view->state[part] = STRATUS_PART_ABSENT;
+    set_state(view, part, STRATUS_PART_ABSENT);
+    view->state[part] = STRATUS_PART_ABSENT; /* and its pages that others share are not counted */
   }
   (void)fallocate(view->memory, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, (off_t)view->mapped);
   view->shared = 0;
@@ -248,7 +279,7 @@ bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_bri
   }
   pool->resident += inner + shared;
   view->shared += shared;
-  make_room(pool, view, part);
+  make_room(pool);
   view->state[part] = STRATUS_PART_EDGES | STRATUS_PART_READING;
   pool->resident_most = pool->resident > pool->resident_most ? pool->resident : pool->resident_most;
   pthread_mutex_unlock(&pool->lock);
@@ -257,8 +288,9 @@ bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_bri
   missing = missing + lost < all ? missing + lost : all;
   pthread_mutex_lock(&pool->lock);
   set_state(view, part, STRATUS_PART_HERE);
-  view->bricks->report.parts_here += 1;
-  pool->parts_read += 1;
+  ++pool->parts_here;
+  ++view->bricks->report.parts_here;
+  ++pool->parts_read;
   pool->bytes_read += all - missing;
   view->bricks->report.bytes_read += all - missing;
   ++view->bricks->report.parts_read;

@@ -222,11 +222,19 @@ static void leave_pool(stratus_brick_pool* pool, const stratus_brick_view* view)
       break;
     }
   }
-  if (pool->hand == view) {
-    pool->hand = NULL;
+  stratus_brick_hand* const hands[] = { &pool->rests, &pool->drops };
+  for (int h = 0; h < 2; ++h) {
+    if (hands[h]->view == view) {
+      *hands[h] = (stratus_brick_hand){ .view = NULL };
+    }
   }
   pool->resident -= view->memory < 0 ? view->bytes : 0;
   pool->resident -= stratus_brick_resident(view);
+  for (int64_t part = 0; view->memory >= 0 && part < view->parts; ++part) {
+    const int state = view->state[part] & STRATUS_PART_STATE;
+    pool->parts_here -= state != STRATUS_PART_ABSENT;
+    pool->resting -= state == STRATUS_PART_RESTING;
+  }
 }
 
 stratus_status stratus_bricks_create(

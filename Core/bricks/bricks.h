@@ -55,6 +55,12 @@ struct stratus_bricks {
   stratus_bricks_report report;
 };
 
+/* A hand of the clock that chooses what is dropped. */
+typedef struct stratus_brick_hand {
+  stratus_brick_view* view; /* NULL: before the pool's first */
+  int64_t part;
+} stratus_brick_hand;
+
 /* Memory that a thread reads parts into. */
 typedef struct stratus_brick_room {
   char* bytes;
@@ -71,9 +77,9 @@ struct stratus_brick_pool {
   uint64_t began, grown; /* its bytes when the pool was made, and those that were added */
   double looked;         /* when that was found, by stratus_now_ms() */
   stratus_brick_view* first;
-  stratus_brick_view* hand; /* of the clock, at its part number hand_part */
-  int64_t hand_part;
-  int faults, quit; /* where the kernel reports pages that are read, and the handle that ends the threads; -1: not paged */
+  stratus_brick_hand rests, drops; /* which parts rest next, and which of those are dropped next */
+  uint64_t parts_here, resting;    /* of all arrays that are paged: parts in memory, and how many of these rest */
+  int faults, quit;                /* where the kernel reports pages that are read, and the handle that ends the threads; -1: not paged */
   size_t page;
   pthread_t threads[64];
   int thread_count;

@@ -89,14 +89,14 @@ stratus.vtkStratusImageReader().SetMemoryLimitInMiB(0)
 check(Reader.GetMemoryLimit() == 64 << 20, "the limit is all readers', and 0 leaves it")
 Reader.SetMemoryLimit(LIMIT)
 
-paged = reader_of(write("plain.nc", chunksizes=(1, 32, 32, 32), zlib=True, complevel=1), True)
+paged = reader_of(write("plain.nc", chunksizes=(1, 8, 32, 32), zlib=True, complevel=1), True)
 if not paged.GetMapped():
     print("SKIPPED: this system offers no pages that stop their readers")
     sys.exit(77)
 check(Reader.GetMemoryUsed() == 0, "nothing is read before something looks")
 one = values_of(paged)[(80 * NY + 100) * NX + 50]
 check(one == FIELD[80, 100, 50], "a value")
-check(0 < Reader.GetMemoryUsed() <= 32 * NY * NX * 4 + (1 << 20), "one value needs a row of chunks, and its neighbour that shares a page")
+check(0 < Reader.GetMemoryUsed() <= 16 * NY * NX * 4 + (1 << 20), "one value needs a row of chunks, and its neighbour that shares a page")
 plain = reader_of("plain.nc", False)
 check(not plain.GetMapped(), "plain values are in memory")
 reference = picture(plain.GetOutputDataObject(0))
@@ -104,10 +104,11 @@ check(reference.max() > 50, "something shows")
 check((picture(paged.GetOutputDataObject(0)) == reference).all(), "a picture in little memory has the same bits")
 check(Reader.GetMemoryUsed() <= LIMIT, "memory is within the limit")
 
-# Value ranges read all values once. Rays then read only chunks that they meet, of an array that is larger than the limit.
+# Value ranges read all values once, by threads that share pages, in memory that another array fills. Rays then read only chunks that they
+# meet.
 fresh, begin = reader_of("plain.nc", True), Reader.GetBytesRead()
 check(picture(fresh.GetOutputDataObject(0), least=0.9).max() > 20, "something shows of the middle")
-check(Reader.GetBytesRead() - begin < 1.4 * FIELD.nbytes, "only chunks of the middle are read twice")
+check(Reader.GetBytesRead() - begin < 1.2 * FIELD.nbytes, "only chunks of the middle are read twice")
 del fresh
 
 for name, options in {

@@ -471,6 +471,7 @@ write2("planes/0", image[0, :, 0], (1, 20, 24))
 refused("planes", "no variable on a grid of three dimensions")
 
 # ---- in little memory, and after a change of the files
+del got, selected, below, read  # with their bricks
 z, y, x = numpy.meshgrid(*(numpy.linspace(-1, 1, n) for n in (140, 151, 201)), indexing="ij")
 LARGE = (numpy.exp(-4 * (x * x + y * y + z * z)) + 0.05 * chance.random(x.shape)).astype("f4")
 

@@ -311,6 +311,37 @@ static void memory_stays_within_its_limit(void** state)
   stratus_brick_pool_destroy(pool);
 }
 
+/* Array 0 fills the memory, and some of its parts are read once more. Then only array 1 is read: none of its parts is dropped. */
+static void parts_stay_while_they_are_read(void** state)
+{
+  (void)state;
+  enum { PARTS = 8, SIDE = 256, PART = SIDE * SIDE * SIDE / PARTS };
+  formula f[2] = { make_formula(STRATUS_UINT8, SIDE, SIDE, SIDE, SIDE, SIDE, SIDE / PARTS) };
+  f[1] = f[0];
+  for (int again = 0; again < PARTS; ++again) {
+    stratus_brick_pool* pool = make_pool(PARTS * PART);
+    if (!is_paged(pool)) {
+      stratus_brick_pool_destroy(pool);
+      return;
+    }
+    stratus_bricks* bricks[2] = { make_bricks(pool, &f[0]), make_bricks(pool, &f[1]) };
+    const uint8_t* values[2] = { stratus_bricks_values(bricks[0]), stratus_bricks_values(bricks[1]) };
+    for (int part = 0; part < PARTS + again; ++part) {
+      assert_true(equals(&f[0], values[0], part % PARTS * PART));
+    }
+    for (int last = 0; last < PARTS - 2; ++last) {
+      for (int part = 0; part <= last; ++part) {
+        assert_true(equals(&f[1], values[1], part * PART));
+      }
+    }
+    assert_int_equal(report_of(bricks[1]).parts_read, PARTS - 2);
+    assert_int_equal(report_of(bricks[1]).parts_here, PARTS - 2);
+    stratus_bricks_destroy(bricks[0]);
+    stratus_bricks_destroy(bricks[1]);
+    stratus_brick_pool_destroy(pool);
+  }
+}
+
 /* Takes memory that goes back to the system as soon as it is released. */
 static void* take_memory(size_t bytes)
 {
@@ -761,8 +792,9 @@ int test_bricks(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(values_are_the_sources), cmocka_unit_test(without_pages_all_is_read_at_once),
     cmocka_unit_test(only_parts_that_are_looked_at_are_read), cmocka_unit_test(memory_stays_within_its_limit),
-    cmocka_unit_test(other_memory_of_the_process_counts), cmocka_unit_test(pages_that_parts_share_leave_room),
-    cmocka_unit_test(what_is_read_stays), cmocka_unit_test(values_that_cannot_be_read_are_counted), cmocka_unit_test(tiles_are_the_sources),
+    cmocka_unit_test(parts_stay_while_they_are_read), cmocka_unit_test(other_memory_of_the_process_counts),
+    cmocka_unit_test(pages_that_parts_share_leave_room), cmocka_unit_test(what_is_read_stays),
+    cmocka_unit_test(values_that_cannot_be_read_are_counted), cmocka_unit_test(tiles_are_the_sources),
     cmocka_unit_test(only_tiles_that_are_looked_at_are_read), cmocka_unit_test(parts_are_read_ahead),
     cmocka_unit_test(pictures_are_the_same), cmocka_unit_test(bricks_of_one_value_are_not_read),
     cmocka_unit_test(faults_of_the_caller_are_told) };
