@@ -12,6 +12,7 @@ _Points = Union[_Function, Sequence[_Function]]
 _OneColor = Union[Sequence[float], Sequence[Sequence[float]], str, Callable[[float], Sequence[float]], None]
 _Colors = Union[_OneColor, Sequence[_OneColor]]
 _Device = Union[str, int, "Context", None]
+_Camera = Any  # a dict, three points, a vtkCamera, or None
 _Progress = Any  # a function of a stage and a fraction, a bar of tqdm's protocol, or None
 _Background = Union[Sequence[float], None]
 _Quantity = Literal["integral", "length", "mean", "maximum", "maximum_depth", "cells", "transmittance", "transmittance_depth"]
@@ -35,7 +36,7 @@ class Context:
     @property
     def device(self) -> str: ...
 
-class Picture(numpy.ndarray):
+class Picture(numpy.ndarray[Any, numpy.dtype[numpy.uint8]]):
     caption: str
     def save(self, path: str | PathLike[str]) -> None: ...
 
@@ -69,7 +70,7 @@ class Volume:
     def bounds(self) -> tuple[float, float, float, float, float, float]: ...
     def modified(self) -> None: ...
     def render(
-        self, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: Any = ..., unit_distance: float | None = ...,
+        self, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: _Camera = ..., unit_distance: float | None = ...,
         mode: _Mode = ..., interpolation: Literal["linear", "nearest"] = ..., structure: _Structure = ..., sampling: _Sampling = ...,
         sample_distance: float = ..., tolerance: float | None = ..., shade: _Shade = ..., gradient_opacity: _Points = ...,
         contours: float | Sequence[float] | None = ..., crop: Sequence[float] | None = ..., clip_planes: Sequence[Sequence[float]] | None = ...,
@@ -86,7 +87,7 @@ class Tetrahedra:
         self, points: Any, tetrahedra: ArrayLike | None = ..., values: ArrayLike | None = ..., scalars: str | None = ..., device: _Device = ...,
         threads: int | None = ..., matrix: _Matrix = ..., component: _Component = ...) -> None: ...
     def render(
-        self, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: Any = ..., unit_distance: float | None = ...,
+        self, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: _Camera = ..., unit_distance: float | None = ...,
         mode: _Mode = ..., method: Literal["auto", "march", "project"] = ...,
         tolerance: float | None = ..., shade: _Shade = ..., gradient_opacity: _Points = ...,
         contours: float | Sequence[float] | None = ..., crop: Sequence[float] | None = ..., clip_planes: Sequence[Sequence[float]] | None = ...,
@@ -140,7 +141,7 @@ class VisibilityOrder:
     def __init__(
         self, points: ArrayLike | Partition, tetrahedra: ArrayLike | None = ..., device: _Device = ..., threads: int | None = ...) -> None: ...
     def sort(
-        self, camera: Any = ..., peeling: Literal["nearest", "layers"] = ...,
+        self, camera: _Camera = ..., peeling: Literal["nearest", "layers"] = ...,
         progress: _Progress = ...) -> tuple[NDArray[numpy.int64], dict[str, Any]]: ...
 
 class Visible(NamedTuple):
@@ -161,7 +162,7 @@ class Octree:
     def remove(self, ids: ArrayLike) -> None: ...
     def bounds(self, ids: ArrayLike) -> NDArray[numpy.float64]: ...
     def cull(
-        self, camera: Any = ..., size: Sequence[int] = ..., near: float = ..., far: float = ..., planes: ArrayLike | None = ...,
+        self, camera: _Camera = ..., size: Sequence[int] = ..., near: float = ..., far: float = ..., planes: ArrayLike | None = ...,
         eye: Sequence[float] | None = ..., exact: bool = ..., coverage: bool = ..., hold: bool = ..., view: str = ...) -> Visible: ...
     def in_box(self, bounds: ArrayLike) -> NDArray[numpy.uint32]: ...
     def in_sphere(self, center: Sequence[float], radius: float) -> NDArray[numpy.uint32]: ...
@@ -179,12 +180,12 @@ def partition(
     imbalance: float = ..., rotations: int = ..., leaf_cells: int = ..., device: _Device = ..., threads: int | None = ...,
     progress: _Progress = ...) -> Partition: ...
 def render(
-    data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: Any = ..., spacing: Sequence[float] | None = ...,
+    data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: _Camera = ..., spacing: Sequence[float] | None = ...,
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
     device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., exaggerate: float | None = ...,
     globe: bool = ..., **options: Any) -> Rendering: ...
 def show(
-    data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: Any = ..., background: _Background = ...,
+    data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: _Camera = ..., background: _Background = ...,
     **options: Any) -> Picture: ...
 def turn(
     data: Any, frames: int = ..., opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., elevation: float = ..., zoom: float = ...,
@@ -195,7 +196,7 @@ def turn(
 def cloud(
     data: Any, radius: float | None = ..., ice: bool | None = ..., units: str | None = ..., metres: float | None = ...,
     density: ArrayLike | None = ..., variable: str | None = ..., step: int = ..., sun: Sequence[float] | None = ..., time: Any = ...,
-    place: Sequence[float] | None = ..., size: Sequence[int] = ..., camera: Any = ..., background: Literal["sky"] | _Background = ...,
+    place: Sequence[float] | None = ..., size: Sequence[int] = ..., camera: _Camera = ..., background: Literal["sky"] | _Background = ...,
     albedo: float = ..., anisotropy: float = ..., spacing: Sequence[float] | None = ..., origin: Sequence[float] | None = ...,
     axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ..., device: _Device = ...,
     threads: int | None = ..., matrix: _Matrix = ..., **options: Any) -> Picture: ...
@@ -205,12 +206,12 @@ def view(
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
     device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., **options: Any) -> View: ...
 def render_several(
-    items: Sequence[Any], size: Sequence[int] = ..., camera: Any = ..., opaque_depth: ArrayLike | None = ..., device: _Device = ...,
+    items: Sequence[Any], size: Sequence[int] = ..., camera: _Camera = ..., opaque_depth: ArrayLike | None = ..., device: _Device = ...,
     threads: int | None = ..., progress: _Progress = ..., quantities: _Quantities = ..., threshold: float = ...) -> Rendering: ...
 def slab(center: Sequence[float], normal: Sequence[float], thickness: float) -> list[tuple[float, float, float, float]]: ...
 def render_tetrahedra(
     points: ArrayLike, tetrahedra: ArrayLike | None, values: ArrayLike, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ...,
-    camera: Any = ..., device: _Device = ..., threads: int | None = ..., **options: Any) -> Rendering: ...
+    camera: _Camera = ..., device: _Device = ..., threads: int | None = ..., **options: Any) -> Rendering: ...
 def distance_field(
     data: Any, lower: float | None = ..., upper: float | None = ..., method: _Field = ..., signed: bool = ...,
     **options: Any) -> NDArray[numpy.float32]: ...
