@@ -3,6 +3,7 @@
 
 #include "vtkStratusText.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -177,6 +178,21 @@ std::string SweepOf(const vtkStratusNetCDFModel& file, const Variable& mapping)
   return sweep == "x" || (sweep.empty() && fixed == "y") ? "sweep=x" : "sweep=y";
 }
 
+bool IsKnown(const std::string& name)
+{
+  return std::any_of(Mappings.begin(), Mappings.end(), [&name](const Mapping& one) { return name == one.Name; });
+}
+
+// The whole coordinate reference system as one text, "" if the file has none.
+std::string SystemOf(const vtkStratusNetCDFModel& file, const Variable& mapping)
+{
+  std::string text;
+  for (const char* attribute : { "crs_wkt", "spatial_ref", "wkt", "EPSG_code" }) {
+    text = text.empty() ? vtkStratusTrimmed(file.Text(mapping, attribute)) : text;
+  }
+  return text;
+}
+
 // The text for PROJ.
 std::string TextOf(
   const vtkStratusNetCDFModel& file, const Variable& mapping, double metres, const std::string& name, const std::string& what)
@@ -210,7 +226,7 @@ std::string TextOf(
     }
     return text.Get();
   }
-  file.Fail(what + " is none of the known ones: " + names);
+  file.Fail(what + " is none of the known ones: " + names + "; and it has no crs_wkt");
 }
 } // namespace
 
@@ -223,7 +239,7 @@ const Variable* vtkStratusProjection::FindMapping(const vtkStratusNetCDFModel& f
     }
     const Variable* one = file.Find(word, &variable);
     const std::string name = one ? file.Text(*one, "grid_mapping_name") : "";
-    if (!name.empty() && name != "latitude_longitude") {
+    if (one && name != "latitude_longitude" && (!name.empty() || !SystemOf(file, *one).empty())) {
       return one;
     }
   }
@@ -240,6 +256,9 @@ double vtkStratusProjection::MetresPerRadian(const vtkStratusNetCDFModel& file, 
 struct vtkStratusProjection::Proj {
   PJ_CONTEXT* Context;
   PJ* Transformation = nullptr;
+  double Angle = Degree, Plane = 1.0; // PROJ's units of a degree on the Earth, and metres or degrees of PROJ's unit on the plane
+  double Meridian = 0.0;              // degrees from Greenwich
+  bool IsSystem = false, IsRotated = false;
 
   Proj() : Context(proj_context_create()) { proj_log_level(this->Context, PJ_LOG_NONE); }
   ~Proj()
@@ -247,14 +266,66 @@ struct vtkStratusProjection::Proj {
     proj_destroy(this->Transformation);
     proj_context_destroy(this->Context);
   }
-  // factor: from the unit of `from` to PROJ's.
-  bool Convert(PJ_DIRECTION direction, const double from[2], double factor, double to[2], double unit) const
+  std::string GetError() const
+  {
+    const int error = proj_context_errno(this->Context);
+    const char* text = error ? proj_errno_string(error) : nullptr;
+    return this->IsSystem ? "it is no map projection of the Earth" : text ? text : "it is no text of a coordinate reference system";
+  }
+
+  // Sets the transformation by a coordinate reference system. Returns its name, "" if it has no map projection.
+  std::string SetSystem(const std::string& text)
+  {
+    using Object = std::unique_ptr<PJ, PJ* (*)(PJ*)>;
+    const auto own = [](PJ* object) { return Object(object, proj_destroy); };
+    Object system = own(proj_create(this->Context, text.c_str()));
+    while (system && (proj_get_type(system.get()) == PJ_TYPE_BOUND_CRS || proj_get_type(system.get()) == PJ_TYPE_COMPOUND_CRS)) {
+      const bool bound = proj_get_type(system.get()) == PJ_TYPE_BOUND_CRS;
+      system = own(
+        bound ? proj_get_source_crs(this->Context, system.get()) : proj_crs_get_sub_crs(this->Context, system.get(), 0)); // the horizontal
+    }
+    this->IsSystem = system != nullptr;
+    const Object base = own(system ? proj_get_source_crs(this->Context, system.get()) : nullptr);
+    const Object given = own(base ? proj_create_crs_to_crs_from_pj(this->Context, base.get(), system.get(), nullptr, nullptr) : nullptr);
+    this->Transformation = given ? proj_normalize_for_visualization(this->Context, given.get()) : nullptr;
+    if (!this->Transformation) {
+      return "";
+    }
+    const auto unit = [&](const PJ* of) { // radians or metres
+      const Object axes = own(proj_crs_get_coordinate_system(this->Context, of));
+      double factor = 1.0;
+      return axes && proj_cs_get_axis_info(this->Context, axes.get(), 0, nullptr, nullptr, nullptr, &factor, nullptr, nullptr, nullptr)
+        ? factor
+        : 1.0;
+    };
+    const Object meridian = own(proj_get_prime_meridian(this->Context, base.get()));
+    double longitude = 0.0, factor = 1.0;
+    if (meridian && proj_prime_meridian_get_parameters(this->Context, meridian.get(), &longitude, &factor, nullptr)) {
+      this->Meridian = longitude * factor / Degree;
+    }
+    this->Angle = Degree / unit(base.get());
+    this->IsRotated = proj_get_type(system.get()) != PJ_TYPE_PROJECTED_CRS;
+    this->Plane = unit(system.get()) / (this->IsRotated ? Degree : 1.0);
+    const char* name = proj_get_name(system.get());
+    return name && *name ? name : "unnamed";
+  }
+
+  bool ToPlane(const double degrees[2], double at[2]) const
   {
     proj_errno_reset(this->Transformation);
-    const PJ_COORD result = proj_trans(this->Transformation, direction, proj_coord(from[0] * factor, from[1] * factor, 0.0, 0.0));
-    to[0] = result.xy.x / unit;
-    to[1] = result.xy.y / unit;
-    return std::isfinite(to[0]) && std::isfinite(to[1]);
+    const PJ_COORD from = proj_coord((degrees[0] - this->Meridian) * this->Angle, degrees[1] * this->Angle, 0.0, 0.0);
+    const PJ_COORD to = proj_trans(this->Transformation, PJ_FWD, from);
+    at[0] = to.xy.x * this->Plane;
+    at[1] = to.xy.y * this->Plane;
+    return std::isfinite(at[0]) && std::isfinite(at[1]);
+  }
+  bool ToEarth(const double at[2], double degrees[2]) const
+  {
+    proj_errno_reset(this->Transformation);
+    const PJ_COORD to = proj_trans(this->Transformation, PJ_INV, proj_coord(at[0] / this->Plane, at[1] / this->Plane, 0.0, 0.0));
+    degrees[0] = to.xy.x / this->Angle + this->Meridian;
+    degrees[1] = to.xy.y / this->Angle;
+    return std::isfinite(degrees[0]) && std::isfinite(degrees[1]);
   }
 };
 #else
@@ -265,15 +336,26 @@ struct vtkStratusProjection::Proj {
 vtkStratusProjection::vtkStratusProjection(const vtkStratusNetCDFModel& file, const Variable& mapping, double metres)
     : Library(std::make_unique<Proj>())
 {
-  const std::string name = vtkStratusTrimmed(file.Text(mapping, "grid_mapping_name"));
-  this->Description = "'" + mapping.Name + "' (" + name + ")";
+  const std::string name = vtkStratusTrimmed(file.Text(mapping, "grid_mapping_name")), system = SystemOf(file, mapping);
+  const bool by_system = !IsKnown(name) && !system.empty();
+  this->Description = "'" + mapping.Name + "'" + (name.empty() || by_system ? "" : " (" + name + ")");
   this->Rotated = name == ::Rotated;
-  const std::string text = TextOf(file, mapping, metres, name, "the grid mapping " + this->Description);
+  const std::string text = by_system ? "" : TextOf(file, mapping, metres, name, "the grid mapping " + this->Description);
 #ifdef STRATUS_PROJ
+  if (by_system) {
+    const std::string title = this->Library->SetSystem(system);
+    if (title.empty()) {
+      file.Fail("PROJ finds no projection in the text of the grid mapping " + this->Description + ", '" + system.substr(0, 60) +
+        (system.size() > 60 ? "...'" : "'") + ": " + this->Library->GetError());
+    }
+    this->Description += " (" + title + ")";
+    this->Rotated = this->Library->IsRotated;
+    return;
+  }
   this->Library->Transformation = proj_create(this->Library->Context, text.c_str());
+  this->Library->Plane = this->Rotated ? 1.0 / Degree : 1.0;
   if (!this->Library->Transformation) {
-    file.Fail("PROJ refuses the grid mapping " + this->Description + " as '" + text.substr(1) +
-      "': " + proj_errno_string(proj_context_errno(this->Library->Context)));
+    file.Fail("PROJ refuses the grid mapping " + this->Description + " as '" + text.substr(1) + "': " + this->Library->GetError());
   }
 #else
   file.Fail("places by the grid mapping " + this->Description + " need PROJ, which this build lacks (Debian: libproj-dev)");
@@ -285,7 +367,7 @@ vtkStratusProjection::~vtkStratusProjection() = default;
 bool vtkStratusProjection::ToPlane(const double degrees[2], double at[2]) const
 {
 #ifdef STRATUS_PROJ
-  return this->Library->Convert(PJ_FWD, degrees, Degree, at, this->Rotated ? Degree : 1.0);
+  return this->Library->ToPlane(degrees, at);
 #else
   at[0] = at[1] = degrees[0] * std::nan("");
   return false;
@@ -295,7 +377,7 @@ bool vtkStratusProjection::ToPlane(const double degrees[2], double at[2]) const
 bool vtkStratusProjection::ToEarth(const double at[2], double degrees[2]) const
 {
 #ifdef STRATUS_PROJ
-  return this->Library->Convert(PJ_INV, at, this->Rotated ? Degree : 1.0, degrees, Degree);
+  return this->Library->ToEarth(at, degrees);
 #else
   degrees[0] = degrees[1] = at[0] * std::nan("");
   return false;

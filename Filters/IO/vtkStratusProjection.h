@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Map projections and rotated poles of CF's appendix F, by PROJ where the module is built with it. Private to the module.
+// Map projections and rotated poles of CF's appendix F, or of a coordinate reference system that the file has as text (WKT), by PROJ where
+// the module is built with it. Private to the module.
 #ifndef vtkStratusProjection_h
 #define vtkStratusProjection_h
 
@@ -14,7 +15,8 @@ public:
   using Variable = vtkStratusNetCDFModel::Variable;
 
   // Returns the variable of attributes that the attribute grid_mapping of a variable names. nullptr if there is none, or if it is one of
-  // longitudes and latitudes, which need no projection.
+  // longitudes and latitudes, which need no projection. Attributes are CF's parameters (grid_mapping_name and others), which count first,
+  // or one text: crs_wkt of CF, spatial_ref of GDAL, wkt or EPSG_code of Delft3D FM.
   static const Variable* FindMapping(const vtkStratusNetCDFModel& file, const Variable& variable);
   // Metres of a radian of the coordinates of a geostationary view, which are angles of the instrument; 0 for other mappings.
   static double MetresPerRadian(const vtkStratusNetCDFModel& file, const Variable& mapping);

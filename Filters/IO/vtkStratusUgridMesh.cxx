@@ -33,6 +33,7 @@ vtkStratusUgridMesh::vtkStratusUgridMesh(const vtkStratusNetCDFModel& file) : Fi
   if (!topology) {
     file.Fail("there is no mesh: no variable of cf_role mesh_topology and topology_dimension 2, and no 'nv' of FVCOM");
   }
+  this->Topology = topology;
   const bool fvcom = topology->Dimensions.size() == 2 && topology->BaseName() == "nv" && file.Text(*topology, "cf_role") != "mesh_topology";
   const auto named = [&](const std::string& name, const char* what) -> const Variable& {
     const Variable* one = name.empty() ? nullptr : file.Find(name, topology);
@@ -86,6 +87,24 @@ void vtkStratusUgridMesh::ReadNodes(const Variable& x, const Variable& y)
     this->Description = "degrees as metres at latitude " + vtkStratusNumberText(middle) + "; ";
   }
   this->Description += "nodes at '" + x.Name + "' and '" + y.Name + "'";
+}
+
+std::shared_ptr<vtkStratusProjection> vtkStratusUgridMesh::MakeProjection(const Variable& variable) const
+{
+  const Variable& x = *this->File.Find(this->XName);
+  const vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(x, "units"));
+  for (const Variable* one : { &variable, this->Topology, &x }) {
+    const Variable* mapping = unit.IsLength() ? vtkStratusProjection::FindMapping(this->File, *one) : nullptr;
+    if (mapping) {
+      auto projection = std::make_shared<vtkStratusProjection>(this->File, *mapping, unit.Scale);
+      if (projection->IsRotated()) {
+        this->File.Fail(
+          "'" + x.Name + "' is in '" + this->File.Text(x, "units") + "', the grid mapping " + projection->Describe() + " needs degrees");
+      }
+      return projection;
+    }
+  }
+  return nullptr;
 }
 
 // Fill values at the end of a face are left out. `first` is the number of the first node if the file has no start_index.
@@ -234,6 +253,19 @@ void vtkStratusUgridMesh::TurnFaces()
       std::reverse(first, end);
     }
   }
+}
+
+bool vtkStratusUgridMesh::IsPart(const Variable& variable) const
+{
+  constexpr const char* attributes[] = { "node_coordinates", "edge_coordinates", "face_coordinates", "face_node_connectivity",
+    "face_edge_connectivity", "face_face_connectivity", "edge_node_connectivity", "edge_face_connectivity", "boundary_node_connectivity" };
+  const auto names = [&](const char* attribute) {
+    const std::vector<std::string> words = vtkStratusWords(this->File.Text(*this->Topology, attribute));
+    return std::any_of(
+      words.begin(), words.end(), [&](const std::string& word) { return this->File.Find(word, this->Topology) == &variable; });
+  };
+  return variable.Name == this->XName || variable.Name == this->YName || variable.Name == this->Topology->Name ||
+    std::any_of(std::begin(attributes), std::end(attributes), names);
 }
 
 bool vtkStratusUgridMesh::Has(const Variable& variable, int dimension) const

@@ -4,9 +4,11 @@
 #define vtkStratusUgridMesh_h
 
 #include "vtkStratusNetCDFModel.h"
+#include "vtkStratusProjection.h"
 
 #include <array>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -51,11 +53,15 @@ public:
   const std::string& GetCoordinateName(int axis) const { return axis == 0 ? this->XName : this->YName; } // in the file
   void SetOnSphere() { this->Sphere = true; }                                                            // on which no face is torn
   bool IsInDegrees() const { return this->Degrees; }
+  // The projection of nodes whose x and y are lengths: the grid mapping that `variable`, the mesh or its coordinates name. nullptr if there
+  // is none. Throws vtkStratusReadError as vtkStratusProjection.
+  std::shared_ptr<vtkStratusProjection> MakeProjection(const Variable& variable) const;
   double GetFactor(int axis) const { return this->Factors[static_cast<size_t>(axis)]; } // from the file's x and y, or degrees, to metres
   bool IsInMetres() const { return this->Metres; }
   const std::string& Describe() const { return this->Description; }
 
-  bool IsCoordinate(const Variable& variable) const { return variable.Name == this->XName || variable.Name == this->YName; }
+  // Returns whether a variable is the mesh's own: a coordinate, or a table of corners, edges or neighbours.
+  bool IsPart(const Variable& variable) const;
   bool IsOnNodes(const Variable& variable) const { return this->Has(variable, this->NodeDimension); }
   bool IsOnFaces(const Variable& variable) const { return this->Has(variable, this->FaceDimension); }
   // The one dimension besides time, nodes, faces and dimensions that are selected or of length 1: -1 if there is none, -2 if there are
@@ -88,6 +94,7 @@ private:
   std::array<int, 2> Layers = { { -1, -1 } };
   size_t LayerCount = 0; // 0: unknown
   std::string XName, YName;
+  const Variable* Topology = nullptr;
   std::vector<double> X, Y;   // in the file's units or degrees until faces are read, then in metres if they can be
   std::vector<size_t> NodeOf; // the file's node of each node
   std::map<int, int> Copies;  // of nodes, a turn further east

@@ -29,7 +29,7 @@ bool IsValues(const vtkStratusUgridMesh& mesh, const vtkStratusUgridLayers& laye
 {
   const bool placed = mesh.IsOnNodes(one) != mesh.IsOnFaces(one); // what has both dimensions is a table of neighbours
   const bool layered = mesh.FindLayers(one) == -1 || layers.IsOnLayers(one) || layers.IsOnBorders(one);
-  return placed && layered && !mesh.IsCoordinate(one) && !layers.Uses(one) && one.HasNumbers();
+  return placed && layered && !mesh.IsPart(one) && !layers.Uses(one) && one.HasNumbers();
 }
 
 // The points of all borders of layers, in doubles, because coordinates of maps have seven digits before the point.
@@ -105,6 +105,23 @@ void AddCells(const vtkStratusUgridMesh& mesh, const std::vector<double>& z, con
   }
 }
 
+// Longitude and latitude of each node.
+std::vector<double> DegreesOf(const vtkStratusUgridMesh& mesh, const std::shared_ptr<vtkStratusProjection>& projection)
+{
+  std::vector<double> degrees(2 * mesh.GetNodes());
+  for (size_t node = 0; node < mesh.GetNodes(); ++node) {
+    const double at[2] = { mesh.GetX()[node], mesh.GetY()[node] };
+    if (!projection) {
+      degrees[2 * node] = at[0] / mesh.GetFactor(0);
+      degrees[2 * node + 1] = at[1] / mesh.GetFactor(1);
+    } else if (!projection->ToEarth(at, &degrees[2 * node])) {
+      mesh.GetFile().Fail("node " + std::to_string(node) + " at " + vtkStratusNumberText(at[0]) + ", " + vtkStratusNumberText(at[1]) +
+        " has no place on the Earth by the grid mapping " + projection->Describe());
+    }
+  }
+  return degrees;
+}
+
 // A value at a border of layers on a node, from those in the middle of the layers below and above it, by distance.
 double Between(const vtkStratusUgridValues& values, const vtkStratusUgridLayers& layers, const std::vector<double>& z, size_t nodes,
   size_t node, size_t border)
@@ -170,11 +187,21 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFModel& file
   }
   this->Description = mesh.Describe() + "; " + layers.Describe() + mesh.DescribeOthers(chosen) + file.DescribeValues(chosen);
   if (this->Coordinates == SPHERE) {
-    if (!mesh.IsInDegrees()) {
-      file.Fail("the mesh has no longitudes and latitudes, so that it has no place on a sphere");
+    const std::shared_ptr<vtkStratusProjection> projection = mesh.MakeProjection(chosen);
+    if (!mesh.IsInDegrees() && !projection) {
+      file.Fail("the mesh has no longitudes and latitudes, and no grid mapping that gives them, so that it has no place on a sphere");
     }
+    this->Description += projection ? "; longitudes and latitudes by the grid mapping " + projection->Describe() : "";
     this->Description += "; on a sphere of 6371 km";
     this->SetAxesOnSphere();
+  } else {
+    try {
+      const std::shared_ptr<vtkStratusProjection> projection = mesh.MakeProjection(chosen);
+      const auto place = [projection](const double degrees[2], double at[2]) { return projection->ToPlane(degrees, at); };
+      projection ? this->SetPlaceOnPlane(place, "") : this->SetPlaceOnPlane(nullptr, "");
+    } catch (const vtkStratusReadError& why) { // the mesh itself needs no projection
+      this->SetPlaceOnPlane(nullptr, why.Text);
+    }
   }
   const int time = mesh.FindTime(chosen) >= 0 ? mesh.FindTime(chosen) : layers.GetTime();
   if (time >= 0) {
@@ -202,10 +229,7 @@ void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFModel& file, size_t 
   grid->SetPoints(MakePoints(mesh, z));
   if (vtkDoubleArray* places = this->Coordinates == SPHERE ? vtkDoubleArray::SafeDownCast(grid->GetPoints()->GetData()) : nullptr) {
     this->UsedHeightFactor = this->HeightFactor > 0.0 ? this->HeightFactor : vtkStratusSphere::FactorOf(places, {});
-    std::vector<double> degrees(2 * mesh.GetNodes()); // which all levels have
-    for (size_t i = 0; i < degrees.size(); ++i) {
-      degrees[i] = places->GetComponent(static_cast<vtkIdType>(i / 2), static_cast<int>(i % 2)) / mesh.GetFactor(static_cast<int>(i % 2));
-    }
+    const std::vector<double> degrees = DegreesOf(mesh, mesh.MakeProjection(*file.Find(this->ChosenName()))); // which all levels have
     const size_t levels = static_cast<size_t>(places->GetNumberOfTuples()) / mesh.GetNodes();
     vtkStratusSphere::Place(nullptr, levels, degrees, places, this->UsedHeightFactor);
   }

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Grids on map projections and about another pole: published points of each projection land at their longitudes and latitudes on the sphere, and
 longitudes and latitudes at their places on the plane; columns of rotated grids are judged by NumPy. Mappings that are unknown or incomplete are
-refused with a reason."""
+refused with a reason. The same places by coordinate reference systems as text (WKT), and of the nodes of meshes."""
 import os
 
 import numpy
+from vtk.util.numpy_support import vtk_to_numpy
 
 from netcdf_reading import Read, check, finish, near, write
 
@@ -152,6 +153,97 @@ if has_proj:
     # a mapping of several, as CF-1.7 writes them
     path = projected("several", europe, numpy.linspace(0, 5, 6), numpy.linspace(0, 5, 6), "degrees", grid, grid_mapping="crs: x y")
     check(not on_sphere(path).error, "crs: x y")
+
+# Coordinate reference systems as text: the places above again, in WKT 1 and 2, in feet, bound to another datum, and about another pole.
+def wkt1(name, spheroid, projection, unit='"metre",1', meridian='"Greenwich",0', **parameters):
+    listed = "".join(f',PARAMETER["{key}",{value!r}]' for key, value in parameters.items())
+    return (f'PROJCS["{name}",GEOGCS["of {name}",DATUM["of {name}",SPHEROID[{spheroid}]],PRIMEM[{meridian}],UNIT["degree",0.0174532925199433]],'
+            f'PROJECTION["{projection}"]{listed},UNIT[{unit}]]')
+
+
+texas = wkt1("Texas", '"Clarke 1866",6378206.4,294.9786982138982', "Lambert_Conformal_Conic_2SP", '"US survey foot",0.3048006096012192',
+    standard_parallel_1=degrees(28, 23), standard_parallel_2=degrees(30, 17), latitude_of_origin=degrees(27, 50), central_meridian=-99,
+    false_easting=2000000, false_northing=0)
+grid_1936 = wkt1("British", '"Airy 1830",6377563.396,299.32496', "Transverse_Mercator", latitude_of_origin=49, central_meridian=-2,
+    scale_factor=0.9996012717, false_easting=400000, false_northing=-100000)
+europe_2 = """PROJCRS["LAEA Europe",BASEGEOGCRS["ETRS89",DATUM["European Terrestrial Reference System 1989",ELLIPSOID["GRS 1980",6378137,298.257222101]]],
+CONVERSION["Europe",METHOD["Lambert Azimuthal Equal Area"],PARAMETER["Latitude of natural origin",52,ANGLEUNIT["degree",0.0174532925199433]],
+PARAMETER["Longitude of natural origin",10,ANGLEUNIT["degree",0.0174532925199433]],PARAMETER["False easting",4321000,LENGTHUNIT["metre",1]],
+PARAMETER["False northing",3210000,LENGTHUNIT["metre",1]]],CS[Cartesian,2],AXIS["northing (Y)",north],AXIS["easting (X)",east],LENGTHUNIT["metre",1]]"""
+rotated_2 = """GEOGCRS["CORDEX",BASEGEOGCRS["sphere",DATUM["sphere",ELLIPSOID["sphere",6371000,0]]],DERIVINGCONVERSION["pole",METHOD["PROJ ob_tran o_proj=longlat"],
+PARAMETER["o_lat_p",39.25,ANGLEUNIT["degree",0.0174532925199433]],PARAMETER["o_lon_p",0,ANGLEUNIT["degree",0.0174532925199433]],
+PARAMETER["lon_0",18,ANGLEUNIT["degree",0.0174532925199433]]],CS[ellipsoidal,2],AXIS["longitude",east,ANGLEUNIT["degree",0.0174532925199433]],
+AXIS["latitude",north,ANGLEUNIT["degree",0.0174532925199433]]]"""
+vertical = '"height",VERT_DATUM["sea",2005],UNIT["metre",1]'
+texts = {"feet": (dict(crs_wkt=texas), "lambert_conformal_conic, 2 parallels"), "British": (dict(crs_wkt=grid_1936), "transverse_mercator"),
+    "Europe, northings first": (dict(crs_wkt=europe_2), "lambert_azimuthal_equal_area"),
+    "bound": (dict(crs_wkt=grid_1936.replace("]],PRIMEM", "],TOWGS84[446,-125,542,0.15,0.25,0.84,-20.5]],PRIMEM")), "transverse_mercator"),
+    "with heights": (dict(crs_wkt=f'COMPD_CS["both",{grid_1936},VERT_CS[{vertical}]]'), "transverse_mercator"),
+    "from Paris": (dict(crs_wkt=grid_1936.replace('"Greenwich",0', '"Paris",2.5').replace('"central_meridian",-2', '"central_meridian",-4.5')),
+                   "transverse_mercator"),
+    "GDAL's attribute": (dict(spatial_ref=europe_2), "lambert_azimuthal_equal_area"),
+    "Delft3D FM's attribute": (dict(wkt="", EPSG_code="EPSG:3035", grid_mapping_name="Unknown projected"), "lambert_azimuthal_equal_area"),
+    "PROJ's own text": (dict(crs_wkt="+proj=sinu +lon_0=-90 +R=1000000 +type=crs"), "sinusoidal"),
+    "beside an unknown name": (mapping("peirce_quincuncial", crs_wkt=grid_1936), "transverse_mercator"),
+    "behind parameters": (dict(known["sinusoidal"][0], crs_wkt=grid_1936), "sinusoidal")}
+for name, (attributes, same) in texts.items() if has_proj else ():
+    _, longitude, latitude, x, y, within = known[same]
+    path = projected("text " + name, attributes, x + numpy.array([0.0, 9000, 20000]), y + numpy.array([-7000.0, 0, 3000, 9000]))
+    got, flat, there = on_sphere(path), Read(path), [0.0, 0.0]
+    check(not got.error, f"{name}: {got.error}")
+    if not got.error:
+        off = numpy.linalg.norm(got.points[0, 1, 0] - place(longitude, latitude))
+        check(off < 1.5 * within + 0.01, f"{name}: {off} m from its place on the sphere")
+        check(flat.reader.FindPlace(longitude, latitude, there) and abs(there[0] - x) < within and abs(there[1] - y) < within,
+              f"{name}: {there} instead of {x}, {y}")
+if has_proj:
+    check("'crs' (LAEA Europe)" in on_sphere(projected("named", dict(crs_wkt=europe_2), numpy.arange(3.0), numpy.arange(3.0))).description, "its name")
+    path = projected("text rotated", dict(crs_wkt=rotated_2), numpy.linspace(-28, 18, 8), numpy.linspace(-23, 21, 6), "degrees", grid)
+    lon, lat = turned(*numpy.meshgrid(numpy.linspace(-28, 18, 8), numpy.linspace(-23, 21, 6)), -162, 39.25)
+    got = on_sphere(path)
+    check(not got.error and near(got.points[0], place(lon, lat), 1e-9), f"a pole by WKT {got.error}")
+    for name, text, words in (("no text", "nonsense", "'nonsense': "), ("no map", europe_2[europe_2.index("BASEGEOGCRS"):europe_2.index(",\nCONV")].replace(
+            "BASEGEOGCRS", "GEOGCRS").replace("298.257222101]]]", '298.257222101]],CS[ellipsoidal,2],AXIS["lat",north],AXIS["lon",east],'
+            'ANGLEUNIT["degree",0.0174532925199433]]'), "...': it is no map projection of the Earth")):
+        path = projected(name, dict(crs_wkt=text), numpy.arange(3.0), numpy.arange(3.0))
+        got, flat = on_sphere(path), Read(path)
+        check("PROJ finds no projection in the text of the grid mapping 'crs'" in got.error and words in got.error, f"{name}: {got.error}")
+        check(not flat.error and words in flat.reader.GetReasonWithoutPlaces(), f"{name}: the plane is read")
+
+# Meshes of UGRID whose nodes are on a plane: the mapping is named by the variable, by the mesh, or by the coordinates of nodes.
+attributes, longitude, latitude, x, y, within = known["lambert_azimuthal_equal_area"]
+for name, owner, crs, units in (("by the variable", "q", attributes, "m"), ("by the mesh", "mesh", attributes, "m"), ("by coordinates", "x", attributes, "m"),
+    ("by WKT", "q", dict(crs_wkt=europe_2), "m"), ("in kilometres", "q", {**attributes, "false_easting": 4321.0, "false_northing": 3210.0}, "km"),
+    ("none", "", attributes, "m")):
+    scale = 1000.0 if units == "km" else 1.0
+    of = {one: {"grid_mapping": "crs"} if one == owner else {} for one in ("q", "mesh", "x")}
+    path = write("mesh " + name, {"node": 4, "face": 2, "corner": 3, "layer": 2},
+        mesh=("", numpy.int32(0), {"cf_role": "mesh_topology", "topology_dimension": numpy.int32(2), "node_coordinates": "x y",
+                                   "face_node_connectivity": "faces", **of["mesh"]}),
+        x=("node", (x + numpy.array([0.0, 9000, 0, 9000])) / scale, {"units": units, "standard_name": "projection_x_coordinate", **of["x"]}),
+        y=("node", (y + numpy.array([0.0, 0, 8000, 8000])) / scale, {"units": units, "standard_name": "projection_y_coordinate"}),
+        faces=("face corner", numpy.array([[0, 1, 2], [1, 3, 2]], "i4"), {"start_index": numpy.int32(0)}), crs=("", numpy.int32(0), crs),
+        layer=("layer", numpy.array([500.0, 1500.0]), {"units": "m", "positive": "up", "axis": "Z"}),
+        q=("layer face", numpy.arange(4, dtype="f4").reshape(2, 2), {"mesh": "mesh", "location": "face", **of["q"]}))
+    flat, there = Read(path, cls="vtkStratusUgridReader"), [0.0, 0.0]
+    check(flat.reader.GetNumberOfVariables() == 1, f"corners of faces are no values on the borders of layers: {flat.reader.GetNumberOfVariables()}")
+    check(not flat.error and near(vtk_to_numpy(flat.data.GetPoints().GetData())[0], [x, y, 0], 1e-9), f"mesh {name}: the plane is the file's own")
+
+    def prepare(reader):
+        reader.SetCoordinatesToSphere()
+        reader.SetHeightFactor(1)
+
+    got = Read(path, cls="vtkStratusUgridReader", prepare=prepare)
+    if not owner:
+        check("no longitudes and latitudes, and no grid mapping that gives them" in got.error and not flat.reader.HasPlaces(), f"mesh: {got.error}")
+    elif not has_proj:
+        check("need PROJ, which this build lacks" in got.error and "need PROJ" in flat.reader.GetReasonWithoutPlaces(), f"mesh {name}: {got.error}")
+    else:
+        check(not got.error, f"mesh {name}: {got.error}")
+        off = numpy.linalg.norm(vtk_to_numpy(got.data.GetPoints().GetData())[0] - place(longitude, latitude))
+        check(off < 0.05 and "by the grid mapping 'crs' (" in got.description, f"mesh {name}: {off} m from its place, {got.description}")
+        check(flat.reader.FindPlace(longitude, latitude, there) and abs(there[0] - x) < within and abs(there[1] - y) < within,
+              f"mesh {name}: {there} on the plane")
 
 # Longitudes and latitudes of two dimensions serve without PROJ, whatever the axes are, and whether or not there is a mapping.
 rlon, rlat = numpy.linspace(-5, 5, 6), numpy.linspace(0, 4, 5)
