@@ -83,7 +83,7 @@ stratus_status stratus_ray_fetched_update(stratus_ray_field* field, size_t rays)
   /* traversal applies one bias, but each component has its own, and gradients have none */
   const bool must = apart || (components > 1 && stratus_type_is_wide(volume->type));
   field->traversed = *volume;
-  for (int c = 0; c < components; ++c) {
+  for (int c = 0; c < components && volume->tiles.values; ++c) {
     field->tiles[c] = volume->tiles;
     field->tiles[c].values = (const char*)volume->tiles.values + (size_t)c * stratus_type_size(volume->type);
   }
