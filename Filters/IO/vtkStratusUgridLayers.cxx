@@ -23,7 +23,7 @@ bool EndsWith(const std::string& text, const std::string& end)
 vtkStratusUgridLayers::vtkStratusUgridLayers(const vtkStratusUgridMesh& mesh) : Mesh(mesh), File(mesh.GetFile())
 {
   this->FindHeights();
-  if (this->Kind == Flat && !this->FindSigma()) {
+  if (this->Kind == Flat && !this->FindThicknesses() && !this->FindSigma()) {
     this->FindLevels();
   }
   this->FindSurfaces();
@@ -46,10 +46,15 @@ void vtkStratusUgridLayers::FindOrder()
   if (!this->Source) {
     return;
   }
+  if (this->Kind == Thicknesses) {
+    this->TopFirst = true;
+    return;
+  }
   const vtkStratusUgridValues values = this->Mesh.Read(*this->Source, 0);
   const size_t last = this->OfBorders ? this->Count : this->Count - 1;
-  for (size_t node = 0; node < (values.Across > 0 ? this->Mesh.GetNodes() : 1); ++node) {
-    const double difference = this->ToHeight(values.At(node, 0)) - this->ToHeight(values.At(node, last));
+  const size_t places = this->Mesh.IsOnFaces(*this->Source) ? this->Mesh.GetFaces() : this->Mesh.GetNodes();
+  for (size_t place = 0; place < (values.Across > 0 ? places : 1); ++place) {
+    const double difference = this->ToHeight(values.At(place, 0)) - this->ToHeight(values.At(place, last));
     if (std::isfinite(difference) && difference != 0.0) {
       this->TopFirst = difference > 0.0;
       return;
@@ -71,23 +76,6 @@ double vtkStratusUgridLayers::ToHeight(double level) const
     return this->Unit.Scale == 10000.0 ? vtkStratusHeightInSea(value) : vtkStratusHeightOfPressure(value);
   }
   return this->Down ? -value : value;
-}
-
-// The heights of the layers' borders, node by node.
-void vtkStratusUgridLayers::FindHeights()
-{
-  for (const Variable& one : this->File.GetVariables()) {
-    const std::string name = this->File.Text(one, "standard_name");
-    const int layers = this->Mesh.FindLayers(one);
-    const bool named = IsOneOf(one.BaseName(), { "zCoordinates", "zcor", "z_coordinates" }) || IsOneOf(name, { "altitude", "height" });
-    if (named && this->Mesh.IsOnNodes(one) && layers >= 0) {
-      this->Kind = Heights;
-      this->Source = &one;
-      this->Unit = vtkStratusUnitOf(this->File.Text(one, "units"));
-      this->TakeCount(one, layers, true);
-      return;
-    }
-  }
 }
 
 void vtkStratusUgridLayers::TakeCount(const Variable& variable, int dimension, bool borders)
@@ -161,7 +149,8 @@ bool vtkStratusUgridLayers::FindLevels()
     const Variable* own = this->File.CoordinateOf(dimension);
     const Variable* found = own && this->IsLevels(*own) ? own : nullptr;
     for (const Variable& one : this->File.GetVariables()) {
-      found = found ? found : this->IsLevels(one) && one.Dimensions[0] == dimension ? &one : nullptr;
+      const bool fits = this->IsLevels(one) && one.Dimensions[0] == dimension;
+      found = fits && (!found || one.BaseName() == "refBottomDepth") ? &one : found;
     }
     return found;
   };
@@ -191,14 +180,21 @@ bool vtkStratusUgridLayers::FindLevels()
   }
   const std::string units = this->File.Text(*this->Source, "units");
   this->Unit = vtkStratusUnitOf(units);
-  if (!units.empty() && !this->Unit.IsLength() && !this->Unit.IsPressure()) {
+  this->Numbers = this->File.Text(*this->Source, "long_name") == "generalized_height" && !this->Unit.IsLength() && !this->Unit.IsPressure();
+  if (!units.empty() && !this->Numbers && !this->Unit.IsLength() && !this->Unit.IsPressure()) {
     this->File.Fail(
       "the layers' coordinate '" + this->Source->Name + "' has the unit '" + units + "', it must be one of length or pressure");
   }
-  this->Down = !this->Unit.IsPressure() && vtkStratusIsDown(this->File, *this->Source);
+  const bool of_bottoms = this->Source->BaseName() == "refBottomDepth"; // MPAS' depths of the lower borders
+  this->Down = this->Numbers || of_bottoms || (!this->Unit.IsPressure() && vtkStratusIsDown(this->File, *this->Source));
   this->Stretched = EndsWith(this->Source->BaseName(), "_layer_z") || EndsWith(this->Source->BaseName(), "_interface_z");
   const std::string bounds = this->File.Text(*this->Source, "bounds");
-  if (!borders && !bounds.empty()) {
+  if (of_bottoms) {
+    this->Fixed = this->File.ReadComplete(*this->Source, "depths");
+    std::transform(this->Fixed.begin(), this->Fixed.end(), this->Fixed.begin(), [this](double one) { return this->ToHeight(one); });
+    std::reverse(this->Fixed.begin(), this->Fixed.end());
+    this->Fixed.push_back(0.0);
+  } else if (!borders && !bounds.empty()) {
     this->ReadBounds(bounds);
   }
   return true;
@@ -267,7 +263,7 @@ void vtkStratusUgridLayers::FindSurfaces()
       this->Surface = &one;
     }
     if (!this->Bed &&
-      (name.compare(0, 15, "sea_floor_depth") == 0 || IsOneOf(one.BaseName(), { "h", "depth", "bathymetry", "dv" }) ||
+      (name.compare(0, 15, "sea_floor_depth") == 0 || IsOneOf(one.BaseName(), { "h", "depth", "bathymetry", "dv", "bottomDepth" }) ||
         EndsWith(one.BaseName(), "_flowelem_bl") || EndsWith(one.BaseName(), "_node_z"))) {
       this->Bed = &one;
     }
@@ -298,7 +294,7 @@ bool vtkStratusUgridLayers::IsOnBorders(const Variable& variable) const
 
 bool vtkStratusUgridLayers::Uses(const Variable& variable) const
 {
-  return &variable == this->Source || &variable == this->Wet;
+  return &variable == this->Source || &variable == this->Wet || &variable == this->Lowest;
 }
 
 std::string vtkStratusUgridLayers::Describe() const
@@ -306,9 +302,11 @@ std::string vtkStratusUgridLayers::Describe() const
   std::string text = std::to_string(this->Count) + (this->Count == 1 ? " layer" : " layers");
   if (this->Source) {
     text += std::string(" by ") +
-      (this->Kind == Heights    ? "heights"
-          : this->Kind == Sigma ? "sigma"
-                                : "levels") +
+      (this->Kind == Heights          ? "heights"
+          : this->Kind == Thicknesses ? "thicknesses"
+          : this->Kind == Sigma       ? "sigma"
+          : this->Numbers             ? "numbers"
+                                      : "levels") +
       " '" + this->Source->Name + "'" + (!this->Fixed.empty() ? " and its bounds" : "") + (this->Down ? ", downwards" : "");
   }
   text += this->Surface ? ", free surface '" + this->Surface->Name + "'" : "";
@@ -373,26 +371,6 @@ std::vector<double> vtkStratusUgridLayers::BordersOf(const vtkStratusUgridValues
   return borders;
 }
 
-// Missing heights below the lowest layer of a node are set to the lowest border that has a height.
-void vtkStratusUgridLayers::ReadHeights(size_t step, std::vector<double>& z) const
-{
-  const vtkStratusUgridValues values = this->Mesh.Read(*this->Source, step);
-  const size_t nodes = this->Mesh.GetNodes(), borders = this->Count + 1;
-  const bool top_first = this->TopFirst;
-  for (size_t node = 0; node < nodes; ++node) {
-    double last = NAN;
-    for (size_t b = borders; b-- > 0;) {
-      double height = this->ToHeight(values.At(node, top_first ? borders - 1 - b : b));
-      height = std::isfinite(height) ? height : last;
-      if (std::isfinite(last) && height > last) {
-        this->File.Fail("layers are upside down: '" + this->Source->Name + "' has " + vtkStratusNumberText(height) + " under " +
-          vtkStratusNumberText(last) + " at node " + std::to_string(node));
-      }
-      z[b * nodes + node] = last = height;
-    }
-  }
-}
-
 void vtkStratusUgridLayers::ReadLevels(size_t step, std::vector<double>& z, std::vector<char>& none) const
 {
   const size_t nodes = this->Mesh.GetNodes();
@@ -433,7 +411,7 @@ void vtkStratusUgridLayers::FindDry(size_t step, const std::vector<char>& none, 
     int corners = 0;
     const int* nodes = this->Mesh.GetFace(face, corners);
     const bool all_wet = std::none_of(nodes, nodes + corners, [&none](int node) { return none[static_cast<size_t>(node)] != 0; });
-    dry[face] = !all_wet || this->Mesh.IsTorn(face) || (wet.Values && (wet.At(face, 0) == 1.0) != this->WetIsOne) ||
+    dry[face] = !all_wet || this->Mesh.IsAbsent(face) || (wet.Values && (wet.At(face, 0) == 1.0) != this->WetIsOne) ||
       (own && !std::isfinite(surface.At(face, 0)));
   }
 }
@@ -444,7 +422,9 @@ void vtkStratusUgridLayers::Read(size_t step, std::vector<double>& z, std::vecto
   z.assign(nodes * (this->Count + 1), 0.0);
   dry.assign(this->Mesh.GetFaces(), 0);
   std::vector<char> none(nodes, 0);
-  if (this->Kind == Heights) {
+  if (this->Kind == Thicknesses) {
+    this->ReadThicknesses(step, z, none);
+  } else if (this->Kind == Heights) {
     this->ReadHeights(step, z);
     for (size_t node = 0; node < nodes; ++node) {
       none[node] = std::isfinite(z[node]) ? 0 : 1;

@@ -25,7 +25,12 @@ public:
   bool IsOnBorders(const Variable& variable) const;
   int GetTime() const { return this->Time; } // a dimension, or -1
   // True if heights are a depth's, below 0.
-  bool IsDepth() const { return this->Kind == Sigma || (this->Kind == Levels && this->Down && this->Unit.IsLength()); }
+  bool IsDepth() const
+  {
+    return this->Kind == Sigma || this->Kind == Thicknesses || (this->Kind == Levels && this->Down && this->Unit.IsLength());
+  }
+  // True if heights are numbers of layers, because the file has no others.
+  bool IsNumbers() const { return this->Numbers; }
   std::string Describe() const;
   bool Uses(const Variable& variable) const; // as a height
 
@@ -33,9 +38,14 @@ public:
   void Read(size_t step, std::vector<double>& z, std::vector<char>& dry) const;
 
 private:
-  enum KindType { Flat, Heights, Sigma, Levels };
+  enum KindType { Flat, Heights, Thicknesses, Sigma, Levels };
 
+  // In vtkStratusUgridHeights.cxx:
   void FindHeights();
+  bool FindThicknesses();
+  void ReadHeights(size_t step, std::vector<double>& z) const;
+  void ReadThicknesses(size_t step, std::vector<double>& z, std::vector<char>& none) const;
+
   void FindOrder();
   double ToHeight(double level) const;
   bool FindTerm(const char* term, const Variable*& found) const;
@@ -48,7 +58,6 @@ private:
   void TakeCount(const Variable& variable, int dimension, bool borders);
   std::vector<double> Bottom(size_t step, const std::vector<double>& surface) const;
   std::vector<double> BordersOf(const vtkStratusUgridValues& levels, size_t node) const;
-  void ReadHeights(size_t step, std::vector<double>& z) const;
   void ReadLevels(size_t step, std::vector<double>& z, std::vector<char>& none) const;
   void FindDry(size_t step, const std::vector<char>& none, std::vector<char>& dry) const;
 
@@ -59,11 +68,13 @@ private:
   int LayerDimension = -1, BorderDimension = -1;
   bool TopFirst = false;
   bool OfBorders = false;           // Levels are at borders
-  const Variable* Source = nullptr; // heights, sigma or levels
+  const Variable* Source = nullptr; // heights, thicknesses, sigma or levels
+  const Variable* Lowest = nullptr; // of thicknesses: the number of a node's lowest layer, nullptr: all have thickness
   vtkStratusUnit Unit;              // of heights or levels
   bool Down = false;                // levels count downwards
-  bool Stretched = false;           // the lowest layer reaches to the bottom
-  std::vector<double> Fixed;        // borders by bounds, from the bottom up; empty: there are no bounds
+  bool Numbers = false;
+  bool Stretched = false;    // the lowest layer reaches to the bottom
+  std::vector<double> Fixed; // borders by bounds, from the bottom up; empty: there are no bounds
   const Variable* Surface = nullptr;
   const Variable* Bed = nullptr;
   enum BedType { Altitude, Depth, WaterDepth } BedMeans = Depth;

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusUgridMesh.h"
 
-#include "vtkStratusLongitudes.h"
 #include "vtkStratusSphere.h"
 #include "vtkStratusUnits.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
 namespace {
 constexpr size_t MostCorners = 64; // of a face; a shorter dimension of a connectivity counts corners
@@ -24,42 +22,53 @@ const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindTopology(const vtk
     }
     found = one.BaseName() == "nv" && one.Dimensions.size() == 2 ? &one : found;
   }
-  return found;
+  found = found ? found : FindMpas(file);
+  return found ? found : FindCells(file);
 }
 
-vtkStratusUgridMesh::vtkStratusUgridMesh(const vtkStratusNetCDFModel& file) : File(file)
+vtkStratusUgridMesh::vtkStratusUgridMesh(const vtkStratusNetCDFModel& file, bool on_sphere) : File(file), Sphere(on_sphere)
 {
-  const Variable* topology = FindTopology(file);
-  if (!topology) {
-    file.Fail("there is no mesh: no variable of cf_role mesh_topology and topology_dimension 2, and no 'nv' of FVCOM");
+  this->Topology = FindTopology(file);
+  if (!this->Topology) {
+    file.Fail(
+      "there is no mesh: no variable of cf_role mesh_topology and topology_dimension 2, no 'nv' of FVCOM, no 'cellsOnVertex' of MPAS, "
+      "and no longitudes and latitudes with bounds of three or more corners");
   }
-  this->Topology = topology;
-  const bool fvcom = topology->Dimensions.size() == 2 && topology->BaseName() == "nv" && file.Text(*topology, "cf_role") != "mesh_topology";
-  const auto named = [&](const std::string& name, const char* what) -> const Variable& {
-    const Variable* one = name.empty() ? nullptr : file.Find(name, topology);
-    if (!one) {
-      file.Fail("the mesh '" + topology->Name + "' has no " + what + (name.empty() ? "" : ": there is no variable '" + name + "'"));
-    }
-    return *one;
-  };
-  if (fvcom) {
-    const Variable* x = file.Find("x", topology);
+  const Variable& topology = *this->Topology;
+  if (file.Text(topology, "cf_role") == "mesh_topology") {
+    const std::vector<std::string> coordinates = vtkStratusWords(file.Text(topology, "node_coordinates"));
+    const Variable& first = this->Named(coordinates.size() > 1 ? coordinates[0] : "", "node_coordinates of two variables");
+    const Variable& second = this->Named(coordinates[1], "node_coordinates of two variables");
+    const std::string name = file.Text(first, "standard_name");
+    const bool turned = name == "latitude" || name == "projection_y_coordinate";
+    this->ReadNodes(turned ? second : first, turned ? first : second, "");
+    this->ReadFaces(this->Named(file.Text(topology, "face_node_connectivity"), "face_node_connectivity"), 0);
+  } else if (topology.BaseName() == "nv") {
+    const Variable* x = file.Find("x", &topology);
     const std::vector<double> own = x && x->Dimensions.size() == 1 ? file.ReadComplete(*x, "coordinate") : std::vector<double>();
     const bool plane = std::any_of(own.begin(), own.end(), [](double one) { return one != 0.0; }); // FVCOM writes zeros on a sphere
-    this->ReadNodes(named(plane ? "x" : "lon", "coordinates"), named(plane ? "y" : "lat", "coordinates"));
-    this->ReadFaces(*topology, 1);
-    return;
+    this->ReadNodes(this->Named(plane ? "x" : "lon", "coordinates"), this->Named(plane ? "y" : "lat", "coordinates"), "");
+    this->ReadFaces(topology, 1);
+  } else if (FindMpas(file) == this->Topology) {
+    this->ReadMpas();
+  } else {
+    this->ReadCells();
   }
-  const std::vector<std::string> coordinates = vtkStratusWords(file.Text(*topology, "node_coordinates"));
-  const Variable& first = named(coordinates.size() > 1 ? coordinates[0] : "", "node_coordinates of two variables");
-  const Variable& second = named(coordinates[1], "node_coordinates of two variables");
-  const std::string name = file.Text(first, "standard_name");
-  const bool turned = name == "latitude" || name == "projection_y_coordinate";
-  this->ReadNodes(turned ? second : first, turned ? first : second);
-  this->ReadFaces(named(file.Text(*topology, "face_node_connectivity"), "face_node_connectivity"), 0);
+  this->Finish();
 }
 
-void vtkStratusUgridMesh::ReadNodes(const Variable& x, const Variable& y)
+const vtkStratusUgridMesh::Variable& vtkStratusUgridMesh::Named(const std::string& name, const char* what) const
+{
+  const Variable* one = name.empty() ? nullptr : this->File.Find(name, this->Topology);
+  if (!one) {
+    this->File.Fail(
+      "the mesh '" + this->Topology->Name + "' has no " + what + (name.empty() ? "" : ": there is no variable '" + name + "'"));
+  }
+  return *one;
+}
+
+// usual_unit: of coordinates that have none
+void vtkStratusUgridMesh::ReadNodes(const Variable& x, const Variable& y, const char* usual_unit)
 {
   if (x.Dimensions.size() != 1 || y.Dimensions != x.Dimensions) {
     this->File.Fail("the nodes' coordinates '" + x.Name + "' and '" + y.Name + "' must have one and the same dimension");
@@ -72,21 +81,29 @@ void vtkStratusUgridMesh::ReadNodes(const Variable& x, const Variable& y)
   if (this->X.empty()) {
     this->File.Fail("the mesh has no nodes");
   }
-  const vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(x, "units"));
+  vtkStratusUnit unit = vtkStratusUnitOf(this->File.Text(x, "units"));
+  unit = unit.IsLength() || unit.IsAngle() ? unit : vtkStratusUnitOf(usual_unit);
   this->Metres = unit.IsLength() || unit.IsAngle();
   this->Degrees = unit.IsAngle();
   for (std::vector<double>* at : { &this->X, &this->Y }) {
     std::transform(at->begin(), at->end(), at->begin(), [&unit](double one) { return unit.Convert(one); });
   }
-  this->NodeOf.resize(this->X.size());
-  std::iota(this->NodeOf.begin(), this->NodeOf.end(), size_t{ 0 });
+  this->DescribeNodes("nodes at '" + x.Name + "' and '" + y.Name + "'");
+}
+
+// Says what nodes are, and how degrees become metres.
+void vtkStratusUgridMesh::DescribeNodes(const std::string& what)
+{
+  for (size_t node = 0; node < this->X.size(); ++node) {
+    this->NodeOf.push_back({ node, node, 1.0 });
+  }
   if (this->Degrees) {
     const auto ends = std::minmax_element(this->Y.begin(), this->Y.end());
     const double degree = std::acos(-1.0) / 180.0, middle = 0.5 * (*ends.first + *ends.second);
     this->Factors = { { vtkStratusSphere::EarthRadius * degree * std::cos(middle * degree), vtkStratusSphere::EarthRadius * degree } };
-    this->Description = "degrees as metres at latitude " + vtkStratusNumberText(middle) + "; ";
+    this->Description = this->Sphere ? "" : "degrees as metres at latitude " + vtkStratusNumberText(middle) + "; ";
   }
-  this->Description += "nodes at '" + x.Name + "' and '" + y.Name + "'";
+  this->Description += what;
 }
 
 std::shared_ptr<vtkStratusProjection> vtkStratusUgridMesh::MakeProjection(const Variable& variable) const
@@ -119,7 +136,7 @@ void vtkStratusUgridMesh::ReadFaces(const Variable& connectivity, int first)
   const size_t faces = lengths[turned ? 1 : 0], corners = lengths[turned ? 0 : 1];
   this->FaceDimension = connectivity.Dimensions[turned ? 1 : 0];
   for (int dimension : { this->NodeDimension, this->FaceDimension }) {
-    if (this->File.IsSelected(dimension)) {
+    if (dimension >= 0 && this->File.IsSelected(dimension)) {
       this->File.Fail("'" + this->File.NameOf(dimension) + "' is the dimension of the mesh's " +
         (dimension == this->NodeDimension ? "nodes" : "faces") + ", which cannot be selected");
     }
@@ -149,10 +166,22 @@ void vtkStratusUgridMesh::ReadFaces(const Variable& connectivity, int first)
     if (face.size() < 3) {
       this->File.Fail("face " + std::to_string(f) + " has " + std::to_string(face.size()) + " nodes, at least 3 are needed");
     }
-    this->Corners.insert(this->Corners.end(), face.begin(), face.end());
-    this->Offsets.push_back(this->Corners.size());
+    this->AddFace(face);
   }
-  if (this->Degrees) {
+}
+
+void vtkStratusUgridMesh::AddFace(const std::vector<int>& face)
+{
+  this->Corners.insert(this->Corners.end(), face.begin(), face.end());
+  this->Offsets.push_back(this->Corners.size());
+  const size_t number = this->FaceOf.size();
+  this->FaceOf.push_back({ number, number, 1.0 });
+}
+
+// Turns degrees into metres and faces counterclockwise, once all nodes and faces are there.
+void vtkStratusUgridMesh::Finish()
+{
+  if (this->Degrees && !this->Sphere) {
     this->JoinLongitudes();
   }
   for (size_t node = 0; node < this->X.size(); ++node) {
@@ -160,99 +189,6 @@ void vtkStratusUgridMesh::ReadFaces(const Variable& connectivity, int first)
     this->Y[node] *= this->Factors[1];
   }
   this->TurnFaces();
-}
-
-// Makes longitudes continuous over a mesh that spans less than the Earth. Around the Earth they stay as they are, and faces across the
-// meridian where they jump get copies of nodes.
-void vtkStratusUgridMesh::JoinLongitudes()
-{
-  const auto edges = [this](const std::function<void(size_t, size_t)>& call) {
-    for (size_t face = 0; face < this->GetFaces(); ++face) {
-      for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1]; ++c) {
-        const size_t next = c + 1 < this->Offsets[face + 1] ? c + 1 : this->Offsets[face];
-        call(static_cast<size_t>(this->Corners[c]), static_cast<size_t>(this->Corners[next]));
-      }
-    }
-  };
-  const auto jumps = [&edges](const std::vector<double>& longitudes) {
-    bool any = false;
-    edges([&](size_t a, size_t b) { any = any || std::fabs(longitudes[a] - longitudes[b]) > 180.0; });
-    return any;
-  };
-  if (!jumps(this->X)) {
-    return;
-  }
-  std::vector<double> continuous = this->X;
-  vtkStratusLongitudes::Unwrap(continuous, edges);
-  if (!jumps(continuous)) {
-    this->X = continuous;
-    this->Description += ", longitudes made continuous where they jump";
-    return;
-  }
-  this->Torn.assign(this->GetFaces(), 0);
-  for (size_t face = 0; face < this->GetFaces(); ++face) {
-    this->Torn[face] = std::fabs(this->TurnsAround(face)) > 0.5 ? 1 : 0;
-    if (!this->Torn[face]) {
-      this->CopyNodes(face);
-    }
-  }
-  this->Description += ", copies of nodes where longitudes jump";
-}
-
-// The turns that longitudes make around a face: 0, or 1 or -1 if the pole is in it.
-double vtkStratusUgridMesh::TurnsAround(size_t face) const
-{
-  double turns = 0.0;
-  for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1]; ++c) {
-    const size_t next = c + 1 < this->Offsets[face + 1] ? c + 1 : this->Offsets[face];
-    const double part = (this->X[static_cast<size_t>(this->Corners[next])] - this->X[static_cast<size_t>(this->Corners[c])]) / 360.0;
-    turns += part - std::round(part);
-  }
-  return turns;
-}
-
-// Puts copies into a face, a turn further east, of the nodes that are more than half a turn west of its easternmost one.
-void vtkStratusUgridMesh::CopyNodes(size_t face)
-{
-  double low = INFINITY, high = -INFINITY;
-  const auto longitude = [this](size_t c) { return this->X[static_cast<size_t>(this->Corners[c])]; };
-  for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1]; ++c) {
-    low = std::min(low, longitude(c));
-    high = std::max(high, longitude(c));
-  }
-  if (high - low <= 180.0) {
-    return;
-  }
-  for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1]; ++c) {
-    if (high - longitude(c) > 180.0) {
-      const int node = this->Corners[c];
-      const auto added = this->Copies.insert({ node, static_cast<int>(this->X.size()) });
-      if (added.second) {
-        this->X.push_back(this->X[static_cast<size_t>(node)] + 360.0);
-        this->Y.push_back(this->Y[static_cast<size_t>(node)]);
-        this->NodeOf.push_back(static_cast<size_t>(node));
-      }
-      this->Corners[c] = added.first->second;
-    }
-  }
-}
-
-// Turns faces so that their corners are counterclockwise.
-void vtkStratusUgridMesh::TurnFaces()
-{
-  for (size_t face = 0; face < this->GetFaces(); ++face) {
-    const auto first = this->Corners.begin() + static_cast<std::ptrdiff_t>(this->Offsets[face]),
-               end = this->Corners.begin() + static_cast<std::ptrdiff_t>(this->Offsets[face + 1]);
-    const double x0 = this->X[static_cast<size_t>(*first)], y0 = this->Y[static_cast<size_t>(*first)];
-    double area = 0.0;
-    for (auto corner = first + 1; corner + 1 < end; ++corner) {
-      const auto a = static_cast<size_t>(corner[0]), b = static_cast<size_t>(corner[1]);
-      area += (this->X[a] - x0) * (this->Y[b] - y0) - (this->X[b] - x0) * (this->Y[a] - y0);
-    }
-    if (area < 0.0) {
-      std::reverse(first, end);
-    }
-  }
 }
 
 bool vtkStratusUgridMesh::IsPart(const Variable& variable) const
@@ -264,13 +200,23 @@ bool vtkStratusUgridMesh::IsPart(const Variable& variable) const
     return std::any_of(
       words.begin(), words.end(), [&](const std::string& word) { return this->File.Find(word, this->Topology) == &variable; });
   };
+  // MPAS' tables have dimensions of corners and edges, and its cells' own numbers one dimension.
+  const auto of_corners = [this](int dimension) {
+    const std::string name = this->File.NameOf(dimension);
+    return name == "maxEdges" || name == "maxEdges2" || name == "vertexDegree" || name == "TWO" || name == "THREE" || name == "R3";
+  };
+  if (this->Mpas &&
+    (variable.Dimensions.size() < 2 ? !variable.Dimensions.empty() && this->IsPlace(variable.Dimensions[0])
+                                    : std::any_of(variable.Dimensions.begin(), variable.Dimensions.end(), of_corners))) {
+    return variable.BaseName() != "bottomDepth" && variable.BaseName() != "ter";
+  }
   return variable.Name == this->XName || variable.Name == this->YName || variable.Name == this->Topology->Name ||
     std::any_of(std::begin(attributes), std::end(attributes), names);
 }
 
 bool vtkStratusUgridMesh::Has(const Variable& variable, int dimension) const
 {
-  return std::find(variable.Dimensions.begin(), variable.Dimensions.end(), dimension) != variable.Dimensions.end();
+  return dimension >= 0 && std::find(variable.Dimensions.begin(), variable.Dimensions.end(), dimension) != variable.Dimensions.end();
 }
 
 // The dimensions besides time, nodes and faces that have several values, or none.
@@ -352,32 +298,43 @@ vtkStratusUgridValues vtkStratusUgridMesh::Read(const Variable& variable, size_t
     }
     stride *= count[i];
   }
-  result.Nodes = this->IsOnNodes(variable) && this->NodeOf.size() > this->File.LengthOf(this->NodeDimension) ? &this->NodeOf : nullptr;
+  const bool nodes = this->IsOnNodes(variable), more_nodes = nodes && this->NodeOf.size() > this->File.LengthOf(this->NodeDimension),
+             more_faces = !nodes && this->IsOnFaces(variable) && this->FaceOf.size() > this->File.LengthOf(this->FaceDimension);
+  result.Places = more_nodes ? &this->NodeOf : more_faces ? &this->FaceOf : nullptr;
   result.Values = this->File.Read(variable, start, count);
   return result;
 }
 
 std::vector<double> vtkStratusUgridMesh::ReadAtNodes(const Variable& variable, size_t step) const
 {
-  const vtkStratusUgridValues values = this->Read(variable, step);
+  return this->ToNodes(this->Read(variable, step), this->IsOnFaces(variable), 0);
+}
+
+std::vector<double> vtkStratusUgridMesh::ToNodes(const vtkStratusUgridValues& values, bool on_faces, size_t layer) const
+{
   std::vector<double> result(this->GetNodes(), 0.0);
-  if (!this->IsOnFaces(variable)) {
+  if (!on_faces) {
     for (size_t node = 0; node < result.size(); ++node) {
-      result[node] = values.At(node, 0);
+      result[node] = values.At(node, layer);
     }
     return result;
   }
   std::vector<int> around(this->GetNodes(), 0);
   for (size_t face = 0; face < this->GetFaces(); ++face) {
-    const double value = values.At(face, 0);
+    const double value = this->IsAbsent(face) ? NAN : values.At(face, layer);
     for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1] && std::isfinite(value); ++c) {
-      const size_t node = this->NodeOf[static_cast<size_t>(this->Corners[c])];
-      result[node] += value;
-      ++around[node];
+      const vtkStratusUgridPlace& of = this->NodeOf[static_cast<size_t>(this->Corners[c])];
+      for (const size_t node : { of.First, of.Second }) {
+        result[node] += value;
+        ++around[node];
+      }
     }
   }
   for (size_t node = 0; node < result.size(); ++node) {
-    result[node] = this->NodeOf[node] < node ? result[this->NodeOf[node]] : around[node] > 0 ? result[node] / around[node] : NAN;
+    const vtkStratusUgridPlace& of = this->NodeOf[node];
+    result[node] = of.First != node ? of.Weight * result[of.First] + (1.0 - of.Weight) * result[of.Second]
+      : around[node] > 0            ? result[node] / around[node]
+                                    : NAN;
   }
   return result;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A two-dimensional mesh of nodes and faces from a netCDF file, and its variables. Private to the module.
+// A two-dimensional mesh of nodes and faces from a netCDF file, and its variables: UGRID, FVCOM, MPAS, or cells with bounds as CF has them
+// (ICON). Private to the module.
 #ifndef vtkStratusUgridMesh_h
 #define vtkStratusUgridMesh_h
 
@@ -10,16 +11,31 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
+
+// The file's nodes or faces of one of the mesh's: one twice, or two between which it is.
+struct vtkStratusUgridPlace {
+  size_t First, Second;
+  double Weight; // of the first
+};
 
 // Values of a step over nodes or faces, and over layers or their borders.
 struct vtkStratusUgridValues {
   vtkSmartPointer<vtkDataArray> Values;
-  size_t Across = 0, Along = 0;               // steps from a node or face to the next, and from a layer to the next; 0: there is one
-  const std::vector<size_t>* Nodes = nullptr; // of values on nodes: the file's node of each of the mesh's
+  size_t Across = 0, Along = 0; // steps from a node or face to the next, and from a layer to the next; 0: there is one
+  const std::vector<vtkStratusUgridPlace>* Places = nullptr; // of each of the mesh's nodes or faces, null: they are the file's
   double At(size_t place, size_t layer) const
   {
-    place = this->Nodes ? (*this->Nodes)[place] : place;
+    if (!this->Places) {
+      return this->AtFile(place, layer);
+    }
+    const vtkStratusUgridPlace& of = (*this->Places)[place];
+    const double value = this->AtFile(of.First, layer);
+    return of.First == of.Second ? value : of.Weight * value + (1.0 - of.Weight) * this->AtFile(of.Second, layer);
+  }
+  double AtFile(size_t place, size_t layer) const
+  {
     return this->Values->GetComponent(static_cast<vtkIdType>(place * this->Across + layer * this->Along), 0);
   }
 };
@@ -29,12 +45,17 @@ class vtkStratusUgridMesh
 public:
   using Variable = vtkStratusNetCDFModel::Variable;
 
-  static const Variable* FindTopology(const vtkStratusNetCDFModel& file); // or FVCOM's nv; nullptr
-  explicit vtkStratusUgridMesh(const vtkStratusNetCDFModel& file);        // throws vtkStratusReadError
+  // Returns the variable that describes a mesh: of cf_role mesh_topology, FVCOM's nv, MPAS' table of corners, or a longitude of cells that
+  // has bounds of three or more corners. nullptr if there is none.
+  static const Variable* FindTopology(const vtkStratusNetCDFModel& file);
+  // on_sphere: nodes stay single where longitudes jump and at poles. Throws vtkStratusReadError.
+  explicit vtkStratusUgridMesh(const vtkStratusNetCDFModel& file, bool on_sphere = false);
 
   size_t GetNodes() const { return this->X.size(); }
   size_t GetFaces() const { return this->Offsets.size() - 1; }
-  // Nodes are the file's, and behind these copies of nodes a turn further on, for faces across the meridian where longitudes jump.
+  // Nodes are the file's. Behind these are, on the plane around the Earth, nodes where faces are cut at the meridian at which longitudes
+  // jump, and copies of a pole at the longitudes of its neighbours. Faces are the file's, and behind these further parts of those that are
+  // cut.
   const std::vector<double>& GetX() const { return this->X; }
   const std::vector<double>& GetY() const { return this->Y; }
   // The nodes of a face, counterclockwise from above.
@@ -43,15 +64,14 @@ public:
     corners = static_cast<int>(this->Offsets[face + 1] - this->Offsets[face]);
     return &this->Corners[this->Offsets[face]];
   }
-  // Returns whether longitudes around a pole tear the face apart.
-  bool IsTorn(size_t face) const { return !this->Sphere && !this->Torn.empty() && this->Torn[face] != 0; }
+  // Returns whether the file's face lacks corners, as at the border of MPAS' meshes.
+  bool IsAbsent(size_t face) const { return !this->Absent.empty() && face < this->Absent.size() && this->Absent[face] != 0; }
   std::string GetAxisName(int axis) const
   {
     const std::string& name = axis == 0 ? this->XName : this->YName;
     return this->Degrees ? (axis == 0 ? "east" : "north") : name.substr(name.rfind('/') + 1);
   }
   const std::string& GetCoordinateName(int axis) const { return axis == 0 ? this->XName : this->YName; } // in the file
-  void SetOnSphere() { this->Sphere = true; }                                                            // on which no face is torn
   bool IsInDegrees() const { return this->Degrees; }
   // The projection of nodes whose x and y are lengths: the grid mapping that `variable`, the mesh or its coordinates name. nullptr if there
   // is none. Throws vtkStratusReadError as vtkStratusProjection.
@@ -73,20 +93,42 @@ public:
   std::string DescribeOthers(const Variable& variable) const;
   int FindTime(const Variable& variable) const; // a dimension, or -1
   vtkStratusUgridValues Read(const Variable& variable, size_t step) const;
-  // Reads values without layers, at nodes: values at faces are averaged over those around the node that have one.
+  // Values of a layer at nodes: values at faces are averaged over those around the node that have one.
+  std::vector<double> ToNodes(const vtkStratusUgridValues& values, bool on_faces, size_t layer) const;
+  // Reads values without layers, at nodes.
   std::vector<double> ReadAtNodes(const Variable& variable, size_t step) const;
   const vtkStratusNetCDFModel& GetFile() const { return this->File; }
 
 private:
+  struct Corner {
+    int Node;
+    double Longitude;
+  };
+  using Polygon = std::vector<Corner>;
+
   bool IsTime(int dimension) const;
   bool IsPlace(int dimension) const { return dimension == this->NodeDimension || dimension == this->FaceDimension; }
   std::vector<int> FindOthers(const Variable& variable) const;
   bool Has(const Variable& variable, int dimension) const;
-  void ReadNodes(const Variable& x, const Variable& y);
+  static const Variable* FindMpas(const vtkStratusNetCDFModel& file);
+  static const Variable* FindCells(const vtkStratusNetCDFModel& file);
+  const Variable& Named(const std::string& name, const char* what) const;
+  void ReadNodes(const Variable& x, const Variable& y, const char* usual_unit);
+  void DescribeNodes(const std::string& what);
   void ReadFaces(const Variable& connectivity, int first);
+  void ReadMpas();
+  void HidePeriodic(const Variable& global);
+  void AddFaceOf(std::vector<int>& corners);
+  void ReadCells();
+  void AddFace(const std::vector<int>& face);
+  void Finish();
+  // On the plane, in vtkStratusUgridLongitudes.cxx:
   void JoinLongitudes();
-  void CopyNodes(size_t face);
-  double TurnsAround(size_t face) const;
+  int CopyOf(const Corner& corner);
+  int NodeBetween(Corner a, Corner b, double meridian, double longitude);
+  bool IsPole(int node) const;
+  std::vector<Polygon> Unfold(const std::vector<int>& face);
+  void Cut(const Polygon& polygon, bool around, double west, std::vector<std::vector<int>>& parts);
   void TurnFaces();
 
   const vtkStratusNetCDFModel& File;
@@ -95,12 +137,13 @@ private:
   size_t LayerCount = 0; // 0: unknown
   std::string XName, YName;
   const Variable* Topology = nullptr;
-  std::vector<double> X, Y;   // in the file's units or degrees until faces are read, then in metres if they can be
-  std::vector<size_t> NodeOf; // the file's node of each node
-  std::map<int, int> Copies;  // of nodes, a turn further east
-  std::vector<char> Torn;
+  std::vector<double> X, Y; // in the file's units or degrees until faces are read, then in metres if they can be
+  std::vector<vtkStratusUgridPlace> NodeOf, FaceOf;
+  std::map<std::tuple<int, int, double>, int> Copies; // of nodes and of edges' points, by longitude
+  std::vector<char> Absent;                           // of the file's faces; empty: none is
   std::array<double, 2> Factors = { { 1.0, 1.0 } };
-  bool Degrees = false, Sphere = false;
+  bool Degrees = false, Mpas = false;
+  const bool Sphere;
   std::vector<size_t> Offsets = { 0 };
   std::vector<int> Corners;
   std::string Description;

@@ -157,7 +157,7 @@ bool vtkStratusUgridReader::CanReadFile(const char* name)
 
 std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFModel& file)
 {
-  vtkStratusUgridMesh mesh(file);
+  vtkStratusUgridMesh mesh(file, this->Coordinates == SPHERE);
   const vtkStratusUgridLayers layers(mesh);
   mesh.SetLayers(layers.GetDimensions(), layers.GetCount());
   for (bool layered : { true, false }) {
@@ -168,11 +168,15 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFModel& file
     }
   }
   const Variable& chosen = *file.Find(this->ChosenName());
-  this->LengthUnits = mesh.IsInMetres() ? "m" : "";
+  if (layers.IsNumbers()) {
+    vtkWarningMacro(<< file.GetPath()
+                    << ": heights are only numbers of layers, while x and y are in metres: the file has no heights of them");
+  }
+  this->LengthUnits = mesh.IsInMetres() && !layers.IsNumbers() ? "m" : "";
   for (int a = 0; a < 3; ++a) {
     this->AxisNames[a] = a < 2 ? mesh.GetAxisName(a) : "height";
   }
-  this->AxisUnits[2] = "m";
+  this->AxisUnits[2] = layers.IsNumbers() ? "" : "m";
   for (int a = 0; a < 2; ++a) {
     if (mesh.IsInDegrees()) {
       this->FileAxes[a] = { a == 0 ? AXIS_OF_LONGITUDES : AXIS_OF_LATITUDES, a == 0 ? "longitude" : "latitude", "degrees",
@@ -217,12 +221,9 @@ std::string vtkStratusUgridReader::InspectFile(const vtkStratusNetCDFModel& file
 void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFModel& file, size_t step, vtkDataSet* output)
 {
   vtkUnstructuredGrid* grid = vtkUnstructuredGrid::SafeDownCast(output);
-  vtkStratusUgridMesh mesh(file);
+  vtkStratusUgridMesh mesh(file, this->Coordinates == SPHERE);
   const vtkStratusUgridLayers layers(mesh);
   mesh.SetLayers(layers.GetDimensions(), layers.GetCount());
-  if (this->Coordinates == SPHERE) {
-    mesh.SetOnSphere();
-  }
   std::vector<double> z;
   std::vector<char> dry;
   layers.Read(step, z, dry);
