@@ -137,7 +137,11 @@ made vti(const std::string& path)
 made vdb(const std::string& path)
 {
 #ifdef STRATUS_VDB
-  return reader_for<vtkStratusVDBReader>(path);
+  auto reader = vtkSmartPointer<vtkStratusVDBReader>::New();
+  reader->SetFileName(path.c_str());
+  reader->MapFileOn(); // as of netCDF, but images that it would read at once are quicker so
+  reader->SetMappedBytesLeast(reader->GetMemoryLimit() << 20);
+  return reader;
 #else
   throw cli::failure("cannot read '" + path + "': this program was built without OpenVDB and NanoVDB (Debian: libopenvdb-dev, " +
     "libnanovdb-dev), which read .vdb and .nvdb files");

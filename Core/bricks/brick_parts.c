@@ -243,13 +243,22 @@ void stratus_brick_find_only(stratus_context* context, stratus_bricks* bricks)
   volume.identity = s->identity;
   memcpy(volume.dimensions, s->dimensions, sizeof volume.dimensions);
   const int64_t n[3] = { bricks_along(s, 0), bricks_along(s, 1), bricks_along(s, 2) };
+  const size_t all = (size_t)(n[0] * n[1] * n[2]) * sizeof *bricks->only;
+  if (s->only) {
+    bricks->only = malloc(all);
+    if (bricks->only) {
+      memcpy(bricks->only, s->only, all);
+    }
+    bricks->source.only = NULL; /* the caller's */
+    return;
+  }
   const int64_t size = stratus_value_range_block_size(&volume, 0);
   bool small = s->identity == 0 || stratus_type_is_wide(s->type);
   for (int a = 0; a < 3; ++a) { /* many bricks in a block would look at it again and again */
     small = small || (s->brick[a] < size && s->brick[a] < s->dimensions[a]);
   }
   stratus_value_range* const ranges = small ? NULL : stratus_value_range_find_kept(context, &volume);
-  bricks->only = ranges ? malloc((size_t)(n[0] * n[1] * n[2]) * sizeof *bricks->only) : NULL;
+  bricks->only = ranges ? malloc(all) : NULL;
   for (int64_t b = 0; bricks->only && b < n[0] * n[1] * n[2]; ++b) {
     const int64_t brick[3] = { b % n[0], b / n[0] % n[1], b / n[0] / n[1] };
     bricks->only[b] = only_value(s, ranges, brick);
@@ -257,13 +266,10 @@ void stratus_brick_find_only(stratus_context* context, stratus_bricks* bricks)
   stratus_value_range_destroy(ranges);
 }
 
-/* Fills a box of whole bricks with the one value that all of them are known to have; else returns false. */
-static bool fill_with_one(const stratus_bricks* bricks, const int64_t lo[3], const int64_t size[3], void* values)
+/* Returns the one value that all bricks of a box are known to have, or NaN. */
+static float only_value_of_box(const stratus_bricks* bricks, const int64_t lo[3], const int64_t size[3])
 {
   const stratus_brick_source* s = &bricks->source;
-  if (!bricks->only) {
-    return false;
-  }
   const int64_t nx = bricks_along(s, 0), ny = bricks_along(s, 1);
   int64_t first[3], last[3];
   for (int a = 0; a < 3; ++a) {
@@ -275,21 +281,36 @@ static bool fill_with_one(const stratus_bricks* bricks, const int64_t lo[3], con
     for (int64_t y = first[1]; y <= last[1]; ++y) {
       for (int64_t x = first[0]; x <= last[0]; ++x) {
         if (!(bricks->only[(z * ny + y) * nx + x] == one)) {
-          return false;
+          return NAN;
         }
       }
     }
   }
-  const size_t count = (size_t)(size[0] * size[1] * size[2]), bytes = stratus_type_size(s->type);
-  for (size_t i = 0; i < count && bytes == 4; ++i) {
-    ((float*)values)[i] = one;
+  return one;
+}
+
+void stratus_brick_find_constants(stratus_bricks* bricks)
+{
+  const stratus_brick_view* view = &bricks->tiles;
+  float* const only = malloc((size_t)view->parts * sizeof *only);
+  for (int64_t part = 0; only && part < view->parts; ++part) {
+    const box b = box_of(view, part);
+    only[part] = only_value_of_box(bricks, b.lo, b.size);
   }
-  for (size_t i = 0; i < count && bytes == 2; ++i) {
-    ((uint16_t*)values)[i] = (uint16_t)(int)one;
+  bricks->constants.only = only;
+  memcpy(bricks->constants.side, view->side, sizeof view->side);
+  memcpy(bricks->constants.before, view->before, sizeof view->before);
+  memcpy(bricks->constants.across, view->across, sizeof view->across);
+}
+
+/* Fills a box of whole bricks with the one value that all of them are known to have; else returns false. */
+static bool fill_with_one(const stratus_bricks* bricks, const int64_t lo[3], const int64_t size[3], void* values)
+{
+  const float one = bricks->only ? only_value_of_box(bricks, lo, size) : NAN;
+  if (isnan(one)) {
+    return false;
   }
-  if (bytes == 1) {
-    memset(values, (int)one, count);
-  }
+  stratus_type_fill(bricks->source.type, one, values, (size_t)(size[0] * size[1] * size[2]));
   return true;
 }
 

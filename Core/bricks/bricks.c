@@ -130,6 +130,11 @@ static stratus_status check(stratus_context* context, const stratus_brick_source
         a, (long long)source->before[a], (long long)source->brick[a] - 1);
     }
   }
+  if (source->only && (source->components > 1 || stratus_type_is_wide(source->type))) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT,
+      "a source of bricks of one value each has %lld components of type %d, must have one of FLOAT32, or of 8 or 16 bits",
+      (long long)source->components, (int)source->type);
+  }
   TRY(stratus_product(
     context, "values of bricks", (size_t)source->dimensions[0], (size_t)source->dimensions[1], (size_t)source->dimensions[2], bytes));
   TRY(stratus_array_check(context, "values of bricks", *bytes, size));
@@ -170,6 +175,8 @@ static void release_tiles(stratus_bricks* bricks)
     free(bricks->at[a]);
     bricks->at[a] = NULL;
   }
+  free((void*)(uintptr_t)bricks->constants.only);
+  bricks->constants.only = NULL;
 }
 
 /* Gives an array its tiles. Without them, for want of memory, rays read its rows. */
@@ -259,6 +266,7 @@ stratus_status stratus_bricks_create(
   b->tiles = (stratus_brick_view){ .bricks = b, .tiled = true, .memory = -1 };
   stratus_brick_rows_divide(&b->rows);
   b->report.parts = (uint64_t)b->rows.parts;
+  const bool told = source->only != NULL;
   stratus_brick_find_only(context, b);
   b->rows.state = calloc((size_t)b->rows.parts, 1);
   if (!b->rows.state) {
@@ -266,8 +274,11 @@ stratus_status stratus_bricks_create(
   } else if (pool->faults < 0 || !stratus_brick_map(&b->rows)) {
     stratus_brick_unmap(&b->rows);
     status = read_all(context, b);
-  } else if (bytes > memory_of(pool)) {
+  } else if (told || bytes > memory_of(pool)) {
     make_tiles(b);
+    if (told && b->only && b->tiles.parts > 0) {
+      stratus_brick_find_constants(b);
+    }
   }
   if (status != STRATUS_OK) {
     release(context, b);
@@ -291,6 +302,11 @@ const void* stratus_bricks_values(const stratus_bricks* bricks)
 const stratus_tiles* stratus_bricks_tiles(const stratus_bricks* bricks)
 {
   return bricks && bricks->tiles.parts > 0 ? &bricks->shown : NULL;
+}
+
+const stratus_constants* stratus_bricks_constants(const stratus_bricks* bricks)
+{
+  return bricks && bricks->constants.only ? &bricks->constants : NULL;
 }
 
 const uint64_t* stratus_bricks_missing(const stratus_bricks* bricks)

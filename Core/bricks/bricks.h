@@ -47,11 +47,12 @@ struct stratus_bricks {
   stratus_brick_view tiles; /* the same values for rays; no parts if the array fits in the pool's memory */
   uint64_t* at[3];          /* offsets in `shown` */
   stratus_tiles shown;
-  uint64_t waited_for;  /* parts that were read because something waited for them */
-  stratus_bricks* like; /* its parts are read ahead; NULL: none */
-  int threads;          /* of the pool that bring parts now; the array stays until there are none */
-  bool leaves;          /* it is to be destroyed */
-  float* only;          /* of each brick the one value that all of its values are, or NaN; NULL: nothing is known */
+  stratus_constants constants; /* of tiles, where the source says which bricks are one value */
+  uint64_t waited_for;         /* parts that were read because something waited for them */
+  stratus_bricks* like;        /* its parts are read ahead; NULL: none */
+  int threads;                 /* of the pool that bring parts now; the array stays until there are none */
+  bool leaves;                 /* it is to be destroyed */
+  float* only;                 /* of each brick the one value that all of its values are, or NaN; NULL: nothing is known */
   stratus_bricks_report report;
 };
 
@@ -139,8 +140,10 @@ int64_t stratus_brick_part_of(const stratus_brick_view* view, size_t byte, size_
 stratus_brick_run stratus_brick_inner(const stratus_brick_view* view, size_t page, stratus_brick_run run);
 /* Returns the bytes of a part's values. */
 uint64_t stratus_brick_part_bytes(const stratus_brick_view* view, int64_t part);
-/* Sets bricks->only by the value ranges that are kept, if any are. */
+/* Sets bricks->only by the source's own list, else by the value ranges that are kept, if any are. */
 void stratus_brick_find_only(stratus_context* context, stratus_bricks* bricks);
+/* Sets the constants of the tiles by bricks->only. Without them, for want of memory, all tiles are read. */
+void stratus_brick_find_constants(stratus_bricks* bricks);
 /* Reads all values of a part into the room, run after run. Returns how many bytes of them the source could not read: all where there is no
  * memory for the room. */
 uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, stratus_brick_room* room);

@@ -56,6 +56,7 @@ stratus_status stratus_look_sample_begin(stratus_context* context, const stratus
   view->identity = 0;
   view->missing = NULL;
   view->tiles = (stratus_tiles){ .values = NULL };
+  view->constants = NULL;
   view->gradients = NULL;
   view->point_ghosts = view->cell_ghosts = NULL;
   double* place = (double*)(void*)((char*)sample->memory + at_places);
@@ -71,16 +72,34 @@ stratus_status stratus_look_sample_begin(stratus_context* context, const stratus
   return STRATUS_OK;
 }
 
+/* Copies a value from a tile; one of a constant tile without reading it. */
+static void copy_from_tile(const stratus_volume* volume, int64_t x, int64_t y, int64_t z, void* to)
+{
+  const stratus_constants* parts = volume->constants;
+  const int64_t at[3] = { (parts->before[0] + x) / parts->side[0], (parts->before[1] + y) / parts->side[1],
+    (parts->before[2] + z) / parts->side[2] };
+  const float one = parts->only[(at[2] * parts->across[1] + at[1]) * parts->across[0] + at[0]];
+  if (isnan(one)) {
+    stratus_volume_copy_row(volume, x, y, z, 1, to);
+  } else {
+    stratus_type_fill(volume->type, one, to, 1);
+  }
+}
+
 void stratus_look_sample_rows(
   const stratus_look_sample* sample, const stratus_volume* volume, int64_t y0, int64_t y1, int64_t z0, int64_t z1)
 {
   const size_t size = stratus_type_size(volume->type);
   const int64_t *n = volume->dimensions, *m = sample->view.dimensions, *step = sample->step;
+  const bool tiled = stratus_volume_has_constants(volume);
   for (int64_t k = (z0 + step[2] - 1) / step[2]; k < m[2] && k * step[2] < z1; ++k) {
     for (int64_t j = (y0 + step[1] - 1) / step[1]; j < m[1] && j * step[1] < y1; ++j) {
       const char* from = (const char*)volume->values + (size_t)((k * step[2] * n[1] + j * step[1]) * n[0] * volume->value_stride) * size;
       char* to = (char*)sample->memory + (size_t)((k * m[1] + j) * m[0]) * size;
-      for (int64_t i = 0; i < m[0]; ++i) {
+      for (int64_t i = 0; i < m[0] && tiled; ++i) {
+        copy_from_tile(volume, i * step[0], j * step[1], k * step[2], to + (size_t)i * size);
+      }
+      for (int64_t i = 0; i < m[0] && !tiled; ++i) {
         memcpy(to + (size_t)i * size, from + (size_t)(i * step[0] * volume->value_stride) * size, size);
       }
     }

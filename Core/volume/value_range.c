@@ -25,7 +25,8 @@
 typedef struct span {
   const stratus_volume* volume;
   double bias;
-  int64_t nx;         /* values along x */
+  bool tiled;         /* values are copied from tiles */
+  int64_t x0, nx;     /* first value, and values along x */
   int64_t y0, z0, ny; /* first row of values, and number of rows along y */
   int64_t rows;       /* number of rows in all */
   int64_t blocks;     /* number of blocks along x */
@@ -168,6 +169,30 @@ static void give_room(span* s, uint8_t* memory)
   s->bad = memory + 6 * row;
 }
 
+/* Returns the one value that all tiles are known to have in which block number i of a span's row has values, or NaN. */
+static float only_value(const span* s, int64_t i)
+{
+  const stratus_constants* parts = s->volume->constants;
+  const int64_t *n = s->volume->dimensions, x1 = (i + 1) * s->size;
+  const int64_t lo[3] = { i * s->size, s->y0, s->z0 };
+  const int64_t hi[3] = { x1 < n[0] ? x1 : n[0] - 1, s->y0 + s->ny - 1, s->z0 + s->rows / s->ny - 1 };
+  int64_t first[3], last[3];
+  for (int a = 0; a < 3; ++a) {
+    first[a] = (parts->before[a] + lo[a]) / parts->side[a];
+    last[a] = (parts->before[a] + hi[a]) / parts->side[a];
+  }
+  const float one = parts->only[(first[2] * parts->across[1] + first[1]) * parts->across[0] + first[0]];
+  bool same = fabsf(one) <= FLT_MAX;
+  for (int64_t k = first[2]; k <= last[2]; ++k) {
+    for (int64_t j = first[1]; j <= last[1]; ++j) {
+      for (int64_t x = first[0]; x <= last[0]; ++x) {
+        same = same && parts->only[(k * parts->across[1] + j) * parts->across[0] + x] == one;
+      }
+    }
+  }
+  return same ? one : NAN;
+}
+
 /* Finds the ranges of a row of blocks, and takes what a coarse copy has of its values, if there is one (not NULL). */
 static void reduce_row(
   span* s, const stratus_value_range* ranges, reduce_function reduce, int64_t j, int64_t k, const stratus_look_sample* sample)
@@ -180,10 +205,25 @@ static void reduce_row(
   s->z0 = k * size;
   s->ny = y1 - s->y0 + 1;
   s->rows = s->ny * (z1 - s->z0 + 1);
-  s->block_lo = ranges->lo + block;
-  s->block_hi = ranges->hi + block;
-  s->gaps = ranges->gaps + block;
-  reduce(s);
+  for (int64_t i = 0, end; i < ranges->blocks[0]; i = end) {
+    const float one = s->tiled ? only_value(s, i) : NAN;
+    end = s->tiled ? i + 1 : ranges->blocks[0];
+    while (isnan(one) && end < ranges->blocks[0] && isnan(only_value(s, end))) {
+      ++end;
+    }
+    s->x0 = i * size;
+    s->nx = (end * size < n[0] ? end * size : n[0] - 1) - s->x0 + 1;
+    s->blocks = end - i;
+    s->block_lo = ranges->lo + block + i;
+    s->block_hi = ranges->hi + block + i;
+    s->gaps = ranges->gaps + block + i;
+    if (isnan(one)) {
+      reduce(s);
+    } else {
+      s->block_lo[0] = s->block_hi[0] = one + 0.0f; /* as reduce() has zeros */
+      s->gaps[0] = 0;
+    }
+  }
   if (sample) {
     stratus_look_sample_rows(
       sample, s->volume, s->y0, j + 1 < ranges->blocks[1] ? s->y0 + size : n[1], s->z0, k + 1 < ranges->blocks[2] ? s->z0 + size : n[2]);
@@ -206,7 +246,11 @@ static stratus_status reduce_on_host(
   {
     const int thread = omp_get_thread_num();
     span s = {
-      .volume = volume, .bias = ranges->bias, .nx = volume->dimensions[0], .blocks = ranges->blocks[0], .size = ranges->block_size
+      .volume = volume,
+      .bias = ranges->bias,
+      .tiled = stratus_volume_has_constants(volume),
+      .nx = volume->dimensions[0],
+      .size = ranges->block_size,
     };
     give_room(&s, (uint8_t*)memory + (size_t)thread * room);
 #pragma omp for schedule(static)

@@ -8,15 +8,19 @@
  *   FLOATS   1 if values may be NaN or infinite (as floats)
  * A row is a run of `nx` values along x with unit stride. */
 
-/* Row r of a span, copied to `scratch` if its stride is not 1. */
+/* Row r of a span, copied to `scratch` if its stride is not 1, or from tiles. */
 static const TYPE* NAME(row)(const span* s, int64_t r, void* scratch)
 {
-  const int64_t y = s->y0 + r % s->ny, z = s->z0 + r / s->ny;
-  const TYPE* values = (const TYPE*)s->volume->values + (z * s->volume->dimensions[1] + y) * s->nx * s->volume->value_stride;
+  const int64_t y = s->y0 + r % s->ny, z = s->z0 + r / s->ny, *n = s->volume->dimensions;
+  const TYPE* values = (const TYPE*)s->volume->values + ((z * n[1] + y) * n[0] + s->x0) * s->volume->value_stride;
+  TYPE* copy = scratch;
+  if (s->tiled) {
+    stratus_volume_copy_row(s->volume, s->x0, y, z, s->nx, scratch);
+    return copy;
+  }
   if (s->volume->value_stride == 1) {
     return values;
   }
-  TYPE* copy = scratch;
   for (int64_t x = 0; x < s->nx; ++x) {
     copy[x] = values[x * s->volume->value_stride];
   }

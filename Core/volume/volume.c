@@ -42,6 +42,40 @@ bool stratus_type_is_wide(stratus_type type)
   return type == STRATUS_INT32 || type == STRATUS_UINT32 || type == STRATUS_INT64 || type == STRATUS_UINT64 || type == STRATUS_FLOAT64;
 }
 
+void stratus_type_fill(stratus_type type, float one, void* values, size_t count)
+{
+  const size_t bytes = stratus_type_size(type);
+  for (size_t i = 0; i < count && bytes == 4; ++i) {
+    ((float*)values)[i] = one;
+  }
+  for (size_t i = 0; i < count && bytes == 2; ++i) {
+    ((uint16_t*)values)[i] = (uint16_t)(int)one;
+  }
+  if (bytes == 1) {
+    memset(values, (int)one, count);
+  }
+}
+
+bool stratus_volume_has_constants(const stratus_volume* volume)
+{
+  return volume->constants && volume->tiles.values && volume->value_stride == 1 && !stratus_type_is_wide(volume->type);
+}
+
+void stratus_volume_copy_row(const stratus_volume* volume, int64_t x, int64_t y, int64_t z, int64_t count, void* to)
+{
+  const stratus_constants* parts = volume->constants;
+  const stratus_tiles* tiles = &volume->tiles;
+  const size_t size = stratus_type_size(volume->type);
+  const char* from = (const char*)tiles->values + tiles->at[1][y] + tiles->at[2][z];
+  while (count > 0) {
+    const int64_t left = parts->side[0] - (parts->before[0] + x) % parts->side[0], run = left < count ? left : count;
+    memcpy(to, from + tiles->at[0][x], (size_t)run * size);
+    to = (char*)to + (size_t)run * size;
+    x += run;
+    count -= run;
+  }
+}
+
 bool stratus_type_is_integer(stratus_type type)
 {
   return type != STRATUS_FLOAT32 && type != STRATUS_FLOAT64;

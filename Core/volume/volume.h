@@ -26,6 +26,12 @@ void stratus_volume_cells(const stratus_volume* volume, int64_t cells[3]);
 bool stratus_volume_same_data(const stratus_volume* a, const stratus_volume* b);
 bool stratus_type_is_wide(stratus_type type);
 bool stratus_type_is_integer(stratus_type type);
+/* Sets values of a type that is not wide to one that it has. */
+void stratus_type_fill(stratus_type type, float one, void* values, size_t count);
+/* Returns whether value ranges and coarse copies are made from tiles, by the volume's constants. */
+bool stratus_volume_has_constants(const stratus_volume* volume);
+/* Copies values from the tiles, from (x,y,z) on along x. */
+void stratus_volume_copy_row(const stratus_volume* volume, int64_t x, int64_t y, int64_t z, int64_t count, void* to);
 /* Return the least float that is not below a number, and the greatest that is not above it. */
 static inline float stratus_float_above(double number)
 {

@@ -89,6 +89,7 @@ void vtkStratusCutSource(vtkStratusBrickSource& source, const std::array<int64_t
   numbers.insert(numbers.end(), size.begin(), size.end());
   source.Identity = vtkStratusIdentityOfPart(source.Identity, "", numbers);
   source.Dimensions = size;
+  source.Only.clear();
   for (size_t a = 0; a < 3; ++a) {
     source.Before[a] = (source.Before[a] + lo[a]) % source.Brick[a];
   }
@@ -117,6 +118,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
   }
   core.components = source.Components;
   core.identity = source.Identity;
+  core.only = source.Only.empty() ? nullptr : source.Only.data();
   core.read = &ReadBox;
   core.release = &Release;
   core.user = new vtkStratusBrickSource(source);
@@ -133,7 +135,8 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
   array->SetVoidArray(
     values, core.dimensions[0] * core.dimensions[1] * core.dimensions[2], 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
   array->SetArrayFreeFunction(&Free);
-  vtkStratusSetMapped(array, source.Identity, stratus_bricks_missing(bricks), stratus_bricks_reads(bricks), stratus_bricks_tiles(bricks));
+  vtkStratusSetMapped(array, source.Identity, stratus_bricks_missing(bricks), stratus_bricks_reads(bricks), stratus_bricks_tiles(bricks),
+    stratus_bricks_constants(bricks));
   return array;
 }
 

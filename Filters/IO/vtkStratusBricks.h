@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 class vtkDataArray;
 
@@ -22,6 +23,8 @@ struct vtkStratusBrickSource {
   std::array<int64_t, 3> Dimensions, Brick;
   std::array<int64_t, 3> Before = { { 0, 0, 0 } }; // points of the first brick that precede the array; below Brick
   uint64_t Identity = 0;                           // as stratus_volume has it
+  // Empty, or of each brick, x fastest, the one value that all of its values are, or NaN; for one component of a float or 8 or 16 bits.
+  std::vector<float> Only;
   // Writes the box of `size` values from `lo` on, components first, then x. Returns false if it cannot be read. Called by other threads.
   std::function<bool(const int64_t lo[3], const int64_t size[3], void* values)> Read;
 };

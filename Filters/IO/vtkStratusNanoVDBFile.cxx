@@ -8,6 +8,7 @@
 #include <nanovdb/util/IO.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <fstream>
 #include <limits>
@@ -186,6 +187,56 @@ public:
         }
       });
     return boxes;
+  }
+
+  std::vector<float> ListOnly(const int64_t low[3], const int64_t high[3], int64_t side) const override
+  {
+    std::vector<float> only;
+    if constexpr (std::is_same_v<Component, float> || sizeof(Component) <= 2) {
+      if (this->Components > 1) {
+        return only;
+      }
+      int64_t across[3];
+      for (int a = 0; a < 3; ++a) {
+        across[a] = (high[a] & -side) / side - (low[a] & -side) / side + 1;
+      }
+      // A cube's voxels: `one` where it has whole bricks of the box, and unknown where it has a part of one.
+      const auto set = [&](const int64_t first[3], int64_t size, float one) {
+        int64_t from[3], to[3], i[3];
+        for (int a = 0; a < 3; ++a) {
+          from[a] = std::max((first[a] & -side) - (low[a] & -side), int64_t(0)) / side;
+          to[a] = std::min(((first[a] + size - 1) & -side) - (low[a] & -side), (across[a] - 1) * side) / side;
+        }
+        for (i[2] = from[2]; i[2] <= to[2]; ++i[2]) {
+          for (i[1] = from[1]; i[1] <= to[1]; ++i[1]) {
+            for (i[0] = from[0]; i[0] <= to[0]; ++i[0]) {
+              bool whole = true;
+              for (int a = 0; a < 3; ++a) {
+                const int64_t begin = (low[a] & -side) + i[a] * side;
+                whole = whole && first[a] <= std::max(begin, low[a]) && first[a] + size > std::min(begin + side - 1, high[a]);
+              }
+              only[static_cast<size_t>((i[2] * across[1] + i[1]) * across[0] + i[0])] =
+                whole ? one : std::numeric_limits<float>::quiet_NaN();
+            }
+          }
+        }
+      };
+      const Component background = *Traits<Value>::Get(this->Top->mBackground);
+      only.resize(static_cast<size_t>(across[0] * across[1] * across[2]),
+        std::isfinite(static_cast<float>(background)) ? static_cast<float>(background) + 0.0F
+                                                      : NAN); // of zeros, Write() leaves the memory's
+      this->Visit(
+        { { low[0], low[1], low[2] }, { high[0], high[1], high[2] } },
+        [&](const int64_t first[3], int64_t size, const Value& value, bool) {
+          const Component one = *Traits<Value>::Get(value);
+          const auto number = static_cast<float>(one);
+          if (!(one == background)) {
+            set(first, size, std::isfinite(number) && !(number == 0.0F && std::signbit(number)) ? number : NAN);
+          }
+        },
+        [&](const int64_t first[3], const Lower&, int64_t) { set(first, 8, NAN); });
+    }
+    return only;
   }
 
 private:

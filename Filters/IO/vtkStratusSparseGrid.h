@@ -131,6 +131,10 @@ public:
   // threads may do so at once.
   virtual void Write(void* values, const int64_t low[3], const int64_t high[3]) const = 0;
 
+  // Lists for each cube of `side` voxels (a power of 2) at multiples of that, clipped to the box, x fastest, the one value that Write()
+  // gives all of its voxels, or NaN where it has leaves. Empty where that is not known.
+  virtual std::vector<float> ListOnly(const int64_t[3], const int64_t[3], int64_t) const { return {}; }
+
   // Lists the cells with an active voxel at a corner: the cells of each leaf that has one, and the cells of each active tile.
   virtual std::vector<vtkStratusCellBox> ListActive() const = 0;
 

@@ -123,7 +123,7 @@ bool vtkStratusVDBReader::ChooseBlocks()
   const vtkStratusSparseGrid& grid = *this->Grid;
   const double limit = 1048576.0 * static_cast<double>(this->MemoryLimit), image = ImageBytes(grid);
   const double memory = vtkStratusHasBrickMemory() ? static_cast<double>(vtkStratusGetBrickMemory()) : 0.0; // 0: no limit is set
-  const bool wanted = this->MapFile ? image >= static_cast<double>(this->MappedBytesLeast) : memory > 0.0 && image > memory;
+  const bool wanted = (this->MapFile && image >= static_cast<double>(this->MappedBytesLeast)) || (memory > 0.0 && image > memory);
   const bool bricks = wanted && grid.InFile && image <= MostBrickBytes && vtkStratusHasBricks();
   const std::string takes = ". The sparse grid takes " + WriteBytes(static_cast<double>(grid.Bytes)) + "; the limit is " +
     std::to_string(this->MemoryLimit) + " MiB (MemoryLimit)";
@@ -191,6 +191,9 @@ vtkSmartPointer<vtkDataArray> vtkStratusVDBReader::LeaveValues(const std::shared
     source.Brick[a] = BrickSide;
     source.Before[a] = origin[a] & (BrickSide - 1); // nodes begin at multiples of their side, also below 0
   }
+  const int64_t first[3] = { this->WholeExtent[0], this->WholeExtent[2], this->WholeExtent[4] };
+  const int64_t last[3] = { this->WholeExtent[1], this->WholeExtent[3], this->WholeExtent[5] };
+  source.Only = grid->ListOnly(first, last, BrickSide);
   const size_t voxel = static_cast<size_t>(vtkDataArray::GetDataTypeSize(grid->Type)) * static_cast<size_t>(grid->Components);
   source.Read = [grid, origin, voxel](const int64_t lo[3], const int64_t size[3], void* values) {
     int64_t low[3], high[3];

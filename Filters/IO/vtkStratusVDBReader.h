@@ -13,8 +13,8 @@
  *
  * Values of an image of at least MappedBytesLeast bytes stay in a .nvdb file that is not compressed if MapFile is on (default off), or if
  * they are more than a memory limit that is set. They are bricks: the nodes above the leaves are kept, and leaves are read when something
- * looks at their voxels. Elsewhere nothing is read. Such an image may be larger than MemoryLimit: it is the output where blocks would be
- * too large as well.
+ * looks at their voxels. Elsewhere nothing is read, and of floats and integers of 8 or 16 bits value ranges are known. Such an image may be
+ * larger than MemoryLimit: it is the output where blocks would be too large as well.
  *
  * Another image is dense: it needs memory for the whole box. Pages of it that only hold 0 are never written, and use no memory on systems
  * that allocate pages on the first write. If the image needs more than MemoryLimit, the output is a vtkPartitionedDataSet of images

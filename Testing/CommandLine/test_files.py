@@ -492,6 +492,11 @@ def test_vdb():
             fail(f"{name} of cloud.vdb is another picture than the density it is a multiple of")
     expect(1, r"no variable 'qc' in 'cloud.vdb'; the variables are: density \(0 \.\. 1\), wind \(0 \.\. 5\)$",
            "render", "cloud.vdb", "-o", "no.png", "--variable", "qc")
+    apart = drawn("apart.vdb", *look)  # 18 MB as an image, more than the least that stays in its file
+    for words in (), ("--memory", "16M"):
+        if not apart.any() or (drawn("apart.nvdb", *look, *words) != apart).any():
+            fail(f"leaves that stay in apart.nvdb give another picture {words}")
+    expect(0, r"read +\d+ MiB of bricks", "render", "apart.nvdb", "-v", "-o", "out.png", *look, "--memory", "16M")
     expect(0, r"2 blocks of 8000 bytes .* in place of an image of 256\d{9} bytes", "info", "wide.vdb")
     expect(0, "volume +2 blocks, the first of 10 x 10 x 10 float32", "render", "wide.vdb", "-o", "wide.png")
     expect(2, "'wide.vdb' is a volume of 2 blocks, which is drawn without others", "render", "cloud.vdb", "wide.vdb", "-o", "no.png")
@@ -792,12 +797,36 @@ def test_scans():
     expect(1, "cannot read 'turned.mhd': turned.raw: has 48 bytes, which can't be the 36 values of 2 bytes", "info", "turned.mhd")
 
 
+def test_limit_of_memory():
+    """Values of a .vti file that are more than the limit are read in parts, as the same picture."""
+    n = 170
+    x, y, z = numpy.meshgrid(*(numpy.linspace(-1, 1, n),) * 3, indexing="ij")
+    large = vtkImageData()
+    large.SetDimensions(n, n, n)
+    array = numpy_to_vtk((30 * numpy.exp(-5 * (x * x + y * y + z * z))).astype(numpy.float32).ravel(order="F"), deep=True)
+    array.SetName("rho")
+    large.GetPointData().SetScalars(array)
+    writer = vtkXMLImageDataWriter()
+    writer.SetInputData(large)
+    writer.SetFileName("large.vti")
+    writer.SetDataModeToAppended()
+    writer.EncodeAppendedDataOff()
+    for compress in writer.SetCompressorTypeToNone, writer.SetCompressorTypeToLZ4:
+        compress()
+        writer.Write()
+        whole = picture("large.vti")
+        if picture("large.vti", "--memory", "16M") != whole:
+            fail(f"large.vti is another picture in little memory, by {compress.__name__}")
+        expect(0, r"read +\d+ MiB of bricks, +\d+ MiB in memory, limit 16$", "render", "large.vti", "-v", "-o", "out.png", *LOOK,
+               "--memory", "16M")
+
+
 PARTS = {  # within a part, tests read files of those before
     "grids": (test_kinds, test_modes_of_grids, test_bad_grids, test_collections, test_films),
     "memory": (test_memory, test_memory_of_meshes_that_stay),
     "memory_of_cells": (test_memory_of_meshes_that_move,),
     "looks": (test_exaggeration, test_annotations, test_colors_and_logarithm, test_vectors, test_picture_formats),
-    "images": (test_raw_types, test_raw, test_scans, test_refined),
+    "images": (test_raw_types, test_raw, test_scans, test_refined, test_limit_of_memory),
     "readers": (test_netcdf, test_vdb, test_vtkhdf, test_openfoam, test_ensight),
 }
 
