@@ -65,7 +65,7 @@ static void* read_ahead(void* user)
     if (view) {
       stratus_bricks* const bricks = view->bricks;
       stratus_brick_enter(bricks);
-      read = stratus_brick_read_part(view, part, &room, true);
+      read = stratus_brick_read_part(view, part, &room, STRATUS_BRICK_AHEAD);
       stratus_brick_leave(bricks);
     }
     if (!read) {

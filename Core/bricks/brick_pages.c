@@ -76,6 +76,19 @@ bool stratus_brick_start_thread(pthread_t* thread, stratus_brick_thread_function
   return started;
 }
 
+void stratus_brick_count_read(stratus_brick_view* view, int64_t part, uint64_t missing, stratus_brick_reason reason)
+{
+  stratus_brick_pool* const pool = view->bricks->pool;
+  const uint64_t bytes = stratus_brick_part_bytes(view, part) - missing;
+  ++pool->parts_read;
+  pool->bytes_read += bytes;
+  view->bricks->report.bytes_read += bytes;
+  ++view->bricks->report.parts_read;
+  (void)__atomic_add_fetch(
+    &view->bricks->waited_for, reason != STRATUS_BRICK_AHEAD, __ATOMIC_RELEASE); /* others read these two without the lock */
+  (void)__atomic_add_fetch(&view->bricks->report.missing, missing, __ATOMIC_RELEASE);
+}
+
 void stratus_brick_enter(stratus_bricks* bricks)
 {
   ++bricks->threads;
@@ -268,13 +281,13 @@ static void limit_shared(stratus_brick_pool* pool)
   }
 }
 
-bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, bool ahead)
+bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, stratus_brick_reason reason)
 {
   stratus_brick_pool* const pool = view->bricks->pool;
   limit_shared(pool);
   uint64_t edges = 0;
   const uint64_t inner = bytes_of(view, part, &edges), shared = view->state[part] & STRATUS_PART_EDGES ? 0 : edges;
-  if (ahead && pool->resident + inner + shared > stratus_brick_memory_left(pool)) {
+  if (reason == STRATUS_BRICK_AHEAD && pool->resident + inner + shared > stratus_brick_memory_left(pool)) {
     return false;
   }
   pool->resident += inner + shared;
@@ -287,16 +300,13 @@ bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_bri
   const uint64_t lost = stratus_brick_store_part(view, part, room), all = stratus_brick_part_bytes(view, part);
   missing = missing + lost < all ? missing + lost : all;
   pthread_mutex_lock(&pool->lock);
-  set_state(view, part, STRATUS_PART_HERE);
+  set_state(view, part, reason == STRATUS_BRICK_SCANNED ? STRATUS_PART_RESTING : STRATUS_PART_HERE);
   ++pool->parts_here;
   ++view->bricks->report.parts_here;
-  ++pool->parts_read;
-  pool->bytes_read += all - missing;
-  view->bricks->report.bytes_read += all - missing;
-  ++view->bricks->report.parts_read;
-  (void)__atomic_add_fetch(&view->bricks->waited_for, ahead ? 0 : 1, __ATOMIC_RELEASE); /* others read these two without the lock */
-  (void)__atomic_add_fetch(&view->bricks->report.missing, missing, __ATOMIC_RELEASE);
-  show_part(view, part);
+  stratus_brick_count_read(view, part, missing, reason);
+  if (reason != STRATUS_BRICK_SCANNED) { /* the first read of it is noticed */
+    show_part(view, part);
+  }
   pthread_cond_broadcast(&pool->read);
   return true;
 }
@@ -309,7 +319,7 @@ static void bring(stratus_brick_view* view, int64_t part, stratus_brick_room* ro
     set_state(view, part, STRATUS_PART_HERE);
     show_part(view, part);
   } else if (state == STRATUS_PART_ABSENT) {
-    (void)stratus_brick_read_part(view, part, room, false);
+    (void)stratus_brick_read_part(view, part, room, STRATUS_BRICK_WAITED_FOR);
   }
 }
 
@@ -464,9 +474,9 @@ uint64_t stratus_brick_resident(const stratus_brick_view* view)
   return 0;
 }
 
-bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, bool ahead)
+bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, stratus_brick_reason reason)
 {
-  (void)view, (void)part, (void)room, (void)ahead;
+  (void)view, (void)part, (void)room, (void)reason;
   return false;
 }
 

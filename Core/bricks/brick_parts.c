@@ -143,6 +143,20 @@ static box box_of(const stratus_brick_view* view, int64_t part)
   return b;
 }
 
+void stratus_brick_part_box(const stratus_brick_view* view, int64_t part, int64_t lo[3], int64_t size[3], int64_t inset[3], size_t pitch[3])
+{
+  const box b = box_of(view, part);
+  const size_t value = stratus_type_size(view->bricks->source.type);
+  memcpy(lo, b.lo, sizeof b.lo);
+  memcpy(size, b.size, sizeof b.size);
+  memcpy(inset, b.inset, sizeof b.inset);
+  /* a tile at the array's end is as wide as all others */
+  const int64_t wide = view->tiled ? view->side[0] : b.size[0], high = view->tiled ? view->side[1] : b.size[1];
+  pitch[0] = value;
+  pitch[1] = value * (size_t)wide;
+  pitch[2] = value * (size_t)(wide * high);
+}
+
 /* Whether the values of a part are one run. */
 static bool is_one_run(const stratus_brick_view* view)
 {
@@ -266,12 +280,14 @@ void stratus_brick_find_only(stratus_context* context, stratus_bricks* bricks)
   stratus_value_range_destroy(ranges);
 }
 
-/* Returns the one value that all bricks of a box are known to have, or NaN. */
-static float only_value_of_box(const stratus_bricks* bricks, const int64_t lo[3], const int64_t size[3])
+float stratus_brick_only_value(const stratus_bricks* bricks, const int64_t lo[3], const int64_t size[3])
 {
   const stratus_brick_source* s = &bricks->source;
   const int64_t nx = bricks_along(s, 0), ny = bricks_along(s, 1);
   int64_t first[3], last[3];
+  if (!bricks->only) {
+    return NAN;
+  }
   for (int a = 0; a < 3; ++a) {
     first[a] = (s->before[a] + lo[a]) / s->brick[a];
     last[a] = (s->before[a] + lo[a] + size[a] - 1) / s->brick[a];
@@ -289,24 +305,10 @@ static float only_value_of_box(const stratus_bricks* bricks, const int64_t lo[3]
   return one;
 }
 
-void stratus_brick_find_constants(stratus_bricks* bricks)
-{
-  const stratus_brick_view* view = &bricks->tiles;
-  float* const only = malloc((size_t)view->parts * sizeof *only);
-  for (int64_t part = 0; only && part < view->parts; ++part) {
-    const box b = box_of(view, part);
-    only[part] = only_value_of_box(bricks, b.lo, b.size);
-  }
-  bricks->constants.only = only;
-  memcpy(bricks->constants.side, view->side, sizeof view->side);
-  memcpy(bricks->constants.before, view->before, sizeof view->before);
-  memcpy(bricks->constants.across, view->across, sizeof view->across);
-}
-
 /* Fills a box of whole bricks with the one value that all of them are known to have; else returns false. */
 static bool fill_with_one(const stratus_bricks* bricks, const int64_t lo[3], const int64_t size[3], void* values)
 {
-  const float one = bricks->only ? only_value_of_box(bricks, lo, size) : NAN;
+  const float one = stratus_brick_only_value(bricks, lo, size);
   if (isnan(one)) {
     return false;
   }

@@ -175,8 +175,6 @@ static void release_tiles(stratus_bricks* bricks)
     free(bricks->at[a]);
     bricks->at[a] = NULL;
   }
-  free((void*)(uintptr_t)bricks->constants.only);
-  bricks->constants.only = NULL;
 }
 
 /* Gives an array its tiles. Without them, for want of memory, rays read its rows. */
@@ -266,7 +264,7 @@ stratus_status stratus_bricks_create(
   b->tiles = (stratus_brick_view){ .bricks = b, .tiled = true, .memory = -1 };
   stratus_brick_rows_divide(&b->rows);
   b->report.parts = (uint64_t)b->rows.parts;
-  const bool told = source->only != NULL;
+  b->told = source->only != NULL;
   stratus_brick_find_only(context, b);
   b->rows.state = calloc((size_t)b->rows.parts, 1);
   if (!b->rows.state) {
@@ -274,16 +272,14 @@ stratus_status stratus_bricks_create(
   } else if (pool->faults < 0 || !stratus_brick_map(&b->rows)) {
     stratus_brick_unmap(&b->rows);
     status = read_all(context, b);
-  } else if (told || bytes > memory_of(pool)) {
+  } else if (b->told || bytes > memory_of(pool)) {
     make_tiles(b);
-    if (told && b->only && b->tiles.parts > 0) {
-      stratus_brick_find_constants(b);
-    }
   }
   if (status != STRATUS_OK) {
     release(context, b);
     return status;
   }
+  stratus_brick_set_parts(b);
   pthread_mutex_lock(&pool->lock);
   join_pool(pool, &b->rows);
   if (b->tiles.parts > 0) {
@@ -304,9 +300,9 @@ const stratus_tiles* stratus_bricks_tiles(const stratus_bricks* bricks)
   return bricks && bricks->tiles.parts > 0 ? &bricks->shown : NULL;
 }
 
-const stratus_constants* stratus_bricks_constants(const stratus_bricks* bricks)
+const stratus_parts* stratus_bricks_parts(const stratus_bricks* bricks)
 {
-  return bricks && bricks->constants.only ? &bricks->constants : NULL;
+  return bricks && bricks->parts.read ? &bricks->parts : NULL;
 }
 
 const uint64_t* stratus_bricks_missing(const stratus_bricks* bricks)

@@ -47,12 +47,13 @@ struct stratus_bricks {
   stratus_brick_view tiles; /* the same values for rays; no parts if the array fits in the pool's memory */
   uint64_t* at[3];          /* offsets in `shown` */
   stratus_tiles shown;
-  stratus_constants constants; /* of tiles, where the source says which bricks are one value */
-  uint64_t waited_for;         /* parts that were read because something waited for them */
-  stratus_bricks* like;        /* its parts are read ahead; NULL: none */
-  int threads;                 /* of the pool that bring parts now; the array stays until there are none */
-  bool leaves;                 /* it is to be destroyed */
-  float* only;                 /* of each brick the one value that all of its values are, or NaN; NULL: nothing is known */
+  stratus_parts parts; /* those of the rows; of the tiles where the source told which bricks are one value */
+  bool told, parts_are_tiles;
+  uint64_t waited_for;  /* parts that were read because something waited for them */
+  stratus_bricks* like; /* its parts are read ahead; NULL: none */
+  int threads;          /* of the pool that bring parts now; the array stays until there are none */
+  bool leaves;          /* it is to be destroyed */
+  float* only;          /* of each brick the one value that all of its values are, or NaN; NULL: nothing is known */
   stratus_bricks_report report;
 };
 
@@ -100,9 +101,15 @@ bool stratus_brick_map(stratus_brick_view* view);
 void stratus_brick_unmap(stratus_brick_view* view);
 /* Puts the runs of a part from the room into the view. Returns how many bytes could not be written, for want of memory. */
 uint64_t stratus_brick_store_part(const stratus_brick_view* view, int64_t part, const stratus_brick_room* room);
+/* Why a part is read: something waits for its values; nothing does yet; or all parts are read once, as for value ranges. */
+typedef enum stratus_brick_reason { STRATUS_BRICK_WAITED_FOR, STRATUS_BRICK_AHEAD, STRATUS_BRICK_SCANNED } stratus_brick_reason;
+
+/* Counts a part that was read. With the pool's lock. */
+void stratus_brick_count_read(stratus_brick_view* view, int64_t part, uint64_t missing, stratus_brick_reason reason);
+
 /* Reads a part that is absent, with the pool's lock on entry and on return, but not while the source reads. Other parts are dropped for it;
  * but if it is read ahead, none are, and false is returned where there is no room. */
-bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, bool ahead);
+bool stratus_brick_read_part(stratus_brick_view* view, int64_t part, stratus_brick_room* room, stratus_brick_reason reason);
 /* Returns the bytes of a view's parts that are in memory, and of the pages that they share. */
 uint64_t stratus_brick_resident(const stratus_brick_view* view);
 
@@ -140,10 +147,13 @@ int64_t stratus_brick_part_of(const stratus_brick_view* view, size_t byte, size_
 stratus_brick_run stratus_brick_inner(const stratus_brick_view* view, size_t page, stratus_brick_run run);
 /* Returns the bytes of a part's values. */
 uint64_t stratus_brick_part_bytes(const stratus_brick_view* view, int64_t part);
+/* Gives the box of values of a part, where its first value is in its tile, and how many bytes rows and layers of it are apart in a room. */
+void stratus_brick_part_box(
+  const stratus_brick_view* view, int64_t part, int64_t lo[3], int64_t size[3], int64_t inset[3], size_t pitch[3]);
+/* Returns the one value that all bricks of a box are known to have, or NaN. */
+float stratus_brick_only_value(const stratus_bricks* bricks, const int64_t lo[3], const int64_t size[3]);
 /* Sets bricks->only by the source's own list, else by the value ranges that are kept, if any are. */
 void stratus_brick_find_only(stratus_context* context, stratus_bricks* bricks);
-/* Sets the constants of the tiles by bricks->only. Without them, for want of memory, all tiles are read. */
-void stratus_brick_find_constants(stratus_bricks* bricks);
 /* Reads all values of a part into the room, run after run. Returns how many bytes of them the source could not read: all where there is no
  * memory for the room. */
 uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, stratus_brick_room* room);
@@ -156,5 +166,10 @@ uint64_t stratus_brick_memory_default(void);
 uint64_t stratus_brick_memory_private(void);
 /* Returns the bytes that the pool's bricks may take now. With the pool's lock. */
 uint64_t stratus_brick_memory_left(stratus_brick_pool* pool);
+
+/* ---- brick_scan.c */
+
+/* Sets bricks->parts, once the array has its views. */
+void stratus_brick_set_parts(stratus_bricks* bricks);
 
 #endif

@@ -33,7 +33,7 @@ typedef struct stratus_brick_source {
    * not read. */
   uint64_t identity;
   /* NULL, or of each brick, x fastest, the one value that all of its values are, or NaN; copied. Such bricks are not read. The array then
-   * has tiles, whatever its size, and constants. Only for one component, of FLOAT32 or a type of 8 or 16 bits. */
+   * has tiles, whatever its size. Only for one component, of FLOAT32 or a type of 8 or 16 bits. */
   const float* only;
   /* NULL, or called once with `user`: by stratus_bricks_destroy(), or by stratus_bricks_create() if that fails. */
   stratus_brick_release_function release;
@@ -98,8 +98,8 @@ STRATUS_API stratus_status stratus_bricks_create(
 STRATUS_API const void* stratus_bricks_values(const stratus_bricks* bricks);
 /* The values in tiles, for stratus_volume.tiles, as long as the array lives; NULL if it has none. */
 STRATUS_API const stratus_tiles* stratus_bricks_tiles(const stratus_bricks* bricks);
-/* The tiles that are known to have one value, for stratus_volume.constants, as long as the array lives; NULL if the source does not say. */
-STRATUS_API const stratus_constants* stratus_bricks_constants(const stratus_bricks* bricks);
+/* The parts in which the values are read, for stratus_volume.parts, as long as the array lives; NULL if all values are in memory. */
+STRATUS_API const stratus_parts* stratus_bricks_parts(const stratus_bricks* bricks);
 /* Where the missing bytes are counted, for stratus_volume.missing. */
 STRATUS_API const uint64_t* stratus_bricks_missing(const stratus_bricks* bricks);
 /* Where the parts are counted that were read because something waited for them. */

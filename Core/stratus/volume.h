@@ -39,13 +39,8 @@ typedef struct stratus_tiles {
   int64_t dimensions[3]; /* of the volume */
 } stratus_tiles;
 
-/* Parts of a volume of which it is known, without reading them, whether all of their values are one. */
-typedef struct stratus_constants {
-  const float* only; /* of each part, x fastest: that value; NaN: values may differ */
-  int64_t side[3];   /* values along each axis of a part; the last one along an axis is smaller */
-  int64_t before[3]; /* values of the first part that precede the volume; below `side` */
-  int64_t across[3]; /* parts along each axis */
-} stratus_constants;
+/* The parts in which the values of an array are read from its file (stratus_bricks_parts()). */
+typedef struct stratus_parts stratus_parts;
 
 /* A view of values on a regular grid. Values may be NaN or infinite: a cell with such a corner is transparent (nearest interpolation: a
  * voxel with such a value).
@@ -97,9 +92,9 @@ typedef struct stratus_volume {
   /* The values once more, of all components and with value_stride, for rays on the host and the pages of devices; code that reads all
    * values reads `values`. For arrays that are larger than memory (stratus_bricks_tiles()). */
   stratus_tiles tiles;
-  /* NULL (default), or of a volume that has tiles and value_stride 1, of FLOAT32 or a type of 8 or 16 bits: value ranges are then found,
-   * and coarse copies made, from tiles. Tiles of one value are not read. */
-  const stratus_constants* constants;
+  /* NULL (default), or the parts of an array of which `values` are all values: value ranges and coarse copies are then made part after
+   * part, as they come from the file. Where the parts are of other values or dimensions, `values` are read. */
+  const stratus_parts* parts;
 } stratus_volume;
 
 /* Return a view with the defaults. The caller sets at least values, type and dimensions. */

@@ -56,7 +56,7 @@ stratus_status stratus_look_sample_begin(stratus_context* context, const stratus
   view->identity = 0;
   view->missing = NULL;
   view->tiles = (stratus_tiles){ .values = NULL };
-  view->constants = NULL;
+  view->parts = NULL;
   view->gradients = NULL;
   view->point_ghosts = view->cell_ghosts = NULL;
   double* place = (double*)(void*)((char*)sample->memory + at_places);
@@ -72,35 +72,26 @@ stratus_status stratus_look_sample_begin(stratus_context* context, const stratus
   return STRATUS_OK;
 }
 
-/* Copies a value from a tile; one of a constant tile without reading it. */
-static void copy_from_tile(const stratus_volume* volume, int64_t x, int64_t y, int64_t z, void* to)
+void stratus_look_sample_part(const stratus_look_sample* sample, const stratus_part* part)
 {
-  const stratus_constants* parts = volume->constants;
-  const int64_t at[3] = { (parts->before[0] + x) / parts->side[0], (parts->before[1] + y) / parts->side[1],
-    (parts->before[2] + z) / parts->side[2] };
-  const float one = parts->only[(at[2] * parts->across[1] + at[1]) * parts->across[0] + at[0]];
-  if (isnan(one)) {
-    stratus_volume_copy_row(volume, x, y, z, 1, to);
-  } else {
-    stratus_type_fill(volume->type, one, to, 1);
+  const size_t size = stratus_type_size(sample->view.type);
+  const int64_t *m = sample->view.dimensions, *step = sample->step, *lo = part->lo;
+  int64_t first[3], beyond[3];
+  for (int a = 0; a < 3; ++a) {
+    const int64_t end = (lo[a] + part->size[a] + step[a] - 1) / step[a];
+    first[a] = (lo[a] + step[a] - 1) / step[a];
+    beyond[a] = end < m[a] ? end : m[a];
   }
-}
-
-void stratus_look_sample_rows(
-  const stratus_look_sample* sample, const stratus_volume* volume, int64_t y0, int64_t y1, int64_t z0, int64_t z1)
-{
-  const size_t size = stratus_type_size(volume->type);
-  const int64_t *n = volume->dimensions, *m = sample->view.dimensions, *step = sample->step;
-  const bool tiled = stratus_volume_has_constants(volume);
-  for (int64_t k = (z0 + step[2] - 1) / step[2]; k < m[2] && k * step[2] < z1; ++k) {
-    for (int64_t j = (y0 + step[1] - 1) / step[1]; j < m[1] && j * step[1] < y1; ++j) {
-      const char* from = (const char*)volume->values + (size_t)((k * step[2] * n[1] + j * step[1]) * n[0] * volume->value_stride) * size;
-      char* to = (char*)sample->memory + (size_t)((k * m[1] + j) * m[0]) * size;
-      for (int64_t i = 0; i < m[0] && tiled; ++i) {
-        copy_from_tile(volume, i * step[0], j * step[1], k * step[2], to + (size_t)i * size);
-      }
-      for (int64_t i = 0; i < m[0] && !tiled; ++i) {
-        memcpy(to + (size_t)i * size, from + (size_t)(i * step[0] * volume->value_stride) * size, size);
+  for (int64_t k = first[2]; k < beyond[2]; ++k) {
+    for (int64_t j = first[1]; j < beyond[1]; ++j) {
+      const size_t row = (size_t)(k * step[2] - lo[2]) * part->pitch[2] + (size_t)(j * step[1] - lo[1]) * part->pitch[1];
+      char* to = (char*)sample->memory + (size_t)((k * m[1] + j) * m[0] + first[0]) * size;
+      for (int64_t i = first[0]; i < beyond[0]; ++i, to += size) {
+        if (part->values) {
+          memcpy(to, (const char*)part->values + row + (size_t)(i * step[0] - lo[0]) * part->pitch[0], size);
+        } else {
+          stratus_type_fill(sample->view.type, part->one, to, 1);
+        }
       }
     }
   }
@@ -125,11 +116,22 @@ stratus_status stratus_look_sample_make(stratus_context* context, const stratus_
 {
   TRY(stratus_look_sample_begin(context, volume, sample));
   if (!stratus_look_sample_recall(context, volume, sample)) {
-    const int64_t rows = sample->view.dimensions[1] * sample->view.dimensions[2];
-#pragma omp parallel for num_threads(context->threads)
-    for (int64_t row = 0; row < rows; ++row) {
-      const int64_t y = row % sample->view.dimensions[1] * sample->step[1], z = row / sample->view.dimensions[1] * sample->step[2];
-      stratus_look_sample_rows(sample, volume, y, y + 1, z, z + 1);
+    const stratus_parts* parts = stratus_volume_parts(volume);
+    const int64_t count = parts ? parts->count : sample->view.dimensions[2];
+#pragma omp parallel num_threads(context->threads)
+    {
+      stratus_part part = stratus_volume_whole(volume);
+#pragma omp for schedule(dynamic)
+      for (int64_t n = 0; n < count; ++n) {
+        if (parts) {
+          parts->read(parts->user, n, &part);
+          stratus_look_sample_part(sample, &part);
+        } else {
+          const stratus_part layer = stratus_part_rows(&part, 0, volume->dimensions[1], n * sample->step[2], n * sample->step[2] + 1);
+          stratus_look_sample_part(sample, &layer);
+        }
+      }
+      free(part.room);
     }
     stratus_look_sample_keep(volume, sample);
   }

@@ -18,9 +18,8 @@ stratus_status stratus_look_sample_make(stratus_context* context, const stratus_
 
 /* The parts of that. Makes room for a copy, whose values are not set. */
 stratus_status stratus_look_sample_begin(stratus_context* context, const stratus_volume* volume, stratus_look_sample* sample);
-/* Sets the copy's values that are in the rows y0..y1-1 of the layers z0..z1-1. */
-void stratus_look_sample_rows(
-  const stratus_look_sample* sample, const stratus_volume* volume, int64_t y0, int64_t y1, int64_t z0, int64_t z1);
+/* Sets the copy's values that are in a part of the volume. */
+void stratus_look_sample_part(const stratus_look_sample* sample, const stratus_part* part);
 /* Sets the copy's values from what is kept of the volume; false if nothing is. */
 bool stratus_look_sample_recall(stratus_context* context, const stratus_volume* volume, stratus_look_sample* sample);
 void stratus_look_sample_keep(const stratus_volume* volume, const stratus_look_sample* sample);

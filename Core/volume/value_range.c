@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Least and greatest value of each block of cells, including the halo that interpolation reads.
- *
- * A row of blocks shares (B+1)^2 rows of values. They are reduced elementwise into one row of extremes, which vectorises for any type,
- * and that row is reduced along x by doubling windows. Rows that two rows of blocks share are read twice, the second time from cache. */
+ * Least and greatest value of each block of cells, including the halo that interpolation reads. */
 #include "look_sample.h"
 #include "value_range_kept.h"
+#include "value_range_reduce.h"
 #include "volume.h"
 #include "volume_kept.h"
 #include "volume_device.h"
 
-#include <float.h>
-#include <omp.h>
 #include <string.h>
 
 #define BLOCK_SIZE_DEFAULT 4
@@ -19,262 +15,6 @@
  * memory most of it; and traversal addresses the maps with one int. */
 #define MAP_BYTES_MOST 0x1p28
 #define LANES 16
-#define ROW_BYTES 8 /* bytes of the widest value or extreme */
-
-/* One row of blocks, and one thread's scratch to reduce it. */
-typedef struct span {
-  const stratus_volume* volume;
-  double bias;
-  bool tiled;         /* values are copied from tiles */
-  int64_t x0, nx;     /* first value, and values along x */
-  int64_t y0, z0, ny; /* first row of values, and number of rows along y */
-  int64_t rows;       /* number of rows in all */
-  int64_t blocks;     /* number of blocks along x */
-  int size;           /* width of a block in cells */
-  void *lo, *hi;      /* nx extremes each */
-  void* strided;      /* four rows of nx values */
-  uint8_t* bad;       /* nx flags */
-  float *block_lo, *block_hi;
-  uint8_t* gaps;
-} span;
-
-#define NARROW(a) ((float)(a))
-#define WIDE(a) ((float)((double)(a)-bias))
-#define SAME(v) (v)
-
-#define TYPE int8_t
-#define ACC int8_t
-#define NAME(f) f##_int8
-#define LOAD SAME
-#define FETCH NARROW
-#define FLOATS 0
-#include "value_range_rows.h"
-
-#define TYPE uint8_t
-#define ACC uint8_t
-#define NAME(f) f##_uint8
-#define LOAD SAME
-#define FETCH NARROW
-#define FLOATS 0
-#include "value_range_rows.h"
-
-#define TYPE int16_t
-#define ACC int16_t
-#define NAME(f) f##_int16
-#define LOAD SAME
-#define FETCH NARROW
-#define FLOATS 0
-#include "value_range_rows.h"
-
-#define TYPE uint16_t
-#define ACC uint16_t
-#define NAME(f) f##_uint16
-#define LOAD SAME
-#define FETCH NARROW
-#define FLOATS 0
-#include "value_range_rows.h"
-
-#define TYPE int32_t
-#define ACC int32_t
-#define NAME(f) f##_int32
-#define LOAD SAME
-#define FETCH WIDE
-#define FLOATS 0
-#include "value_range_rows.h"
-
-#define TYPE uint32_t
-#define ACC uint32_t
-#define NAME(f) f##_uint32
-#define LOAD SAME
-#define FETCH WIDE
-#define FLOATS 0
-#include "value_range_rows.h"
-
-#define TYPE int64_t
-#define ACC int64_t
-#define NAME(f) f##_int64
-#define LOAD SAME
-#define FETCH WIDE
-#define FLOATS 0
-#include "value_range_rows.h"
-
-#define TYPE uint64_t
-#define ACC uint64_t
-#define NAME(f) f##_uint64
-#define LOAD SAME
-#define FETCH WIDE
-#define FLOATS 0
-#include "value_range_rows.h"
-
-#define TYPE float
-#define ACC float
-#define NAME(f) f##_float32
-#define LOAD SAME
-#define FETCH SAME
-#define FLOATS 1
-#include "value_range_rows.h"
-
-/* Doubles are fetched before they are compared: one that overflows a float counts as not finite, as it does everywhere else. */
-#define TYPE double
-#define ACC float
-#define NAME(f) f##_float64
-#define LOAD WIDE
-#define FETCH SAME
-#define FLOATS 1
-#include "value_range_rows.h"
-#include "device.h"
-
-typedef void (*reduce_function)(const span*);
-
-static reduce_function reduce_of(stratus_type type)
-{
-  switch (type) {
-    case STRATUS_INT8:
-      return reduce_int8;
-    case STRATUS_UINT8:
-      return reduce_uint8;
-    case STRATUS_INT16:
-      return reduce_int16;
-    case STRATUS_UINT16:
-      return reduce_uint16;
-    case STRATUS_INT32:
-      return reduce_int32;
-    case STRATUS_UINT32:
-      return reduce_uint32;
-    case STRATUS_INT64:
-      return reduce_int64;
-    case STRATUS_UINT64:
-      return reduce_uint64;
-    case STRATUS_FLOAT32:
-      return reduce_float32;
-    case STRATUS_FLOAT64:
-      return reduce_float64;
-  }
-  return NULL;
-}
-
-/* Returns the bytes of a thread's scratch, which give_room() divides. */
-static size_t room_bytes(int64_t nx)
-{
-  const size_t row = ((size_t)nx * ROW_BYTES + 63) / 64 * 64;
-  return 7 * row; /* lo, hi, four strided rows, bad */
-}
-
-static void give_room(span* s, uint8_t* memory)
-{
-  const size_t row = room_bytes(s->nx) / 7;
-  s->lo = memory;
-  s->hi = memory + row;
-  s->strided = memory + 2 * row;
-  s->bad = memory + 6 * row;
-}
-
-/* Returns the one value that all tiles are known to have in which block number i of a span's row has values, or NaN. */
-static float only_value(const span* s, int64_t i)
-{
-  const stratus_constants* parts = s->volume->constants;
-  const int64_t *n = s->volume->dimensions, x1 = (i + 1) * s->size;
-  const int64_t lo[3] = { i * s->size, s->y0, s->z0 };
-  const int64_t hi[3] = { x1 < n[0] ? x1 : n[0] - 1, s->y0 + s->ny - 1, s->z0 + s->rows / s->ny - 1 };
-  int64_t first[3], last[3];
-  for (int a = 0; a < 3; ++a) {
-    first[a] = (parts->before[a] + lo[a]) / parts->side[a];
-    last[a] = (parts->before[a] + hi[a]) / parts->side[a];
-  }
-  const float one = parts->only[(first[2] * parts->across[1] + first[1]) * parts->across[0] + first[0]];
-  bool same = fabsf(one) <= FLT_MAX;
-  for (int64_t k = first[2]; k <= last[2]; ++k) {
-    for (int64_t j = first[1]; j <= last[1]; ++j) {
-      for (int64_t x = first[0]; x <= last[0]; ++x) {
-        same = same && parts->only[(k * parts->across[1] + j) * parts->across[0] + x] == one;
-      }
-    }
-  }
-  return same ? one : NAN;
-}
-
-/* Finds the ranges of a row of blocks, and takes what a coarse copy has of its values, if there is one (not NULL). */
-static void reduce_row(
-  span* s, const stratus_value_range* ranges, reduce_function reduce, int64_t j, int64_t k, const stratus_look_sample* sample)
-{
-  const int64_t *n = s->volume->dimensions, size = ranges->block_size;
-  const int64_t y1 = (j + 1) * size < n[1] ? (j + 1) * size : n[1] - 1;
-  const int64_t z1 = (k + 1) * size < n[2] ? (k + 1) * size : n[2] - 1;
-  const int64_t block = (k * ranges->blocks[1] + j) * ranges->blocks[0];
-  s->y0 = j * size;
-  s->z0 = k * size;
-  s->ny = y1 - s->y0 + 1;
-  s->rows = s->ny * (z1 - s->z0 + 1);
-  for (int64_t i = 0, end; i < ranges->blocks[0]; i = end) {
-    const float one = s->tiled ? only_value(s, i) : NAN;
-    end = s->tiled ? i + 1 : ranges->blocks[0];
-    while (isnan(one) && end < ranges->blocks[0] && isnan(only_value(s, end))) {
-      ++end;
-    }
-    s->x0 = i * size;
-    s->nx = (end * size < n[0] ? end * size : n[0] - 1) - s->x0 + 1;
-    s->blocks = end - i;
-    s->block_lo = ranges->lo + block + i;
-    s->block_hi = ranges->hi + block + i;
-    s->gaps = ranges->gaps + block + i;
-    if (isnan(one)) {
-      reduce(s);
-    } else {
-      s->block_lo[0] = s->block_hi[0] = one + 0.0f; /* as reduce() has zeros */
-      s->gaps[0] = 0;
-    }
-  }
-  if (sample) {
-    stratus_look_sample_rows(
-      sample, s->volume, s->y0, j + 1 < ranges->blocks[1] ? s->y0 + size : n[1], s->z0, k + 1 < ranges->blocks[2] ? s->z0 + size : n[2]);
-  }
-}
-
-static stratus_status reduce_on_host(
-  stratus_context* context, const stratus_volume* volume, stratus_value_range* ranges, const stratus_look_sample* sample)
-{
-  const reduce_function reduce = reduce_of(volume->type);
-  const int64_t rows = ranges->blocks[1] * ranges->blocks[2];
-  const int threads = (int64_t)context->threads < rows ? context->threads : (int)rows;
-  const size_t room = room_bytes(volume->dimensions[0]);
-  void* memory = NULL;
-  stratus_status status = STRATUS_OK;
-  int stop = 0;
-
-  TRY(stratus_allocate(context, (size_t)threads, room, &memory));
-#pragma omp parallel num_threads(threads)
-  {
-    const int thread = omp_get_thread_num();
-    span s = {
-      .volume = volume,
-      .bias = ranges->bias,
-      .tiled = stratus_volume_has_constants(volume),
-      .nx = volume->dimensions[0],
-      .size = ranges->block_size,
-    };
-    give_room(&s, (uint8_t*)memory + (size_t)thread * room);
-#pragma omp for schedule(static)
-    for (int64_t row = 0; row < rows; ++row) {
-      int stopped;
-#pragma omp atomic read
-      stopped = stop;
-      if (stopped) {
-        continue;
-      }
-      reduce_row(&s, ranges, reduce, row % ranges->blocks[1], row / ranges->blocks[1], sample);
-      /* Only the calling thread reports progress; the first rows are its share. */
-      if (thread == 0 && row % ranges->blocks[1] == 0) {
-        status = stratus_progress(context, "value ranges", (double)row * threads / (double)rows);
-        if (status != STRATUS_OK) {
-#pragma omp atomic write
-          stop = 1;
-        }
-      }
-    }
-  }
-  stratus_release(context, memory);
-  return status;
-}
 
 /* Finds the blocks, at most two along each axis, that hold `at`. shared (cell_centered): `at` is a value, and one on the border of two
  * blocks belongs to both. */
@@ -411,7 +151,7 @@ static stratus_status reduce(stratus_context* context, const stratus_volume* vol
   if (stratus_kept_is_possible(volume) && stratus_look_samples(volume)) {
     TRY(stratus_look_sample_begin(context, volume, &sample));
   }
-  const stratus_status status = reduce_on_host(context, volume, ranges, sample.memory ? &sample : NULL);
+  const stratus_status status = stratus_value_range_reduce(context, volume, ranges, sample.memory ? &sample : NULL);
   if (status == STRATUS_OK && sample.memory && stratus_volume_check_missing(context, volume) == STRATUS_OK) {
     stratus_look_sample_keep(volume, &sample);
   }
@@ -422,24 +162,18 @@ static stratus_status reduce(stratus_context* context, const stratus_volume* vol
 /* Sets ranges by the ranges of smaller blocks, whose size divides the size of the larger ones. */
 static void join_blocks(const stratus_value_range* small, stratus_value_range* ranges)
 {
-  const int64_t factor = ranges->block_size / small->block_size, count = ranges->blocks[0] * ranges->blocks[1] * ranges->blocks[2];
+  const int64_t factor = ranges->block_size / small->block_size;
   ranges->bias = small->bias;
   ranges->whole_lo = small->whole_lo;
   ranges->whole_hi = small->whole_hi;
-  for (int64_t b = 0; b < count; ++b) {
-    ranges->lo[b] = INFINITY;
-    ranges->hi[b] = -INFINITY;
-    ranges->gaps[b] = 0;
-  }
+  stratus_value_range_begin_blocks(ranges);
   int64_t from = 0;
   for (int64_t k = 0; k < small->blocks[2]; ++k) {
     for (int64_t j = 0; j < small->blocks[1]; ++j) {
       const int64_t row = (k / factor * ranges->blocks[1] + j / factor) * ranges->blocks[0];
       for (int64_t i = 0; i < small->blocks[0]; ++i, ++from) {
         const int64_t to = row + i / factor;
-        ranges->lo[to] = small->lo[from] < ranges->lo[to] ? small->lo[from] : ranges->lo[to];
-        ranges->hi[to] = small->hi[from] > ranges->hi[to] ? small->hi[from] : ranges->hi[to];
-        ranges->gaps[to] |= small->gaps[from];
+        stratus_value_range_widen(ranges, to, small->lo[from], small->hi[from], small->gaps[from]);
       }
     }
   }

@@ -6,23 +6,18 @@
  *   LOAD(v)  a value as an ACC; `bias` is in scope
  *   FETCH(a) an ACC as the fetched value; `bias` is in scope
  *   FLOATS   1 if values may be NaN or infinite (as floats)
- * A row is a run of `nx` values along x with unit stride. */
+ * A row is a run of `nx` values along x. */
 
-/* Row r of a span, copied to `scratch` if its stride is not 1, or from tiles. */
+/* Row r of a span, copied to `scratch` if its values are apart. */
 static const TYPE* NAME(row)(const span* s, int64_t r, void* scratch)
 {
-  const int64_t y = s->y0 + r % s->ny, z = s->z0 + r / s->ny, *n = s->volume->dimensions;
-  const TYPE* values = (const TYPE*)s->volume->values + ((z * n[1] + y) * n[0] + s->x0) * s->volume->value_stride;
+  const char* const values = s->values + (size_t)(r / s->ny) * s->pitch[2] + (size_t)(r % s->ny) * s->pitch[1];
+  if (s->pitch[0] == sizeof(TYPE)) {
+    return (const TYPE*)(const void*)values;
+  }
   TYPE* copy = scratch;
-  if (s->tiled) {
-    stratus_volume_copy_row(s->volume, s->x0, y, z, s->nx, scratch);
-    return copy;
-  }
-  if (s->volume->value_stride == 1) {
-    return values;
-  }
   for (int64_t x = 0; x < s->nx; ++x) {
-    copy[x] = values[x * s->volume->value_stride];
+    copy[x] = *(const TYPE*)(const void*)(values + (size_t)x * s->pitch[0]);
   }
   return copy;
 }
@@ -88,10 +83,32 @@ static void NAME(careful)(const span* s, ACC* lo, ACC* hi, uint8_t* bad)
 }
 #endif
 
-/* Reduces a row of blocks to their ranges. */
-static void NAME(reduce)(const span* s)
+/* Sets the flags of the blocks that have columns with values that are not finite. */
+static void NAME(flag)(span* s, const uint8_t* bad)
 {
-  ACC *lo = s->lo, *hi = s->hi;
+  (void)bad;
+  for (int64_t b = 0; b < s->blocks; ++b) {
+    s->gaps[b] = 0;
+  }
+  s->first_gap = 0;
+#if FLOATS
+  s->first_gap = bad ? bad[0] : 0;
+  for (int64_t x = 0; bad && x < s->nx; ++x) {
+    const int64_t at = s->lead + x, b = at / s->size;
+    if (b < s->blocks) {
+      s->gaps[b] |= bad[x];
+    }
+    if (at % s->size == 0 && b > 0) { /* the halo of the block before */
+      s->gaps[b - 1] |= bad[x];
+    }
+  }
+#endif
+}
+
+/* Reduces a row of blocks to their ranges, and the first values along x to theirs. */
+static void NAME(reduce)(span* s)
+{
+  ACC *begin_lo = s->lo, *begin_hi = s->hi, *lo = begin_lo + s->lead, *hi = begin_hi + s->lead;
   const double bias = s->bias;
   int bad = 0;
   (void)bias;
@@ -107,26 +124,22 @@ static void NAME(reduce)(const span* s)
     }
     bad |= NAME(widen)(rows, s->nx, bias, lo, hi);
   }
-  for (int64_t b = 0; b < s->blocks; ++b) {
-    s->gaps[b] = 0;
-  }
 #if FLOATS
   if (bad) {
     NAME(careful)(s, lo, hi, s->bad);
-    for (int64_t x = 0; x < s->nx; ++x) {
-      const int64_t b = x / s->size < s->blocks ? x / s->size : s->blocks - 1;
-      s->gaps[b] |= s->bad[x];
-      if (x % s->size == 0 && x > 0) { /* the halo of the block before */
-        s->gaps[x / s->size - 1] |= s->bad[x];
-      }
-    }
   }
 #endif
-  (void)bad;
-  NAME(window)(s->nx, s->size, lo, hi);
+  NAME(flag)(s, bad ? s->bad : NULL);
+  s->first_lo = FETCH(lo[0]) + 0.0f; /* -0 becomes 0: the order of zeros must not show in the bits */
+  s->first_hi = FETCH(hi[0]) + 0.0f;
+  for (int64_t x = 0; x < s->lead; ++x) { /* other parts have these values; those of the first column are of their block, too */
+    begin_lo[x] = lo[0];
+    begin_hi[x] = hi[0];
+  }
+  NAME(window)(s->lead + s->nx, s->size, begin_lo, begin_hi);
   for (int64_t b = 0; b < s->blocks; ++b) {
-    const ACC least = lo[b * s->size], most = hi[b * s->size];
-    s->block_lo[b] = FETCH(least) + 0.0f; /* -0 becomes 0: the order of zeros must not show in the bits */
+    const ACC least = begin_lo[b * s->size], most = begin_hi[b * s->size];
+    s->block_lo[b] = FETCH(least) + 0.0f;
     s->block_hi[b] = FETCH(most) + 0.0f;
   }
 }

@@ -56,24 +56,36 @@ void stratus_type_fill(stratus_type type, float one, void* values, size_t count)
   }
 }
 
-bool stratus_volume_has_constants(const stratus_volume* volume)
+const stratus_parts* stratus_volume_parts(const stratus_volume* volume)
 {
-  return volume->constants && volume->tiles.values && volume->value_stride == 1 && !stratus_type_is_wide(volume->type);
+  const stratus_parts* parts = volume->parts;
+  const bool whole = parts && parts->values == volume->values && parts->type == volume->type && volume->value_stride == 1 &&
+    memcmp(parts->dimensions, volume->dimensions, sizeof parts->dimensions) == 0;
+  return whole ? parts : NULL;
 }
 
-void stratus_volume_copy_row(const stratus_volume* volume, int64_t x, int64_t y, int64_t z, int64_t count, void* to)
+stratus_part stratus_volume_whole(const stratus_volume* volume)
 {
-  const stratus_constants* parts = volume->constants;
-  const stratus_tiles* tiles = &volume->tiles;
-  const size_t size = stratus_type_size(volume->type);
-  const char* from = (const char*)tiles->values + tiles->at[1][y] + tiles->at[2][z];
-  while (count > 0) {
-    const int64_t left = parts->side[0] - (parts->before[0] + x) % parts->side[0], run = left < count ? left : count;
-    memcpy(to, from + tiles->at[0][x], (size_t)run * size);
-    to = (char*)to + (size_t)run * size;
-    x += run;
-    count -= run;
+  const int64_t* n = volume->dimensions;
+  const size_t pitch = stratus_type_size(volume->type) * (size_t)volume->value_stride;
+  return (stratus_part){
+    .size = { n[0], n[1], n[2] }, .values = volume->values, .pitch = { pitch, pitch * (size_t)n[0], pitch * (size_t)n[0] * (size_t)n[1] }
+  };
+}
+
+stratus_part stratus_part_rows(const stratus_part* part, int64_t y0, int64_t y1, int64_t z0, int64_t z1)
+{
+  stratus_part rows = *part;
+  rows.lo[1] = y0;
+  rows.lo[2] = z0;
+  rows.size[1] = y1 - y0;
+  rows.size[2] = z1 - z0;
+  rows.room = NULL;
+  rows.capacity = 0;
+  if (part->values) {
+    rows.values = (const char*)part->values + (size_t)(y0 - part->lo[1]) * part->pitch[1] + (size_t)(z0 - part->lo[2]) * part->pitch[2];
   }
+  return rows;
 }
 
 bool stratus_type_is_integer(stratus_type type)

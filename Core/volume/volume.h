@@ -28,10 +28,36 @@ bool stratus_type_is_wide(stratus_type type);
 bool stratus_type_is_integer(stratus_type type);
 /* Sets values of a type that is not wide to one that it has. */
 void stratus_type_fill(stratus_type type, float one, void* values, size_t count);
-/* Returns whether value ranges and coarse copies are made from tiles, by the volume's constants. */
-bool stratus_volume_has_constants(const stratus_volume* volume);
-/* Copies values from the tiles, from (x,y,z) on along x. */
-void stratus_volume_copy_row(const stratus_volume* volume, int64_t x, int64_t y, int64_t z, int64_t count, void* to);
+/* A box of a volume's values. */
+typedef struct stratus_part {
+  int64_t lo[3], size[3]; /* its first value, and values along each axis */
+  const void* values;     /* NULL: all of them are `one` */
+  size_t pitch[3];        /* bytes from a value to the next one along each axis */
+  float one;
+  void* room; /* where read() may put values. NULL at first; its reader frees it */
+  size_t capacity;
+} stratus_part;
+
+/* Gives part `number`; its room is that of another part before. Several threads call it at once. Values that cannot be read count as
+ * missing.
+ */
+typedef void stratus_part_read_function(void* user, int64_t number, stratus_part* part);
+
+struct stratus_parts {
+  const void* values; /* of the array, which has this type and these dimensions */
+  stratus_type type;
+  int64_t dimensions[3];
+  int64_t count; /* of parts; together they are all values, each once */
+  stratus_part_read_function* read;
+  void* user;
+};
+
+/* Returns all values of a volume as one part, in place. */
+stratus_part stratus_volume_whole(const stratus_volume* volume);
+/* Returns the rows y0..y1-1 of the layers z0..z1-1 of a part that has them. */
+stratus_part stratus_part_rows(const stratus_part* part, int64_t y0, int64_t y1, int64_t z0, int64_t z1);
+/* Returns the parts of all of the volume's values, if there are such. */
+const stratus_parts* stratus_volume_parts(const stratus_volume* volume);
 /* Return the least float that is not below a number, and the greatest that is not above it. */
 static inline float stratus_float_above(double number)
 {

@@ -40,14 +40,14 @@ bool HasItsValues(vtkDataArray* array)
 } // namespace
 
 void vtkStratusSetMapped(vtkDataArray* array, uint64_t identity, const uint64_t* missing, const uint64_t* reads, const stratus_tiles* tiles,
-  const stratus_constants* constants)
+  const stratus_parts* parts)
 {
   vtkInformation* const information = array->GetInformation();
   information->Set(Key("IDENTITY"), static_cast<unsigned long>(identity));
   information->Set(Key("MISSING"), reinterpret_cast<unsigned long>(missing));
   information->Set(Key("READS"), reinterpret_cast<unsigned long>(reads));
   information->Set(Key("TILES"), reinterpret_cast<unsigned long>(tiles));
-  information->Set(Key("CONSTANTS"), reinterpret_cast<unsigned long>(constants));
+  information->Set(Key("PARTS"), reinterpret_cast<unsigned long>(parts));
   information->Set(Key("VALUES"), reinterpret_cast<unsigned long>(array->GetVoidPointer(0)));
   information->Set(Key("TIME"), static_cast<unsigned long>(array->GetMTime()));
 }
@@ -78,12 +78,11 @@ void vtkStratusSetSource(vtkDataArray* array, int component, stratus_volume& vol
   volume.identity += volume.identity ? static_cast<uint64_t>(component) : 0;
   volume.missing = HasItsValues(array) ? reinterpret_cast<const uint64_t*>(Find(array, "MISSING")) : nullptr;
   volume.tiles = {};
-  volume.constants = nullptr;
   const bool unchanged = HasItsValues(array) && Find(array, "TIME") == array->GetMTime();
+  volume.parts = unchanged ? reinterpret_cast<const stratus_parts*>(Find(array, "PARTS")) : nullptr;
   const stratus_tiles* const tiles = unchanged ? reinterpret_cast<const stratus_tiles*>(Find(array, "TILES")) : nullptr;
   if (tiles && std::equal(tiles->dimensions, tiles->dimensions + 3, volume.dimensions)) { // the array is on the grid that it was read for
     volume.tiles = *tiles;
     volume.tiles.values = static_cast<const char*>(tiles->values) + component * array->GetDataTypeSize();
-    volume.constants = reinterpret_cast<const stratus_constants*>(Find(array, "CONSTANTS"));
   }
 }

@@ -136,7 +136,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
     values, core.dimensions[0] * core.dimensions[1] * core.dimensions[2], 0, vtkAbstractArray::VTK_DATA_ARRAY_USER_DEFINED);
   array->SetArrayFreeFunction(&Free);
   vtkStratusSetMapped(array, source.Identity, stratus_bricks_missing(bricks), stratus_bricks_reads(bricks), stratus_bricks_tiles(bricks),
-    stratus_bricks_constants(bricks));
+    stratus_bricks_parts(bricks));
   return array;
 }
 

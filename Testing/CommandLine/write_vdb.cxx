@@ -21,7 +21,7 @@ int main(int argc, char* argv[])
         if (r < 1) {
           density->tree().setValue(openvdb::Coord(x, y, z), 1 - r);
           apart->tree().setValue(openvdb::Coord(x - 50, y, z), 1 - r);
-          apart->tree().setValue(openvdb::Coord(x + 110, y + 90, z + 120), 1 - r);
+          apart->tree().setValue(openvdb::Coord(x + 125, y + 95, z + 125), 1 - r);
           wind->tree().setValue(openvdb::Coord(x, y, z), openvdb::Vec3f(3, -4, 0) * (1 - r));
         }
       }

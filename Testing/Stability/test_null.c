@@ -77,7 +77,7 @@ static void bricks(const stratus_volume* v)
   GIVES(NULL, stratus_bricks_values(NULL));
   GIVES(NULL, stratus_bricks_missing(NULL));
   GIVES(NULL, stratus_bricks_tiles(NULL));
-  GIVES(NULL, stratus_bricks_constants(NULL));
+  GIVES(NULL, stratus_bricks_parts(NULL));
   IS_SILENT(stratus_bricks_read_ahead(NULL, NULL));
   GIVES(NULL, stratus_bricks_reads(NULL));
   TAKES(stratus_bricks_get_report(NULL, &report));

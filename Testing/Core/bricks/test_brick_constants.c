@@ -163,8 +163,8 @@ static void bricks_of_one_value_are_as_if_read(void** state)
       plain.values = values;
       known.values = stratus_bricks_values(bricks);
       known.tiles = *stratus_bricks_tiles(bricks);
-      known.constants = stratus_bricks_constants(bricks);
-      assert_non_null(known.constants);
+      known.parts = stratus_bricks_parts(bricks);
+      assert_non_null(known.parts);
       for (int size = 2; size <= 32; size *= 4) {
         expect_same_ranges(&plain, &known, size);
       }
