@@ -92,6 +92,7 @@ Data and appearance
   --globe                 show longitudes and latitudes of a netCDF file, its own or by its map projection, on a sphere of 6371 km, with
                           heights times F of --exaggerate (default: as much as makes them reach over a tenth of its radius)
   --log                   map colours, and a guessed opacity, to the logarithm of the value, over at most four decades
+  --linear                map them to the value, even if values are lognormal
   --axes                  draw a box around the data, with the file's coordinates: degrees, m or km, depths, pressures
   --coast                 draw coastlines at the bottom of data with longitudes and latitudes or a map projection, of depths at the top,
                           or on the globe
@@ -599,6 +600,7 @@ constexpr struct {
 } flags[] = {
   { "--nearest", &options::nearest },
   { "--log", &options::logarithmic },
+  { "--linear", &options::linear },
   { "--axes", &options::axes },
   { "--coast", &options::coast },
   { "--globe", &options::globe },
@@ -760,6 +762,9 @@ void check_suns(const options& o)
 
 void check_cloud(const options& o)
 {
+  if (o.logarithmic && o.linear) {
+    throw usage("--log and --linear are two scales: leave out one");
+  }
   const char* const of_cloud = o.metres > 0.0 ? "--metres" : !o.water_units.empty() ? "--water-units" : nullptr;
   if (!o.cloud && of_cloud) {
     throw usage(std::string(of_cloud) + " is for --cloud");
@@ -768,6 +773,7 @@ void check_cloud(const options& o)
     : !o.opacity.empty()               ? "--opacity"
     : o.unit_distance > 0.0            ? "--unit-distance"
     : o.logarithmic                    ? "--log"
+    : o.linear                         ? "--linear"
     : o.color_bar                      ? "--color-bar"
     : o.shade                          ? "--shade"
     : o.mode != STRATUS_MODE_COMPOSITE ? "--mode"

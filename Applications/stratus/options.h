@@ -65,7 +65,7 @@ struct options {
   bool has_exaggeration = false;
   std::string heights; // for the caption, if set_heights() chose the exaggeration; otherwise ""
   data_about about;
-  bool logarithmic = false;
+  bool logarithmic = false, linear = false;
   bool axes = false;
   bool coast = false;
   bool globe = false;

@@ -79,7 +79,7 @@ static stratus_look guess(const context& core, const look_input& data, stratus_l
 {
   stratus_look_options how = stratus_look_options_default();
   how.kind = kind;
-  how.logarithmic = o.logarithmic ? 1 : 0;
+  how.logarithmic = o.logarithmic ? 1 : o.linear ? -1 : 0;
   how.column_axis = !o.about.earth && kind == STRATUS_LOOK_UNKNOWN ? -1 : data.thickness.empty() && !o.up.empty() ? o.up[0] - 'x' : 2;
   how.thickness = data.thickness.empty() ? nullptr : data.thickness.data();
   how.unordered = data.unordered ? 1 : 0;
@@ -108,6 +108,7 @@ static void set_guess(const stratus_look& look, transfer& result)
   }
   result.low = look.low;
   result.high = look.high;
+  result.logarithmic = look.logarithmic != 0;
   result.origin = std::string("histogram") + (result.logarithmic ? ", " : ": ") + look.reason;
 }
 
@@ -146,7 +147,8 @@ transfer make_transfer(const context& core, const look_input& data, const stratu
   }
   const std::string name = o.color.empty() ? usual : o.color;
   const bool given = name.find(':') != std::string::npos;
-  result.color = o.logarithmic && !given ? logarithmic_color(name, result.low, result.high) : parse_color(name, result.low, result.high);
+  result.color =
+    result.logarithmic && !given ? logarithmic_color(name, result.low, result.high) : parse_color(name, result.low, result.high);
   return result;
 }
 } // namespace cli

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { AMOUNT = STRATUS_LOOK_AMOUNT, STATE = STRATUS_LOOK_STATE, SIGNED = STRATUS_LOOK_SIGNED };
+enum { AMOUNT = STRATUS_LOOK_AMOUNT, STATE = STRATUS_LOOK_STATE, SIGNED = STRATUS_LOOK_SIGNED, TRACER = STRATUS_LOOK_TRACER };
 
 /* A text, what it says about a variable, and colour maps for a dark and a bright background. */
 typedef struct look_rule {
@@ -29,8 +29,8 @@ static const look_rule standard_names[] = {
   { "temperature", STATE, "thermal", "thermal" },
   { "salinity", STATE, "haline", "haline" },
   { "oxygen", STATE, "oxy", "oxy" },
-  { "chlorophyll", AMOUNT, "algae_r", "algae" },
-  { "phytoplankton", AMOUNT, "algae_r", "algae" },
+  { "chlorophyll", TRACER, "algae_r", "algae" },
+  { "phytoplankton", TRACER, "algae_r", "algae" },
   { "cloud", AMOUNT, "cloud", "ice_r" },
   { "rain", AMOUNT, "rain_r", "rain" },
   { "precipitation", AMOUNT, "rain_r", "rain" },
@@ -38,15 +38,15 @@ static const look_rule standard_names[] = {
   { "graupel", AMOUNT, "ice", "ice_r" },
   { "humidity", AMOUNT, "tempo_r", "tempo" },
   { "water_vapor", AMOUNT, "tempo_r", "tempo" },
-  { "sediment", AMOUNT, "turbid_r", "turbid" },
-  { "suspended_matter", AMOUNT, "turbid_r", "turbid" },
-  { "dust", AMOUNT, "turbid_r", "turbid" },
-  { "volcanic_ash", AMOUNT, "turbid_r", "turbid" },
-  { "aerosol", AMOUNT, "turbid_r", "turbid" },
-  { "mass_fraction_of", AMOUNT, "viridis", "viridis_r" },
-  { "mole_fraction_of", AMOUNT, "viridis", "viridis_r" },
-  { "concentration_of", AMOUNT, "viridis", "viridis_r" },
-  { "mixing_ratio", AMOUNT, "viridis", "viridis_r" },
+  { "sediment", TRACER, "turbid_r", "turbid" },
+  { "suspended_matter", TRACER, "turbid_r", "turbid" },
+  { "dust", TRACER, "turbid_r", "turbid" },
+  { "volcanic_ash", TRACER, "turbid_r", "turbid" },
+  { "aerosol", TRACER, "turbid_r", "turbid" },
+  { "mass_fraction_of", TRACER, "viridis", "viridis_r" },
+  { "mole_fraction_of", TRACER, "viridis", "viridis_r" },
+  { "concentration_of", TRACER, "viridis", "viridis_r" },
+  { "mixing_ratio", TRACER, "viridis", "viridis_r" },
   { "area_fraction", AMOUNT, "viridis", "viridis_r" },
   { "density", STATE, "dense_r", "dense" },
   { "pressure", STATE, "viridis", "viridis" },
@@ -66,10 +66,10 @@ static const look_rule names[] = {
   { "vosaline", STATE, "haline", "haline" },
   { "o2", STATE, "oxy", "oxy" },
   { "oxygen", STATE, "oxy", "oxy" },
-  { "chl", AMOUNT, "algae_r", "algae" },
-  { "chlorophyll", AMOUNT, "algae_r", "algae" },
-  { "dye", AMOUNT, "viridis", "viridis_r" },
-  { "tracer", AMOUNT, "viridis", "viridis_r" },
+  { "chl", TRACER, "algae_r", "algae" },
+  { "chlorophyll", TRACER, "algae_r", "algae" },
+  { "dye", TRACER, "viridis", "viridis_r" },
+  { "tracer", TRACER, "viridis", "viridis_r" },
   { "cl", AMOUNT, "cloud", "ice_r" },
   { "cc", AMOUNT, "cloud", "ice_r" },
   { "qr", AMOUNT, "rain_r", "rain" },
@@ -105,8 +105,8 @@ static const look_rule units_known[] = {
   { "pas**-1", SIGNED, "cool-warm", "balance" },
   { "s-1", SIGNED, "cool-warm", "curl" },
   { "s**-1", SIGNED, "cool-warm", "curl" },
-  { "ppm", AMOUNT, "viridis", "viridis_r" },
-  { "ppb", AMOUNT, "viridis", "viridis_r" },
+  { "ppm", TRACER, "viridis", "viridis_r" },
+  { "ppb", TRACER, "viridis", "viridis_r" },
 };
 
 /* Beginnings of units of a matter's mass or number by that of another matter, or by a volume. */
@@ -149,7 +149,7 @@ static bool is_concentration(const char* units)
 
 stratus_look_kind stratus_look_kind_of(const char* name, const char* standard_name, const char* units, int bright, const char** color_map)
 {
-  static const look_rule cloud = { "", AMOUNT, "cloud", "ice_r" }, matter = { "", AMOUNT, "viridis", "viridis_r" };
+  static const look_rule cloud = { "", AMOUNT, "cloud", "ice_r" }, matter = { "", TRACER, "viridis", "viridis_r" };
   const char* const last = name ? strrchr(name, '/') : NULL;
   char standard[64], unit[64], own[64];
   copy_small(standard_name, false, standard);

@@ -14,7 +14,8 @@ typedef enum stratus_look_kind {
   STRATUS_LOOK_UNKNOWN, /* the values decide */
   STRATUS_LOOK_AMOUNT,  /* of a matter that is here and not there: cloud water, concentrations, speed */
   STRATUS_LOOK_STATE,   /* of the matter that fills the grid: temperature, salinity, pressure */
-  STRATUS_LOOK_SIGNED   /* departs from 0 in two directions: components of a velocity, tendencies, anomalies */
+  STRATUS_LOOK_SIGNED,  /* departs from 0 in two directions: components of a velocity, tendencies, anomalies */
+  STRATUS_LOOK_TRACER   /* an amount that thins out by mixing: concentrations, aerosol, dust, chlorophyll. Its values may be lognormal. */
 } stratus_look_kind;
 
 /* Find out what a variable of a file is.
@@ -41,7 +42,7 @@ STRATUS_API stratus_status stratus_look_count(
 
 typedef struct stratus_look_options {
   stratus_look_kind kind; /* default UNKNOWN */
-  int logarithmic;        /* 1: over the logarithm of the value, at most four decades. Default 0. */
+  int logarithmic; /* 1: over the logarithm of the value, at most four decades. 0 (default): if the values are lognormal. -1: never. */
   /* The grid's axis 0..2 of columns whose optical depth is column_depth. -1 (default): there are none, and a ray through the shown values
    * has an optical depth of about 2. */
   int column_axis;
@@ -63,6 +64,7 @@ typedef struct stratus_look {
   size_t opacity_count;
   double unit_distance;   /* world length to which `opacity` refers: the edge of a cube as large as a voxel, or less */
   double low, high;       /* values of the first and the last colour */
+  int logarithmic;        /* 1: opacity and colours are over the logarithm of the value; low > 0 */
   stratus_look_kind kind; /* that of the options; if it is UNKNOWN or contradicts the values, the kind that they show */
   char reason[256];       /* a text for people */
 } stratus_look;
@@ -72,6 +74,9 @@ typedef struct stratus_look {
  * - SIGNED: opacity rises from 0 at the value 0 in both directions, up to the larger end of the range. Colours reach as far on both sides.
  *   Values of unknown kind are SIGNED if each side reaches at least a tenth as far as the other, and the most frequent value is within a
  *   tenth of the range's larger end around 0. Values on one side of 0 are never SIGNED.
+ * - TRACER, and UNKNOWN if all values are above 0: lognormal values are drawn over the logarithm. Values are lognormal if the positive
+ *   values of the range, without 1/1000 at each end, span at least two decades, and their median is in the middle third of that span, on
+ * the logarithmic scale. A plume over a background, whose median is the background, is not. Otherwise a TRACER is like an AMOUNT.
  * - AMOUNT: transparent up to the most frequent value, the background, and in proportion to the amount above it. If the least value is
  *   above half of the largest, the values are a STATE.
  * - STATE: values that are more frequent than they would be if all were equally frequent are more transparent in proportion, down to 1/10.

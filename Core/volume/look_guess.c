@@ -75,7 +75,7 @@ static stratus_look_kind kind_by_values(const stratus_look_histogram* h, stratus
   if (claimed == STRATUS_LOOK_SIGNED) {
     return sided ? claimed : STRATUS_LOOK_UNKNOWN;
   }
-  if (claimed == STRATUS_LOOK_AMOUNT) {
+  if (claimed == STRATUS_LOOK_AMOUNT || claimed == STRATUS_LOOK_TRACER) {
     return low > FILLS_GRID * high ? STRATUS_LOOK_STATE : claimed;
   }
   if (claimed == STRATUS_LOOK_UNKNOWN && sided && fmin(-low, high) >= TWO_SIDED * most) {
@@ -200,9 +200,12 @@ static stratus_status check_volumes(stratus_context* context, const stratus_volu
 
 static stratus_status check_options(stratus_context* context, const stratus_look_options* o, int count)
 {
-  if ((int)o->kind < STRATUS_LOOK_UNKNOWN || o->kind > STRATUS_LOOK_SIGNED) {
+  if ((int)o->kind < STRATUS_LOOK_UNKNOWN || o->kind > STRATUS_LOOK_TRACER) {
     return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "kind %d, must be in %d..%d", (int)o->kind, STRATUS_LOOK_UNKNOWN, STRATUS_LOOK_SIGNED);
+      context, STRATUS_INVALID_ARGUMENT, "kind %d, must be in %d..%d", (int)o->kind, STRATUS_LOOK_UNKNOWN, STRATUS_LOOK_TRACER);
+  }
+  if (o->logarithmic < -1 || o->logarithmic > 1) {
+    return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "logarithmic %d, must be in -1..1", o->logarithmic);
   }
   if (o->column_axis < -1 || o->column_axis > 2) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "axis of columns %d, must be in -1..2", o->column_axis);
@@ -275,8 +278,13 @@ static stratus_status guess(stratus_context* context, const stratus_volume* volu
   stratus_look_shape shape = { .count = 0 };
   look->unit_distance = edge;
   look->kind = kind_by_values(h, o->kind);
-  if (o->logarithmic && !(h->values.high > 0.0 && h->values.low == h->values.high)) {
-    TRY(stratus_look_shape_log(context, h, &shape, look));
+  const bool may_be = look->kind == STRATUS_LOOK_TRACER || look->kind == STRATUS_LOOK_UNKNOWN;
+  const bool wanted = o->logarithmic > 0 && !(h->values.high > 0.0 && h->values.low == h->values.high);
+  double least = 0.0;
+  if (wanted ||
+    (o->logarithmic == 0 && may_be && stratus_look_is_lognormal(context, volumes, count, h, look->kind == STRATUS_LOOK_TRACER, &least))) {
+    look->logarithmic = 1;
+    TRY(stratus_look_shape_log(context, h, least, &shape, look));
   } else if (h->bins < 2) { /* no or only one value */
     look->low = look->high = h->bins ? h->values.low : 0.0;
     add_opacity(look, look->low, 0.05);
@@ -289,7 +297,7 @@ static stratus_status guess(stratus_context* context, const stratus_volume* volu
     TRY(count_parts(context, volumes, count, o, h, share));
     stratus_look_shape_state(h, share, &shape, look);
   } else {
-    stratus_look_shape_ramp(h, look->kind == STRATUS_LOOK_AMOUNT, &shape, look);
+    stratus_look_shape_ramp(h, look->kind == STRATUS_LOOK_AMOUNT || look->kind == STRATUS_LOOK_TRACER, &shape, look);
   }
   double top = 0.0, depth = 0.0;
   TRY(find_depth(context, volumes, count, o, h, &shape, &look->unit_distance, &depth, &top));

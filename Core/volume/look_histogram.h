@@ -34,6 +34,10 @@ stratus_status stratus_look_histogram_make(stratus_context* context, const strat
   const stratus_look_shared* shared, size_t shared_count, const double range[2], stratus_look_histogram* histogram);
 /* Multiply the frequencies, as where each value stands for others. */
 void stratus_look_histogram_scale(stratus_look_histogram* histogram, double factor);
+/* Whether values are lognormal, by the rule at stratus_look_guess(). zeros: values of 0 are none, instead of a sign that they are not.
+ * low: receives the least value above 0, without 1/1000 of these. */
+bool stratus_look_is_lognormal(
+  stratus_context* context, const stratus_volume* volumes, int count, const stratus_look_histogram* histogram, bool zeros, double* low);
 /* Convert `count` values from number `first` on, at most STRATUS_LOOK_CHUNK. */
 void stratus_look_values_get(const stratus_volume* volume, int64_t first, int64_t count, double* values);
 

@@ -134,13 +134,13 @@ void stratus_look_shape_state(
 
 /* A ramp over the logarithm of the value. */
 stratus_status stratus_look_shape_log(
-  stratus_context* context, const stratus_look_histogram* h, stratus_look_shape* shape, stratus_look* look)
+  stratus_context* context, const stratus_look_histogram* h, double least, stratus_look_shape* shape, stratus_look* look)
 {
   if (!(h->values.high > 0.0)) {
     return stratus_fail(
       context, STRATUS_INVALID_ARGUMENT, "logarithmic: the largest value is %g, there is no value above 0", h->values.high);
   }
-  const double low = fmax(h->values.low, LOG_DECADES * h->values.high), decades = log(h->values.high / low);
+  const double low = fmax(fmax(h->values.low, least), LOG_DECADES * h->values.high), decades = log(h->values.high / low);
   add_point(shape, fmin(0.0, low), 0.0);
   for (int i = 0; i <= STRATUS_LOOK_LOG_PIECES; ++i) {
     const double t = (double)i / STRATUS_LOOK_LOG_PIECES;

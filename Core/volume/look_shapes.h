@@ -25,8 +25,9 @@ void stratus_look_shape_signed(const stratus_look_histogram* histogram, stratus_
 /* share: of the parts of the range, in any unit. */
 void stratus_look_shape_state(
   const stratus_look_histogram* histogram, const double share[STRATUS_LOOK_PARTS], stratus_look_shape* shape, stratus_look* look);
+/* least: the value at which opacity is 0, unless that is less than the least value, or below four decades. */
 stratus_status stratus_look_shape_log(
-  stratus_context* context, const stratus_look_histogram* histogram, stratus_look_shape* shape, stratus_look* look);
+  stratus_context* context, const stratus_look_histogram* histogram, double least, stratus_look_shape* shape, stratus_look* look);
 
 /* ---- look_columns.c */
 

@@ -34,7 +34,7 @@ void vtkStratusUgridLayers::FindHeights()
   }
 }
 
-// MPAS' thicknesses of layers from the top, which stand on the bottom.
+// The thicknesses of MPAS, from the top, above the bottom.
 bool vtkStratusUgridLayers::FindThicknesses()
 {
   const Variable *thickness = this->File.Find("layerThickness"), *bottom = this->File.Find("bottomDepth");

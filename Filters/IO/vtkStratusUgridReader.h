@@ -10,7 +10,7 @@
  * The mesh is a variable of cf_role mesh_topology and dimension 2 with node_coordinates and face_node_connectivity (start_index, _FillValue
  * at the end of smaller faces), or FVCOM's nv, x and y (or lon and lat). Without these it is one of
  * - MPAS (cellsOnVertex or verticesOnCell, lonCell and latCell, or xCell and yCell if on_a_sphere is NO): nodes are the middles of cells,
- * and faces the triangles between three of them, of which each belongs to a vertex. Values of cells are on nodes, those of vertices on
+ * faces are triangles between the cells around a vertex. Values of cells are on nodes, and values of vertices on
  * faces. A vertex at the border, which has fewer cells, is blanked;
  * - cells whose longitudes and latitudes have bounds of three or more corners (ICON): faces are the cells. Corners that are less than six
  *   metres apart are one node.

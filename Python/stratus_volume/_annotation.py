@@ -32,6 +32,14 @@ def flag(value, name):
     return bool(value)
 
 
+def _is_geometric(values):
+    """Whether each of the values is as many times the one before: colours over the logarithm."""
+    if len(values) < 3 or not (values > 0).all():
+        return False
+    steps = numpy.diff(numpy.log(values))
+    return bool(steps[0] > 0 and numpy.allclose(steps, steps.mean(), rtol=1e-3))
+
+
 class Annotation:
     """The core's annotation of one picture, with the memory that it points to. `is_wanted`: there is anything to draw."""
 
@@ -71,6 +79,7 @@ class Annotation:
         colors = numpy.array(transfer.colors, numpy.float64)
         colors[:, 0] = numpy.ldexp(colors[:, 0], power)
         low, high = (colors[0, 0], colors[-1, 0]) if len(colors) > 1 else (spread.low, spread.high)
+        self.struct.logarithmic = int(_is_geometric(colors[:, 0]))
         self._kept.append((colors, title.encode(), units.encode()))
         self.struct.color, self.struct.color_count, self.struct.low, self.struct.high = address(colors), len(colors), float(low), float(high)
         self.struct.bar_title, self.struct.bar_units = self._kept[-1][1:]

@@ -145,6 +145,9 @@ def functions(context, about, volume, column_axis, thickness=None):
     if name is None:
         name = "cool-warm" if look.kind == c.ENUMS["stratus_look_kind"]["STRATUS_LOOK_SIGNED"] else "viridis"
     colors = numpy.empty((_COLORS, 4))
-    context.call(library.stratus_color_map_points, context.pointer, name.encode(), look.low, look.high, address(colors))
+    ends = (0, 1) if look.logarithmic else (look.low, look.high)
+    context.call(library.stratus_color_map_points, context.pointer, name.encode(), *ends, address(colors))
+    if look.logarithmic:
+        colors[:, 0] = look.low * (look.high / look.low) ** colors[:, 0]
     points = numpy.array(look.opacity[:2 * look.opacity_count]).reshape(-1, 2)
     return points.tolist(), colors.tolist() if look.low < look.high else colors[:1].tolist(), look.unit_distance

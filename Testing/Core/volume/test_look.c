@@ -89,10 +89,10 @@ static void variables_are_known_by_standard_name_unit_and_name(void** state)
     { "QCLOUD", "", "kg kg-1", STRATUS_LOOK_AMOUNT, "cloud", "ice_r" },
     { "run1/qc", NULL, "g/kg", STRATUS_LOOK_AMOUNT, "cloud", "ice_r" },
     { "q", "specific_humidity", "kg kg-1", STRATUS_LOOK_AMOUNT, "tempo_r", "tempo" },
-    { "chl", "mass_concentration_of_chlorophyll_in_sea_water", "mg m-3", STRATUS_LOOK_AMOUNT, "algae_r", "algae" },
-    { "so2", "mass_fraction_of_sulfur_dioxide_in_air", "kg kg-1", STRATUS_LOOK_AMOUNT, "viridis", "viridis_r" },
-    { "x", "", "kg m-3", STRATUS_LOOK_AMOUNT, "viridis", "viridis_r" },
-    { "x", "", "mmol/m3", STRATUS_LOOK_AMOUNT, "viridis", "viridis_r" },
+    { "chl", "mass_concentration_of_chlorophyll_in_sea_water", "mg m-3", STRATUS_LOOK_TRACER, "algae_r", "algae" },
+    { "so2", "mass_fraction_of_sulfur_dioxide_in_air", "kg kg-1", STRATUS_LOOK_TRACER, "viridis", "viridis_r" },
+    { "x", "", "kg m-3", STRATUS_LOOK_TRACER, "viridis", "viridis_r" },
+    { "x", "", "mmol/m3", STRATUS_LOOK_TRACER, "viridis", "viridis_r" },
     { "W", "", "m s-1", STRATUS_LOOK_SIGNED, "cool-warm", "balance" },
     { "a", "", "K", STRATUS_LOOK_STATE, "thermal", "thermal" },
     { "group/temp", "", "", STRATUS_LOOK_STATE, "thermal", "thermal" },
@@ -215,6 +215,95 @@ static void two_sided_values_are_centered(void** state)
       assert_true(opacity_at(&look, look.high) > opacity_at(&look, 0.5 * look.high));
     }
   }
+}
+
+/* A normal deviate: twelve even ones have a variance of 1. */
+static double normal(uint32_t* random)
+{
+  double sum = -6.0;
+  for (int i = 0; i < 12; ++i) {
+    sum += (double)(next_random(random) % 100003) / 100003.0;
+  }
+  return sum;
+}
+
+enum { LOGNORMAL, EVEN, PLUME_OVER_FLOOR, POWER, PLUME_AND_OUTLIERS };
+
+/* zeros: of so many values, one is 0 */
+static void fill_amounts(int distribution, double wide, int zeros)
+{
+  uint32_t random = 77;
+  fill_plume(0.5);
+  for (int i = 0; i < COUNT; ++i) {
+    const double even = (double)(next_random(&random) % 10001) / 10001.0;
+    const double value = distribution == LOGNORMAL ? 3e-9 * exp(wide * normal(&random))
+      : distribution == EVEN                       ? 1e-9 + 3e-9 * even
+      : distribution == PLUME_AND_OUTLIERS         ? (i % 1300 ? 3e-9 * (double)values[i] : 1.0)
+      : distribution == POWER                      ? 3e-9 * pow(even, wide) + 1e-30
+                                                   : 1e-12 + 3e-9 * (double)values[i] * (double)values[i];
+    values[i] = (float)(zeros > 0 && i % zeros == 0 ? 0.0 : value);
+  }
+}
+
+static void lognormal_tracers_are_over_the_logarithm(void** state)
+{
+  (void)state;
+  const stratus_volume v = view();
+  enum { TRACER = STRATUS_LOOK_TRACER, AMOUNT = STRATUS_LOOK_AMOUNT, UNKNOWN = STRATUS_LOOK_UNKNOWN };
+  static const struct {
+    int distribution;
+    double wide;
+    int zeros, kind, logarithmic, wanted;
+  } cases[] = {
+    { LOGNORMAL, 1.0, 0, TRACER, 0, 1 }, { LOGNORMAL, 2.0, 0, TRACER, 0, 1 }, { LOGNORMAL, 1.0, 3, TRACER, 0, 1 },
+    { LOGNORMAL, 1.5, 0, UNKNOWN, 0, 1 }, { LOGNORMAL, 1.5, 3, UNKNOWN, 0, 0 }, /* zeros of an unknown variable are values */
+    { LOGNORMAL, 1.5, 0, AMOUNT, 0, 0 }, { LOGNORMAL, 1.5, 0, AMOUNT, 1, 1 },   /* cloud water; as demanded */
+    { LOGNORMAL, 1.5, 0, TRACER, -1, 0 }, { LOGNORMAL, 0.3, 0, TRACER, 0, 0 },  /* as demanded; less than two decades */
+    { PLUME_AND_OUTLIERS, 0.0, 0, TRACER, 0, 0 }, { EVEN, 0.0, 0, TRACER, 0, 0 },
+    { PLUME_OVER_FLOOR, 0.0, 0, TRACER, 0, 0 }, /* the median is the background */
+    { POWER, 12.0, 0, TRACER, 0, 0 },           /* most decades are below the median */
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
+    stratus_look_options options = stratus_look_options_default();
+    options.kind = (stratus_look_kind)cases[c].kind;
+    options.logarithmic = cases[c].logarithmic;
+    fill_amounts(cases[c].distribution, cases[c].wide, cases[c].zeros);
+    const stratus_look look = guess(&v, &options);
+    if (look.logarithmic != cases[c].wanted) {
+      fail_msg("case %zu: logarithmic %d: %s", c, look.logarithmic, look.reason);
+    }
+    if (look.logarithmic && cases[c].distribution == LOGNORMAL) {
+      assert_true(look.low > 0.0 && look.low >= 0.9e-4 * look.high);
+      /* The middle half of the values has a good part of the colours. The quartiles are .67 deviations from the median. */
+      const double span = log(look.high / look.low), quartile = 0.67 * cases[c].wide;
+      const double low = log(3e-9 / look.low) - quartile, high = log(3e-9 / look.low) + quartile;
+      if (!(low > 0.0 && high < span && (high - low) / span > 0.15)) {
+        fail_msg("case %zu: quartiles at %g and %g of the colours", c, low / span, high / span);
+      }
+      assert_true(opacity_at(&look, 3e-9 * exp(2.0 * cases[c].wide)) > 2.0 * opacity_at(&look, 3e-9));
+      assert_true(opacity_at(&look, 0.0) == 0.0);
+    }
+  }
+}
+
+static void outliers_do_not_eat_the_range_of_lognormal_values(void** state)
+{
+  (void)state;
+  const stratus_volume v = view();
+  stratus_look_options options = stratus_look_options_default();
+  options.kind = STRATUS_LOOK_TRACER;
+  fill_amounts(LOGNORMAL, 1.0, 0);
+  const stratus_look before = guess(&v, &options);
+  for (int i = 0; i < COUNT / 2000; ++i) {
+    values[i * 1999] = 1.0f;
+  }
+  const stratus_look after = guess(&v, &options);
+  assert_true(before.logarithmic && after.logarithmic);
+  /* Half a thousandth is 1, and the other half is left out at that end: from 3.09 to 3.29 deviations. */
+  if (!(fabs(log(after.high / before.high)) < 0.5)) {
+    fail_msg("up to %g with outliers, %g without", after.high, before.high);
+  }
+  assert_true(opacity_at(&after, 1.0) == opacity_at(&after, after.high));
 }
 
 static void frequent_states_are_more_transparent(void** state)
@@ -414,7 +503,7 @@ static void wrong_options_are_refused(void** state)
   refused(v, 1, &options, "must be above 0 and finite");
   options = stratus_look_options_default();
   options.kind = (stratus_look_kind)9;
-  refused(v, 1, &options, "kind 9, must be in 0..3");
+  refused(v, 1, &options, "kind 9, must be in 0..4");
   options = stratus_look_options_default();
   options.thickness = (const double[]){ 1.0 };
   refused(v, 2, &options, "thickness is for 1 volume, not 2");
@@ -450,6 +539,8 @@ int test_look(void)
     cmocka_unit_test(outliers_do_not_eat_the_range),
     cmocka_unit_test(range_without_outliers_is_that_of_the_values),
     cmocka_unit_test(two_sided_values_are_centered),
+    cmocka_unit_test(lognormal_tracers_are_over_the_logarithm),
+    cmocka_unit_test(outliers_do_not_eat_the_range_of_lognormal_values),
     cmocka_unit_test(frequent_states_are_more_transparent),
     cmocka_unit_test(columns_have_their_optical_depth),
     cmocka_unit_test(blocks_give_the_functions_of_the_whole),
