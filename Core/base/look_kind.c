@@ -105,6 +105,7 @@ static const look_rule units_known[] = {
   { "pas**-1", SIGNED, "cool-warm", "balance" },
   { "s-1", SIGNED, "cool-warm", "curl" },
   { "s**-1", SIGNED, "cool-warm", "curl" },
+  { "dbz", STRATUS_LOOK_DECIBELS, "turbo", "turbo" },
   { "ppm", TRACER, "viridis", "viridis_r" },
   { "ppb", TRACER, "viridis", "viridis_r" },
 };

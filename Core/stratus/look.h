@@ -15,7 +15,8 @@ typedef enum stratus_look_kind {
   STRATUS_LOOK_AMOUNT,  /* of a matter that is here and not there: cloud water, concentrations, speed */
   STRATUS_LOOK_STATE,   /* of the matter that fills the grid: temperature, salinity, pressure */
   STRATUS_LOOK_SIGNED,  /* departs from 0 in two directions: components of a velocity, tendencies, anomalies */
-  STRATUS_LOOK_TRACER   /* an amount that thins out by mixing: concentrations, aerosol, dust, chlorophyll. Its values may be lognormal. */
+  STRATUS_LOOK_TRACER,  /* an amount that thins out by mixing: concentrations, aerosol, dust, chlorophyll. Its values may be lognormal. */
+  STRATUS_LOOK_DECIBELS /* the logarithm of an amount, 10 for each decade: the reflectivity that a radar measures */
 } stratus_look_kind;
 
 /* Find out what a variable of a file is.
@@ -80,11 +81,12 @@ typedef struct stratus_look {
  * - AMOUNT: transparent up to the most frequent value, the background, and in proportion to the amount above it. If the least value is
  *   above half of the largest, the values are a STATE.
  * - STATE: values that are more frequent than they would be if all were equally frequent are more transparent in proportion, down to 1/10.
+ * - DECIBELS: a ramp over the four decades (40 dB) below the largest value.
  * - UNKNOWN: a ramp above the most frequent value, or below it if it is in the upper half of the range.
- * The ramps of UNKNOWN and SIGNED rise slowly in their first 2/5, because values next to the background usually fill most of the volume.
- * The optical depth of columns is their mean, each weighted by its own depth, so that empty columns do not count.
- * Of a volume of more than 2^26 values, without `thickness`, every so manieth value along each axis is taken, about 2^24 in all.
- * volumes and count: as of stratus_look_count(). options: NULL for the defaults. */
+ * The ramps of UNKNOWN, SIGNED and DECIBELS rise slowly in their first 2/5, because values next to the background usually fill most of the
+ * volume. The optical depth of columns is their mean, each weighted by its own depth, so that empty columns do not count. Of a volume of
+ * more than 2^26 values, without `thickness`, every so manieth value along each axis is taken, about 2^24 in all. volumes and count: as of
+ * stratus_look_count(). options: NULL for the defaults. */
 STRATUS_API stratus_status stratus_look_guess(
   stratus_context* context, const stratus_volume* volumes, int count, const stratus_look_options* options, stratus_look* look);
 

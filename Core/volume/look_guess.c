@@ -200,9 +200,9 @@ static stratus_status check_volumes(stratus_context* context, const stratus_volu
 
 static stratus_status check_options(stratus_context* context, const stratus_look_options* o, int count)
 {
-  if ((int)o->kind < STRATUS_LOOK_UNKNOWN || o->kind > STRATUS_LOOK_TRACER) {
+  if ((int)o->kind < STRATUS_LOOK_UNKNOWN || o->kind > STRATUS_LOOK_DECIBELS) {
     return stratus_fail(
-      context, STRATUS_INVALID_ARGUMENT, "kind %d, must be in %d..%d", (int)o->kind, STRATUS_LOOK_UNKNOWN, STRATUS_LOOK_TRACER);
+      context, STRATUS_INVALID_ARGUMENT, "kind %d, must be in %d..%d", (int)o->kind, STRATUS_LOOK_UNKNOWN, STRATUS_LOOK_DECIBELS);
   }
   if (o->logarithmic < -1 || o->logarithmic > 1) {
     return stratus_fail(context, STRATUS_INVALID_ARGUMENT, "logarithmic %d, must be in -1..1", o->logarithmic);
@@ -292,6 +292,8 @@ static stratus_status guess(stratus_context* context, const stratus_volume* volu
     return STRATUS_OK;
   } else if (look->kind == STRATUS_LOOK_SIGNED) {
     stratus_look_shape_signed(h, &shape, look);
+  } else if (look->kind == STRATUS_LOOK_DECIBELS) {
+    stratus_look_shape_decibels(h, &shape, look);
   } else if (look->kind == STRATUS_LOOK_STATE) {
     double share[STRATUS_LOOK_PARTS] = { 0.0 };
     TRY(count_parts(context, volumes, count, o, h, share));

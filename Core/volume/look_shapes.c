@@ -112,6 +112,17 @@ void stratus_look_shape_signed(const stratus_look_histogram* h, stratus_look_sha
   snprintf(look->reason, sizeof look->reason, "two-sided, opacity 0 at 0");
 }
 
+void stratus_look_shape_decibels(const stratus_look_histogram* h, stratus_look_shape* shape, stratus_look* look)
+{
+  const double high = h->values.high, low = fmax(h->values.low, high + 10.0 * log10(LOG_DECADES));
+  add_point(shape, low, 0.0);
+  add_point(shape, low + KNEE_AT * (high - low), KNEE_HEIGHT);
+  add_point(shape, high, 1.0);
+  look->low = low;
+  look->high = high;
+  snprintf(look->reason, sizeof look->reason, "decibels, opacity 0 at %.4g", low);
+}
+
 /* Values that are more frequent than they would be if all were equally frequent are more transparent in proportion, so that each part of
  * the range has about the same share of the optical depth. Otherwise one water mass would hide all others. */
 void stratus_look_shape_state(

@@ -22,6 +22,8 @@ void stratus_look_smooth(const stratus_look_histogram* histogram, double* count)
 /* Each function adds the points of a shape, and sets range and reason of the look. A ramp leads away from the background. */
 void stratus_look_shape_ramp(const stratus_look_histogram* histogram, bool only_up, stratus_look_shape* shape, stratus_look* look);
 void stratus_look_shape_signed(const stratus_look_histogram* histogram, stratus_look_shape* shape, stratus_look* look);
+/* Over the decades below the largest value, of which each has 10 units. */
+void stratus_look_shape_decibels(const stratus_look_histogram* histogram, stratus_look_shape* shape, stratus_look* look);
 /* share: of the parts of the range, in any unit. */
 void stratus_look_shape_state(
   const stratus_look_histogram* histogram, const double share[STRATUS_LOOK_PARTS], stratus_look_shape* shape, stratus_look* look);

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""first_pictures.py SHEET.png [FOLDER]: writes netCDF files in the layouts of models of ocean and atmosphere, draws each by `stratus render`
-without an option for its look, and joins the pictures in a sheet. The files stay in FOLDER, if it is given. Needs `stratus` on the path,
-netCDF4, and VTK to read and write the pictures."""
+"""first_pictures.py SHEET.png [FOLDER]: writes files of ocean, atmosphere, lakes, the Earth's crust and a scan, in the layouts of models and
+instruments, draws each by `stratus render` without an option for its look, and joins the pictures in a sheet. The files stay in FOLDER, if it
+is given. Needs `stratus` on the path, netCDF4, and VTK to read and write the pictures."""
 import os
 import subprocess
 import sys
@@ -11,21 +11,14 @@ import tempfile
 import netCDF4
 import numpy
 
+import model_files
+from model_files import noise
+
 EAST = dict(standard_name="longitude", axis="X", units="degrees_east")
 NORTH = dict(standard_name="latitude", axis="Y", units="degrees_north")
 DOWN = dict(standard_name="depth", positive="down", axis="Z", units="m")
 UP = dict(standard_name="height", positive="up", axis="Z", units="m")
 PRESSURE = dict(standard_name="air_pressure", positive="down", axis="Z", units="hPa")
-
-
-def noise(shape, seed, steepness=2.0):
-    """A random field of mean 0 and deviation 1 whose amplitudes fall with the wave number."""
-    spectrum = numpy.fft.rfftn(numpy.random.default_rng(seed).standard_normal(shape))
-    waves = [numpy.fft.fftfreq(n) * n for n in shape[:-1]] + [numpy.fft.rfftfreq(shape[-1]) * shape[-1]]
-    length = numpy.sqrt(sum(wave**2 for wave in numpy.meshgrid(*waves, indexing="ij")))
-    length.flat[0] = numpy.inf
-    field = numpy.fft.irfftn(spectrum * length**-steepness, shape)
-    return field / field.std()
 
 
 def write(path, name, values, axes, **attributes):
@@ -116,7 +109,7 @@ def write_all(folder):
         for name, values, axes, attributes in of():
             paths.append(os.path.join(folder, name + ".nc"))
             write(paths[-1], name, values, axes, **attributes)
-    return paths
+    return paths + model_files.write_all(folder)
 
 
 def join(pictures, path, columns=3):
@@ -145,7 +138,7 @@ def main():
         pictures, folder = [], sys.argv[2] if len(sys.argv) > 2 else temporary
         os.makedirs(folder, exist_ok=True)
         for path in write_all(folder):
-            pictures.append(os.path.join(temporary, os.path.basename(path)[:-3] + ".png"))
+            pictures.append(os.path.join(temporary, os.path.splitext(os.path.basename(path))[0] + ".png"))
             subprocess.run(["stratus", "render", path, "-o", pictures[-1], "--size", "360x270", "--color-bar"], check=True, stdout=subprocess.DEVNULL)
         join(pictures, sys.argv[1])
 

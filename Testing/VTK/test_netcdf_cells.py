@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Meshes of MPAS and ICON: heights and values as NumPy has them, areas and volumes of the whole Earth without gap or overlap, at poles and the
 date line, too, on the plane and on the sphere, whether a pole is a node or within a face; and what is refused."""
+import os
+import sys
+
 import numpy
 from vtk.util.numpy_support import vtk_to_numpy
 
-from geodesic import degrees_of, icon, icosphere, middles, mpas, rotation
 from netcdf_reading import Read, check, degree, finish, near, write
+
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "Python"))
+from geodesic import degrees_of, dual, icon, icosphere, middles, mpas, rotation
 
 radius = 6371000.0
 random = numpy.random.default_rng(3)
@@ -204,7 +209,6 @@ for name, turn in turns.items():
                 check(off < 20, f"icon {name}: the value of cell {of} is {off} degrees away")
 
     # Cells of five and six corners, of which the last is repeated, on levels of pressure
-    from geodesic import dual
     table, counts = dual(points, triangles)
     corner = table[numpy.arange(cells)[:, None], numpy.minimum(numpy.arange(6), counts[:, None] - 1)]
     lon, lat = degrees_of(middles(points, triangles))

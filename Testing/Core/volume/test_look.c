@@ -97,6 +97,7 @@ static void variables_are_known_by_standard_name_unit_and_name(void** state)
     { "a", "", "K", STRATUS_LOOK_STATE, "thermal", "thermal" },
     { "group/temp", "", "", STRATUS_LOOK_STATE, "thermal", "thermal" },
     { "Temp", "", "", STRATUS_LOOK_STATE, "thermal", "thermal" },
+    { "dbz", "", "dBZ", STRATUS_LOOK_DECIBELS, "turbo", "turbo" },
     { "cl", "", "%", STRATUS_LOOK_AMOUNT, "cloud", "ice_r" },
     { "template", "", "", STRATUS_LOOK_UNKNOWN, NULL, NULL },
     { "rho", "", "", STRATUS_LOOK_UNKNOWN, NULL, NULL },
@@ -306,6 +307,25 @@ static void outliers_do_not_eat_the_range_of_lognormal_values(void** state)
   assert_true(opacity_at(&after, 1.0) == opacity_at(&after, after.high));
 }
 
+static void decibels_are_over_four_decades(void** state)
+{
+  (void)state;
+  const stratus_volume v = view();
+  stratus_look_options options = stratus_look_options_default();
+  options.kind = STRATUS_LOOK_DECIBELS;
+  for (int i = 0; i < COUNT; ++i) {
+    values[i] = i % 3 ? -35.0f : (float)(i % 991) / 990.0f * 85.0f - 35.0f;
+  }
+  const stratus_look look = guess(&v, &options);
+  assert_true(fabs(look.high - 50.0) < 0.1 && fabs(look.low - 10.0) < 0.1);
+  assert_true(opacity_at(&look, -35.0) == 0.0 && opacity_at(&look, 9.8) == 0.0 && opacity_at(&look, 20.0) > 0.0);
+  assert_true(opacity_at(&look, 50.0) > 3.0 * opacity_at(&look, 26.0));
+  for (int i = 0; i < COUNT; ++i) {
+    values[i] = (float)(i % 100) / 99.0f * 20.0f; /* less than four decades */
+  }
+  assert_true(fabs(guess(&v, &options).low) < 0.1);
+}
+
 static void frequent_states_are_more_transparent(void** state)
 {
   (void)state;
@@ -503,7 +523,7 @@ static void wrong_options_are_refused(void** state)
   refused(v, 1, &options, "must be above 0 and finite");
   options = stratus_look_options_default();
   options.kind = (stratus_look_kind)9;
-  refused(v, 1, &options, "kind 9, must be in 0..4");
+  refused(v, 1, &options, "kind 9, must be in 0..5");
   options = stratus_look_options_default();
   options.thickness = (const double[]){ 1.0 };
   refused(v, 2, &options, "thickness is for 1 volume, not 2");
@@ -541,6 +561,7 @@ int test_look(void)
     cmocka_unit_test(two_sided_values_are_centered),
     cmocka_unit_test(lognormal_tracers_are_over_the_logarithm),
     cmocka_unit_test(outliers_do_not_eat_the_range_of_lognormal_values),
+    cmocka_unit_test(decibels_are_over_four_decades),
     cmocka_unit_test(frequent_states_are_more_transparent),
     cmocka_unit_test(columns_have_their_optical_depth),
     cmocka_unit_test(blocks_give_the_functions_of_the_whole),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes around the Earth for tests and examples: a divided icosahedron with a node at each pole, turned or not, and its dual of hexagons."""
+"""Meshes around the Earth for examples and tests: a divided icosahedron with a node at each pole, turned or not, and its dual of hexagons."""
 import numpy
 
 
