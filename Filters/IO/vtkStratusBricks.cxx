@@ -2,12 +2,19 @@
 #include "vtkStratusBricks.h"
 
 #include "stratus/bricks.h"
+#include "stratus/skipping.h"
 
 #include "vtkStratusCoreType.h"
 #include "vtkStratusIdentity.h"
 #include "vtkStratusMapped.h"
 
+#include "vtkCharArray.h"
 #include "vtkDataArray.h"
+#include "vtkFloatArray.h"
+#include "vtkShortArray.h"
+#include "vtkSignedCharArray.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnsignedShortArray.h"
 
 #include <algorithm>
 #include <map>
@@ -78,6 +85,86 @@ void Free(void* values)
   }
   stratus_bricks_destroy(bricks); // a source may take a lock of its own, with which others make arrays
 }
+
+// Finds the range of an array's finite values by the core, which reads each part once, or knows the ranges of the file. Returns false where
+// the array has other values now, and where not all of them are finite but all count.
+bool FindRange(vtkDataArray* array, const std::array<int64_t, 3>& dimensions, bool finite, double range[2])
+{
+  stratus_volume volume = stratus_volume_default();
+  volume.values = array->GetVoidPointer(0);
+  std::copy(dimensions.begin(), dimensions.end(), volume.dimensions);
+  vtkStratusSetSource(array, 0, volume);
+  stratus_context* context = nullptr;
+  stratus_context_options options = stratus_context_options_default();
+  options.device = "host";
+  stratus_value_range* ranges = nullptr;
+  if (!volume.parts || !vtkStratusCoreType(array->GetDataType(), volume.type) ||
+    stratus_context_create(&options, &context, nullptr, 0) != STRATUS_OK) {
+    return false;
+  }
+  bool found = stratus_value_range_create(context, &volume, 0, &ranges) == STRATUS_OK;
+  int64_t blocks[3] = { 0, 0, 0 };
+  stratus_value_range_blocks(ranges, blocks, nullptr);
+  for (int64_t b = 0; found && !finite && b < blocks[0] * blocks[1] * blocks[2]; ++b) {
+    int gaps = 0;
+    stratus_value_range_block(ranges, b % blocks[0], b / blocks[0] % blocks[1], b / blocks[0] / blocks[1], nullptr, nullptr, &gaps);
+    found = gaps == 0;
+  }
+  found = found && stratus_value_range_whole(ranges, &range[0], &range[1]) == STRATUS_OK;
+  stratus_value_range_destroy(ranges);
+  stratus_context_destroy(context);
+  return found;
+}
+
+// An array of bricks, of one component. VTK and ParaView ask arrays for their range before anything is drawn, and would read all values,
+// one by one. Copies are plain arrays.
+template <class Base> class BrickArray : public Base
+{
+public:
+  static vtkDataArray* New(const std::array<int64_t, 3>& dimensions)
+  {
+    auto* const array = new BrickArray;
+    array->InitializeObjectBase();
+    array->Dimensions = dimensions;
+    return array;
+  }
+
+protected:
+  using Base::ComputeFiniteScalarRange;
+  using Base::ComputeScalarRange;
+  bool ComputeScalarRange(double* range) override
+  {
+    return FindRange(this, this->Dimensions, false, range) || Base::ComputeScalarRange(range);
+  }
+  bool ComputeFiniteScalarRange(double* range) override
+  {
+    return FindRange(this, this->Dimensions, true, range) || Base::ComputeFiniteScalarRange(range);
+  }
+
+private:
+  std::array<int64_t, 3> Dimensions = { { 0, 0, 0 } };
+};
+
+// Makes an array whose values the core has as they are. Ranges of others are VTK's.
+vtkDataArray* NewArray(const vtkStratusBrickSource& source)
+{
+  switch (source.Components == 1 ? source.Type : VTK_VOID) {
+    case VTK_FLOAT:
+      return BrickArray<vtkFloatArray>::New(source.Dimensions);
+    case VTK_CHAR:
+      return BrickArray<vtkCharArray>::New(source.Dimensions);
+    case VTK_SIGNED_CHAR:
+      return BrickArray<vtkSignedCharArray>::New(source.Dimensions);
+    case VTK_UNSIGNED_CHAR:
+      return BrickArray<vtkUnsignedCharArray>::New(source.Dimensions);
+    case VTK_SHORT:
+      return BrickArray<vtkShortArray>::New(source.Dimensions);
+    case VTK_UNSIGNED_SHORT:
+      return BrickArray<vtkUnsignedShortArray>::New(source.Dimensions);
+    default:
+      return vtkDataArray::CreateDataArray(source.Type);
+  }
+}
 } // namespace
 
 void vtkStratusCutSource(vtkStratusBrickSource& source, const std::array<int64_t, 3>& lo, const std::array<int64_t, 3>& size)
@@ -129,7 +216,7 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
   }
   void* const values = const_cast<void*>(stratus_bricks_values(bricks));
   pool.Arrays[values] = bricks;
-  auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(source.Type));
+  auto array = vtkSmartPointer<vtkDataArray>::Take(NewArray(source));
   array->SetName(source.Name.c_str());
   array->SetNumberOfComponents(source.Components);
   array->SetVoidArray(

@@ -104,6 +104,20 @@ check(reference.max() > 50, "something shows")
 check((picture(paged.GetOutputDataObject(0)) == reference).all(), "a picture in little memory has the same bits")
 check(Reader.GetMemoryUsed() <= LIMIT, "memory is within the limit")
 
+# VTK asks arrays for their range, which is found by reading each value once; that of finite values then reads none again.
+ranged, begin = reader_of("plain.nc", True), Reader.GetBytesRead()
+scalars = ranged.GetOutputDataObject(0).GetPointData().GetScalars()
+check(scalars.IsA("vtkFloatArray") and scalars.GetRange() == (FIELD.min(), FIELD.max()), f"the range {scalars.GetRange()}")
+check(Reader.GetBytesRead() - begin == FIELD.nbytes, f"{Reader.GetBytesRead() - begin} bytes are read for the range")
+check(scalars.NewInstance().GetClassName() == "vtkFloatArray", "copies are plain arrays")
+with netCDF4.Dataset(write("gaps.nc", chunksizes=(1, 8, 32, 32)), "a") as file:
+    file["rho"][0, 3, 4, 5], file["rho"][0, 13, 14, 15] = numpy.nan, numpy.inf
+for bricks in False, True:
+    scalars = reader_of("gaps.nc", bricks).GetOutputDataObject(0).GetPointData().GetScalars()
+    check(scalars.GetRange() == (FIELD.min(), numpy.inf) and scalars.GetFiniteRange() == (FIELD.min(), FIELD.max()),
+          f"ranges with gaps: {scalars.GetRange()}, {scalars.GetFiniteRange()}, {bricks}")
+del ranged, scalars
+
 # Value ranges read all values once, by threads that share pages, in memory that another array fills. Rays then read only chunks that they
 # meet.
 fresh, begin = reader_of("plain.nc", True), Reader.GetBytesRead()
