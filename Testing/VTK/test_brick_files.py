@@ -104,7 +104,7 @@ check(reference.max() > 50, "something shows")
 check((picture(paged.GetOutputDataObject(0)) == reference).all(), "a picture in little memory has the same bits")
 check(Reader.GetMemoryUsed() <= LIMIT, "memory is within the limit")
 
-# VTK asks arrays for their range, which is found by reading each value once; that of finite values then reads none again.
+# VTK wants the range of an array. Each value is read once for it, and none again for the range of finite values.
 ranged, begin = reader_of("plain.nc", True), Reader.GetBytesRead()
 scalars = ranged.GetOutputDataObject(0).GetPointData().GetScalars()
 check(scalars.IsA("vtkFloatArray") and scalars.GetRange() == (FIELD.min(), FIELD.max()), f"the range {scalars.GetRange()}")
