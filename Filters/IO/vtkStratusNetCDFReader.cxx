@@ -8,7 +8,16 @@
 #endif
 #include "vtkStratusNetCDFModel.h"
 
+#include "stratus/look.h"
+
 #include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkRectilinearGrid.h"
 
 #include <algorithm>
 #include <array>
@@ -142,12 +151,61 @@ void vtkStratusNetCDFReader::Build(size_t step, vtkDataObject* output)
 {
   const std::unique_ptr<vtkStratusNetCDFModel> file = this->OpenFile();
   this->BuildFile(*file, step, vtkDataSet::SafeDownCast(output));
+  if (this->ExaggerateHeights && this->Coordinates == PLANE && this->LengthUnits == "m") {
+    this->Exaggerate(vtkDataSet::SafeDownCast(output));
+  } else if (this->Coordinates == PLANE) {
+    this->UsedHeightFactor = 0.0;
+  }
+}
+
+void vtkStratusNetCDFReader::Exaggerate(vtkDataSet* output)
+{
+  double bounds[6];
+  output->GetBounds(bounds);
+  if (this->FactorTime != this->GetMTime()) {
+    this->UsedHeightFactor = this->HeightFactor > 0.0 ? this->HeightFactor : stratus_look_height_factor(bounds, 2);
+    this->FactorTime = this->GetMTime();
+    this->PlainPoints = this->HighPoints = nullptr;
+  }
+  const double factor = this->UsedHeightFactor;
+  if (factor == 1.0) {
+    return;
+  }
+  if (vtkImageData* image = vtkImageData::SafeDownCast(output)) {
+    const double *spacing = image->GetSpacing(), *origin = image->GetOrigin();
+    image->SetSpacing(spacing[0], spacing[1], factor * spacing[2]);
+    image->SetOrigin(origin[0], origin[1], factor * origin[2]);
+  } else if (vtkRectilinearGrid* grid = vtkRectilinearGrid::SafeDownCast(output)) {
+    vtkDataArray* const from = grid->GetZCoordinates();
+    vtkNew<vtkDoubleArray> heights;
+    for (vtkIdType i = 0; i < from->GetNumberOfTuples(); ++i) {
+      heights->InsertNextValue(factor * from->GetComponent(i, 0));
+    }
+    grid->SetZCoordinates(heights);
+  } else if (vtkPointSet* set = vtkPointSet::SafeDownCast(output)) {
+    if (set->GetPoints() != this->PlainPoints) { // which steps share if places do not move
+      this->PlainPoints = set->GetPoints();
+      this->HighPoints = vtkSmartPointer<vtkPoints>::New();
+      this->HighPoints->SetDataType(this->PlainPoints->GetDataType());
+      this->HighPoints->DeepCopy(this->PlainPoints);
+      vtkDataArray* const places = this->HighPoints->GetData();
+      for (vtkIdType i = 0; i < places->GetNumberOfTuples(); ++i) {
+        places->SetComponent(i, 2, factor * places->GetComponent(i, 2));
+      }
+    }
+    set->SetPoints(this->HighPoints);
+  }
+  vtkNew<vtkDoubleArray> used;
+  used->SetName("HeightFactor");
+  used->InsertNextValue(factor);
+  output->GetFieldData()->AddArray(used);
 }
 
 void vtkStratusNetCDFReader::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Coordinates: " << (this->Coordinates == SPHERE ? "sphere" : "plane") << "\n";
+  os << indent << "ExaggerateHeights: " << this->ExaggerateHeights << "\n";
   os << indent << "HeightFactor: " << this->HeightFactor << "\n";
   os << indent << "Selection: " << (this->Selection ? this->Selection : "(none)") << "\n";
 }

@@ -23,9 +23,12 @@
 
 #include "vtkStratusVariableReader.h"
 
+#include "vtkSmartPointer.h"
+
 #include <functional>
 #include <memory>
 
+class vtkPoints;
 class vtkStratusNetCDFModel;
 struct vtkStratusNetCDFVariable;
 
@@ -68,14 +71,27 @@ public:
 
   //@{
   /**
-   * Set/Get the factor of heights on the sphere, at least 0. Default 0: as much as makes them reach over a tenth of the radius.
+   * Set/Get whether heights on the plane are multiplied, if the file is of the Earth (all coordinates are in metres). The factor is
+   * HeightFactor, or if that is 0 stratus_look_height_factor(): data lower than a tenth of their width become a fifth as high as wide. It
+   * stays as it is at the first time step. The output then has the
+   * field array HeightFactor. Default 0: heights are true.
+   */
+  vtkSetMacro(ExaggerateHeights, vtkTypeBool);
+  vtkGetMacro(ExaggerateHeights, vtkTypeBool);
+  vtkBooleanMacro(ExaggerateHeights, vtkTypeBool);
+  //@}
+
+  //@{
+  /**
+   * Set/Get the factor of heights on the sphere, and of exaggerated heights on the plane, at least 0. Default 0 on the sphere: as much as
+   * makes them reach over a tenth of the radius.
    */
   vtkSetClampMacro(HeightFactor, double, 0.0, 1e30);
   vtkGetMacro(HeightFactor, double);
   //@}
 
   /**
-   * Get the factor of heights of the last output on the sphere; 0: there was none.
+   * Get the factor of heights of the last output on the sphere, or of exaggerated heights; 0: there was none.
    */
   vtkGetMacro(UsedHeightFactor, double);
 
@@ -118,13 +134,18 @@ protected:
   char* Selection = nullptr;
   int Coordinates = PLANE;
   double HeightFactor = 0.0, UsedHeightFactor = 0.0;
+  vtkTypeBool ExaggerateHeights = 0;
 
 private:
+  void Exaggerate(vtkDataSet* output);
+
   std::vector<int> Ranks; // of Variables
 #ifndef __VTK_WRAP__
   std::function<bool(const double[2], double[2])> PlaceOnPlane;
 #endif
   std::string WhyNoPlaces;
+  vtkSmartPointer<vtkPoints> PlainPoints, HighPoints; // before and after heights are multiplied, of the last output
+  vtkMTimeType FactorTime = 0;                        // when UsedHeightFactor was found
 
   vtkStratusNetCDFReader(const vtkStratusNetCDFReader&) = delete;
   void operator=(const vtkStratusNetCDFReader&) = delete;

@@ -130,6 +130,21 @@ def grid_of_cf():
           "a selected index")
 
 
+def flat_grid_of_cf():
+    """Heights of flat data are exaggerated unless that is switched off."""
+    path = netcdf.write(os.path.join(folder, "flat.nc"), {"z": 3, "y": 2, "x": 3}, {
+        "z": (("z",), [0.0, 10, 40], {"units": "m", "axis": "Z"}), "y": (("y",), [0.0, 5000], {"units": "m", "axis": "Y"}),
+        "x": (("x",), [0.0, 1000, 10000], {"units": "m", "axis": "X"}), "qc": (("z", "y", "x"), numpy.arange(18.0).reshape(3, 2, 3), {"units": "g/kg"})})
+    reader = simple.StratusCFReader(FileName=path)
+    for on, factor in (1, 50), (0, 1):
+        reader.ExaggerateHeights = on
+        reader.UpdatePipeline()
+        grid = reader.GetClientSideObject().GetOutputDataObject(0)
+        check(list(vtk_to_numpy(grid.GetZCoordinates())) == [0, 10 * factor, 40 * factor], f"heights times {factor}: {grid.GetBounds()}")
+        used = grid.GetFieldData().GetArray("HeightFactor")
+        check(used.GetValue(0) == factor if on else used is None, "the factor is in the output")
+
+
 def folder_of_zarr():
     values = numpy.arange(60, dtype="<f4").reshape(3, 4, 5)
     path = os.path.join(folder, "field.zarr")
@@ -202,6 +217,7 @@ tetgen_files()
 pictures_as_floats()
 mesh_in_layers()
 grid_of_cf()
+flat_grid_of_cf()
 folder_of_zarr()
 files_of_hdf5()
 images_of_scans()
