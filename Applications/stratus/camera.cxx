@@ -80,6 +80,11 @@ void fit_corners(const double bounds[6], const double eye[3], const double axes[
   }
 }
 
+bool is_around_middle(const double bounds[6])
+{
+  return bounds[0] < 0.0 && bounds[1] > 0.0 && bounds[2] < 0.0 && bounds[3] > 0.0 && bounds[4] < 0.0 && bounds[5] > 0.0;
+}
+
 } // namespace
 
 namespace cli {
@@ -127,7 +132,15 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
   double wide;
   double high;
   fit(around, half[up], elevation, away, o.parallel, wide, high);
-  if (o.about.earth && !o.has_azimuth) { // a view that nobody turns: the box fills it
+  if (o.globe && is_around_middle(bounds)) { // the sphere around all fills the view
+    double radius = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      radius = std::max(radius, std::max(-bounds[2 * a], bounds[2 * a + 1]));
+      eye[a] -= focal[a];
+      focal[a] = 0.0;
+    }
+    wide = high = o.parallel ? radius : radius / std::sqrt(away * away - radius * radius);
+  } else if (o.about.earth && !o.has_azimuth) { // a view that nobody turns: the box fills it
     const double level = std::hypot(direction[(up + 1) % 3], direction[(up + 2) % 3]);
     double axes[3][3], sides[4];
     axes[0][up] = 0.0;

@@ -24,8 +24,6 @@ static void set_globe(options& o, double factor, vtkDataSet* grid)
     const double degree = std::acos(-1.0) / 180.0;
     o.azimuth = o.has_azimuth ? o.azimuth : std::atan2(middle[1], middle[0]) / degree;
     o.elevation = o.has_elevation ? o.elevation : std::max(-75.0, std::min(75.0, std::atan2(middle[2], across) / degree));
-  } else { // the corners of the box about a sphere are far from it
-    o.zoom *= 1.45;
   }
   o.exaggeration = 1.0;
   o.heights = factor == 1.0 ? "" : format("heights x %.4g", factor);

@@ -122,6 +122,23 @@ static void set_columns(const stratus_mesh& m, int up, look_input& result)
   box.value_stride = 1;
 }
 
+// Makes a box as high as the mesh's points reach from the middle, of as large voxels as before, because a ray through a shell around the
+// Earth meets its thickness, and not the Earth's.
+static void set_shell(const stratus_mesh& m, stratus_volume& box)
+{
+  double least = INFINITY, most = 0.0;
+  for (size_t point = 0; point < static_cast<size_t>(m.point_count); ++point) {
+    const double height = height_of(m, point, -1);
+    least = std::min(least, height);
+    most = std::max(most, height);
+  }
+  if (most > least) {
+    const double before = box.spacing[2];
+    box.spacing[2] = (most - least) / static_cast<double>(box.dimensions[2]);
+    box.spacing[0] *= before / box.spacing[2];
+  }
+}
+
 look_input mesh::values(int up) const
 {
   const stratus_mesh& m = this->view();
@@ -129,6 +146,7 @@ look_input mesh::values(int up) const
   result.volumes.push_back(this->box());
   result.unordered = m.lattice[0] == 0;
   if (result.unordered && up < 0) {
+    set_shell(m, result.volumes[0]);
     return result;
   }
   if (result.unordered) {

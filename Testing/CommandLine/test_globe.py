@@ -4,6 +4,7 @@ latitude are, and other data are refused. Usage: test_globe.py PATH-OF-STRATUS F
 import math
 import os
 import re
+import sys
 
 from checking import done, expect, fail
 
@@ -180,4 +181,23 @@ else:
 wrong = write_plane("wrong.nc", dict(laea, grid_mapping_name="peirce"), x, x, "m", "projection_%s_coordinate")
 expect(2, "is none of the known ones: albers_conical_equal_area", "render", wrong, "--coast", "-o", "no.png")
 expect(1, "is none of the known ones: albers_conical_equal_area", "render", wrong, "--globe", "-o", "no.png")
+
+# Data all around the Earth: the whole disk is in the picture, in its middle, and meshes of MPAS and ICON are seen on it. A column of them has an
+# optical depth of about 1.5, which is more than half opaque.
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "Python"))
+import model_files
+
+for path, least in ((model_files.mpas_atmosphere("."), 0.1), (model_files.icon_atmosphere("."), 0.4)):
+    full, none = (picture(path, "--globe", *words)[1].astype(float) for words in ((), ("--opacity", "0:0,1000:0")))
+    disk = none[20:].max(axis=2) > 0  # without the caption
+    rows, columns = numpy.nonzero(disk)
+    if not (0 < columns.min() and columns.max() < SIZE - 1 and rows.max() + 20 < SIZE - 1 and abs(columns.min() + columns.max() - SIZE + 1) < 4):
+        fail(f"{path}: the disk is cut off or aside: {columns.min()} .. {columns.max()}, up to {rows.max() + 20} of {SIZE}")
+    seen = (abs(full - none).max(axis=2)[20:][disk] > 40).mean()
+    print(f"{path}: data are seen on {seen:.2f} of the disk")
+    if seen < least:
+        fail(f"{path}: data are seen on {seen:.2f} of the disk")
+    whole = full[20:].max(axis=2) > 0
+    if whole[-1].any() or whole[:, 0].any() or whole[:, -1].any():
+        fail(f"{path}: data are cut off")
 done()

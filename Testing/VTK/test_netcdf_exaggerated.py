@@ -56,7 +56,7 @@ for name, path in (("high", grid("high", [0, 20e3, 50e3])), ("numbers", write("e
     got, plain = Read(path, prepare=on()), Read(path)
     check(near(bounds(got), bounds(plain)) and got.reader.GetUsedHeightFactor() in (0, 1), f"{name} stays as it is: {bounds(got)}")
 
-# A surface that rises: heights are those of each step, times the factor of the first
+# A surface that rises: each step has its own heights, times the factor of the first step
 depth = numpy.full((5, 6), 40.0)
 eta = numpy.stack([numpy.zeros((5, 6)), numpy.full((5, 6), 8.0)])
 path = write("exaggerated sigma", {"time": 2, "s": 4, "y": 5, "x": 6}, time=("time", numpy.array([0.0, 1.0]), {"units": "hours since 2020-01-01"}),
