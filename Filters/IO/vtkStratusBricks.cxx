@@ -208,7 +208,10 @@ vtkSmartPointer<vtkDataArray> vtkStratusMakeBricks(const vtkStratusBrickSource& 
   core.only = source.Only.empty() ? nullptr : source.Only.data();
   core.read = &ReadBox;
   core.release = &Release;
-  core.user = new vtkStratusBrickSource(source);
+  auto* const user = new vtkStratusBrickSource(source);
+  user->Only.clear(); // which the core copies
+  user->Only.shrink_to_fit();
+  core.user = user;
   stratus_bricks* bricks = nullptr;
   const std::lock_guard<std::mutex> lock(pool.Lock);
   if (stratus_bricks_create(pool.Context, pool.Bricks, &core, &bricks) != STRATUS_OK) {

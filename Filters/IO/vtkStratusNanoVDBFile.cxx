@@ -85,10 +85,20 @@ public:
   // Fails where there can be no leaf.
   template <class Leaf> void CheckLeaf(const void* from, int64_t offset) const { this->Find(from, offset, sizeof(Leaf), this->Length); }
 
+  // Fails where so many nodes of a size take more bytes than there are: some of them are one node at several places.
+  void CheckCount(uint64_t nodes, uint64_t size) const
+  {
+    if (nodes > this->Length / size) {
+      throw vtkStratusReadError{ this->Name + ": the grid is damaged: it has more nodes than fit in its " + std::to_string(this->Length) +
+        " bytes" };
+    }
+  }
+
   const uint8_t* Begin() const { return this->Held.data(); }
   uint64_t Size() const { return this->Held.size(); }
   uint64_t SizeOfAll() const { return this->Length; }
   bool LeavesStay() const { return this->File != nullptr; }
+  const std::string& GetName() const { return this->Name; }
 
 private:
   // Returns where `size` bytes are among the bytes of the grid, of which there are `end`.
@@ -131,10 +141,10 @@ public:
   {
     const Tree& tree = this->Source.template At<Tree>(this->Source.Begin(), sizeof(nanovdb::GridData));
     this->Top = &this->Source.template At<Root>(&tree, tree.mNodeOffset[3]);
+    this->CheckRoot();
     this->Type = vtkStratusTypeOf(Component());
     this->Components = Traits<Value>::Components;
     this->Active = tree.mVoxelCount;
-    this->Leaves = tree.mNodeCount[0];
     this->Bytes = this->Source.SizeOfAll();
     this->InFile = this->Source.LeavesStay();
     this->Empty = this->Active == 0;
@@ -240,6 +250,22 @@ public:
   }
 
 private:
+  // Fails where the root's entries are not within the bytes, or two of them are at one place.
+  void CheckRoot() const
+  {
+    const Root& root = this->Source.template At<Root>(this->Top, 0, sizeof(Root) + this->Top->mTableSize * sizeof(typename Root::Tile));
+    std::vector<nanovdb::Coord> places;
+    for (uint32_t n = 0; n < root.mTableSize; ++n) {
+      places.push_back(root.tile(n)->origin());
+    }
+    std::sort(places.begin(), places.end());
+    const auto twice = std::adjacent_find(places.begin(), places.end());
+    if (twice != places.end()) {
+      throw vtkStratusReadError{ this->Source.GetName() + ": the grid is damaged: its root has two entries at " +
+        std::to_string((*twice)[0]) + ", " + std::to_string((*twice)[1]) + ", " + std::to_string((*twice)[2]) };
+    }
+  }
+
   // Voxels, ends included.
   struct Cube {
     int64_t Low[3], High[3];
@@ -264,7 +290,7 @@ private:
   // cube; a leaf is `child` bytes behind its lower node `inner`.
   template <class OnTile, class OnLeaf> void Visit(const Cube& cube, const OnTile& tile, const OnLeaf& leaf) const
   {
-    this->Source.template At<Root>(this->Top, 0, sizeof(Root) + this->Top->mTableSize * sizeof(typename Root::Tile));
+    uint64_t inners = 0, leaves = 0;
     for (uint32_t n = 0; n < this->Top->mTableSize; ++n) {
       const typename Root::Tile& entry = *this->Top->tile(n);
       const nanovdb::Coord origin = entry.origin();
@@ -277,8 +303,12 @@ private:
         VisitNode<nanovdb::NanoUpper<Build>, nanovdb::NanoLower<Build>>(
           node, first, cube, tile, [&](const int64_t place[3], int64_t child) {
             const Lower& inner = this->Source.template At<Lower>(&node, child);
+            this->Source.CheckCount(++inners, sizeof(Lower));
             VisitNode<nanovdb::NanoLower<Build>, nanovdb::NanoLeaf<Build>>(
-              inner, place, cube, tile, [&](const int64_t at[3], int64_t last) { leaf(at, inner, last); });
+              inner, place, cube, tile, [&](const int64_t at[3], int64_t last) {
+                this->Source.CheckCount(++leaves, sizeof(Leaf));
+                leaf(at, inner, last);
+              });
           });
       } else {
         tile(first, nanovdb::NanoUpper<Build>::DIM, entry.value, entry.state != 0);
@@ -382,7 +412,7 @@ public:
     }
   }
 
-  std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name, bool leave) override
+  std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name) override
   {
     std::unique_ptr<vtkStratusSparseGrid> result;
     size_t number = 0;
@@ -391,7 +421,7 @@ public:
     }
     const Place& place = this->Grids[number];
     this->Guard([&] {
-      if (leave && place.Codec == nanovdb::io::Codec::NONE && place.Head.fileSize == place.Head.gridSize) {
+      if (place.Codec == nanovdb::io::Codec::NONE && place.Head.fileSize == place.Head.gridSize) {
         try {
           std::unique_ptr<GridBytes> bytes = LeaveLeaves(this->Path, place.Begin, place.Head.gridSize);
           result = bytes ? this->Make(std::move(*bytes), number) : nullptr;

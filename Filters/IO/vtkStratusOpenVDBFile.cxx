@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grids of a .vdb file, by OpenVDB.
+// Grids of a .vdb file, by OpenVDB. The box of a grid's active voxels is in its head, so that its values are read once it is known which
+// are wanted. OpenVDB passes over the leaves that are outside of a box; it reads all nodes above them.
 #include "vtkStratusSparseGrid.h"
 
 #include <openvdb/openvdb.h>
@@ -96,6 +97,20 @@ private:
   const Grid& Source;
 };
 
+// A grid of which only the head was read.
+class Head : public vtkStratusSparseGrid
+{
+public:
+  explicit Head(const std::string& path, const std::string& name) : Path(path), Name(name) {}
+
+  void Write(void* values, const int64_t low[3], const int64_t high[3]) const override;
+  std::vector<vtkStratusCellBox> ListActive() const override;
+
+private:
+  std::string Path, Name;
+  mutable std::unique_ptr<vtkStratusSparseGrid> Whole; // once the places of all leaves were wanted
+};
+
 class File : public vtkStratusSparseFile
 {
 public:
@@ -112,13 +127,56 @@ public:
     });
   }
 
-  std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name, bool) override
+  // Reads the head, if it says where the active voxels are; else all.
+  std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name) override
   {
     std::unique_ptr<vtkStratusSparseGrid> result;
     this->Guard([&] {
-      const openvdb::GridBase::Ptr grid = this->Source.readGrid(name);
-      grid->apply<Every>([&](const auto& one) { result = std::make_unique<SparseGrid<std::decay_t<decltype(one)>>>(grid, one); });
-      this->Describe(*grid, name, *result);
+      const openvdb::GridBase::Ptr head = this->Source.readGridMetadata(name);
+      const auto low = head->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MIN),
+                 high = head->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MAX);
+      const auto active = head->getMetadata<openvdb::Int64Metadata>(openvdb::GridBase::META_FILE_VOXEL_COUNT),
+                 bytes = head->getMetadata<openvdb::Int64Metadata>(openvdb::GridBase::META_FILE_MEM_BYTES);
+      if (low && high && active && bytes && active->value() >= 0 && bytes->value() >= 0) {
+        result = std::make_unique<Head>(this->Path, name);
+        head->apply<Every>([&](const auto& one) {
+          using Value = typename std::decay_t<decltype(one)>::ValueType;
+          result->Type = vtkStratusTypeOf(typename Traits<Value>::Type());
+          result->Components = Traits<Value>::Components;
+        });
+        openvdb::CoordBBox box;
+        if (active->value() > 0) {
+          box.reset(openvdb::Coord(low->value()), openvdb::Coord(high->value()));
+        }
+        result->Active = static_cast<uint64_t>(active->value());
+        result->Bytes = static_cast<uint64_t>(bytes->value());
+        this->Describe(*head, name, box, *result);
+      }
+    });
+    return result ? std::move(result) : this->ReadAll(name);
+  }
+
+  std::unique_ptr<vtkStratusSparseGrid> ReadAll(const std::string& name)
+  {
+    std::unique_ptr<vtkStratusSparseGrid> result;
+    this->Guard([&] { result = this->Take(this->Source.readGrid(name), name); });
+    return result;
+  }
+
+  // Reads a grid without the leaves that are outside of a box of voxels. The library wants the box in the grid's coordinates.
+  std::unique_ptr<vtkStratusSparseGrid> ReadPart(const std::string& name, const int64_t low[3], const int64_t high[3])
+  {
+    std::unique_ptr<vtkStratusSparseGrid> result;
+    this->Guard([&] {
+      const auto voxel = [](const int64_t at[3]) { return openvdb::Vec3d(double(at[0]), double(at[1]), double(at[2])); };
+      const openvdb::GridBase::Ptr head = this->Source.readGridMetadata(name);
+      const openvdb::math::Transform& map = head->transform();
+      const openvdb::BBoxd wanted(voxel(low) - 2.0, voxel(high) + 2.0), box = map.indexToWorld(wanted), again = map.worldToIndex(box);
+      bool holds = true; // coordinates far from 0 may be too coarse
+      for (int a = 0; a < 3; ++a) {
+        holds = holds && again.min()[a] <= wanted.min()[a] + 1.0 && again.max()[a] >= wanted.max()[a] - 1.0;
+      }
+      result = this->Take(holds ? this->Source.readGrid(name, box) : this->Source.readGrid(name), name);
     });
     return result;
   }
@@ -127,13 +185,22 @@ private:
   using Every = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid, openvdb::Int64Grid, openvdb::BoolGrid,
     openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
 
-  void Describe(const openvdb::GridBase& grid, const std::string& name, vtkStratusSparseGrid& to) const
+  std::unique_ptr<vtkStratusSparseGrid> Take(const openvdb::GridBase::Ptr& grid, const std::string& name) const
+  {
+    std::unique_ptr<vtkStratusSparseGrid> result;
+    grid->apply<Every>([&](const auto& one) { result = std::make_unique<SparseGrid<std::decay_t<decltype(one)>>>(grid, one); });
+    result->Active = grid->activeVoxelCount();
+    result->Bytes = grid->memUsage();
+    this->Describe(*grid, name, grid->evalActiveVoxelBoundingBox(), *result);
+    return result;
+  }
+
+  void Describe(const openvdb::GridBase& grid, const std::string& name, const openvdb::CoordBBox& box, vtkStratusSparseGrid& to) const
   {
     if (!grid.transform().isLinear()) {
       throw vtkStratusReadError{ this->Path + ": the grid '" + name + "' has a " + grid.transform().mapType() +
         ", whose voxels differ in size; its map must be linear" };
     }
-    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     const openvdb::math::Mat4d map = grid.transform().baseMap()->getAffineMap()->getMat4(); // rows are the images of the axes
     to.Empty = box.empty();
     for (int a = 0; a < 3; ++a) {
@@ -144,9 +211,6 @@ private:
         to.Matrix[static_cast<size_t>(3 * a + b)] = map[b][a];
       }
     }
-    to.Active = grid.activeVoxelCount();
-    to.Leaves = grid.constBaseTree().leafCount();
-    to.Bytes = grid.memUsage();
     to.Kind = (grid.getGridClass() == openvdb::GRID_UNKNOWN ? "grid" : openvdb::GridBase::gridClassToString(grid.getGridClass())) + " of " +
       grid.valueType() + (grid.saveFloatAsHalf() ? ", kept in halves" : "");
   }
@@ -165,6 +229,29 @@ private:
   std::string Path;
   openvdb::io::File Source;
 };
+
+void Head::Write(void* values, const int64_t low[3], const int64_t high[3]) const
+{
+  bool all = true;
+  for (int a = 0; a < 3; ++a) {
+    all = all && low[a] <= this->Low[a] && high[a] >= this->High[a];
+  }
+  if (this->Whole) {
+    this->Whole->Write(values, low, high);
+  } else if (all) {
+    File(this->Path).ReadAll(this->Name)->Write(values, low, high);
+  } else {
+    File(this->Path).ReadPart(this->Name, low, high)->Write(values, low, high);
+  }
+}
+
+std::vector<vtkStratusCellBox> Head::ListActive() const
+{
+  if (!this->Whole) {
+    this->Whole = File(this->Path).ReadAll(this->Name);
+  }
+  return this->Whole->ListActive();
+}
 } // namespace
 
 std::unique_ptr<vtkStratusSparseFile> vtkStratusOpenVDBFile(const std::string& path)

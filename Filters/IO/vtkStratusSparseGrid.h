@@ -127,8 +127,8 @@ class vtkStratusSparseGrid
 public:
   virtual ~vtkStratusSparseGrid() = default;
 
-  // Writes all voxels of the box, active and inactive ones, into memory that holds zeros: values of Type, Components a voxel. Several
-  // threads may do so at once.
+  // Writes all voxels of the box, active and inactive ones, into memory that holds zeros: values of Type, Components a voxel. If InFile,
+  // several threads may do so at once.
   virtual void Write(void* values, const int64_t low[3], const int64_t high[3]) const = 0;
 
   // Lists for each cube of `side` voxels (a power of 2) at multiples of that, clipped to the box, x fastest, the one value that Write()
@@ -140,14 +140,14 @@ public:
 
   int Type = VTK_FLOAT; // of VTK's numbers
   int Components = 1;
-  bool Empty = true;                          // no voxel is active
-  int64_t Low[3] = { 0, 0, 0 };               // the box of the active voxels, ends included
-  int64_t High[3] = { 0, 0, 0 };              //
-  std::array<double, 9> Matrix{ { 0.0 } };    // row-major: world = Matrix * index + Offset
-  std::array<double, 3> Offset{ { 0.0 } };    //
-  uint64_t Active = 0, Leaves = 0, Bytes = 0; // voxels; blocks of 8^3; memory of the sparse grid
-  bool InFile = false;                        // leaves stay in the file, and are read by Write()
-  std::string Kind;                           // "fog volume of float", for people
+  bool Empty = true;                       // no voxel is active
+  int64_t Low[3] = { 0, 0, 0 };            // the box of the active voxels, ends included
+  int64_t High[3] = { 0, 0, 0 };           //
+  std::array<double, 9> Matrix{ { 0.0 } }; // row-major: world = Matrix * index + Offset
+  std::array<double, 3> Offset{ { 0.0 } }; //
+  uint64_t Active = 0, Bytes = 0;          // voxels; memory of the sparse grid
+  bool InFile = false;                     // any Write() reads its own leaves, and nothing else
+  std::string Kind;                        // "fog volume of float", for people
 };
 
 class vtkStratusSparseFile
@@ -161,8 +161,8 @@ public:
     bool Known;       // its values can be drawn
   };
   const std::vector<Entry>& GetEntries() const { return this->Entries; }
-  // Reads a grid of those that are Known. leave: its leaves stay in the file, where that can be.
-  virtual std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name, bool leave) = 0;
+  // Reads a grid of those that are Known, or as much of it as its description needs: Write() then reads the rest.
+  virtual std::unique_ptr<vtkStratusSparseGrid> Read(const std::string& name) = 0;
 
   // Opens a file by its first bytes.
   static std::unique_ptr<vtkStratusSparseFile> Open(const std::string& path);

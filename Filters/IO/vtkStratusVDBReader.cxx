@@ -5,6 +5,7 @@
 #include "vtkStratusIdentity.h"
 #include "vtkStratusMakeArray.h"
 #include "vtkStratusMappedFile.h"
+#include "vtkStratusParts.h"
 #include "vtkStratusSparseGrid.h"
 
 #include "vtkDataArray.h"
@@ -60,6 +61,18 @@ double ImageBytes(const vtkStratusSparseGrid& grid)
   return bytes;
 }
 
+// Gives the extent of a block's cells that are in a part. Returns false if none is.
+bool Clip(const vtkStratusCellBox& box, const int part[6], int extent[6])
+{
+  bool any = true;
+  for (int a = 0; a < 3; ++a) {
+    extent[2 * a] = static_cast<int>(std::max<int64_t>(box.Low[a], part[2 * a]));
+    extent[2 * a + 1] = static_cast<int>(std::min<int64_t>(box.High[a], part[2 * a + 1]));
+    any = any && extent[2 * a] < extent[2 * a + 1];
+  }
+  return any;
+}
+
 double Length(const vtkStratusSparseGrid& grid, size_t axis)
 {
   return std::sqrt(
@@ -67,7 +80,11 @@ double Length(const vtkStratusSparseGrid& grid, size_t axis)
 }
 } // namespace
 
-vtkStratusVDBReader::vtkStratusVDBReader() = default;
+vtkStratusVDBReader::vtkStratusVDBReader()
+{
+  this->GivesParts = true;
+}
+
 vtkStratusVDBReader::~vtkStratusVDBReader() = default;
 
 void vtkStratusVDBReader::Fail(const std::string& why) const
@@ -91,9 +108,9 @@ std::string vtkStratusVDBReader::Inspect()
     this->Fail("there is no grid of numbers or vectors; the file has: " + (others.empty() ? "no grid" : others));
   }
   this->GridName = this->ChosenName();
-  this->Grid = file->Read(this->GridName, this->MapFile || vtkStratusHasBrickMemory());
-  this->Description = this->Grid->Kind + ", " + std::to_string(this->Grid->Active) + " active voxels in " +
-    std::to_string(this->Grid->Leaves) + " leaves and tiles of " + WriteBytes(static_cast<double>(this->Grid->Bytes));
+  this->Grid = file->Read(this->GridName);
+  this->Description = this->Grid->Kind + ", " + std::to_string(this->Grid->Active) + " active voxels in a sparse grid of " +
+    WriteBytes(static_cast<double>(this->Grid->Bytes));
   this->CheckMap();
   this->FindExtent();
   this->Description += this->Grid->Empty ? ": nothing but background" : ", within " + WriteBox(*this->Grid);
@@ -176,11 +193,12 @@ void vtkStratusVDBReader::CheckMap()
   }
 }
 
-// Returns the image's values as bricks. Null where they can't be.
+// Returns the values of the image's part as bricks. Null where they can't be.
 vtkSmartPointer<vtkDataArray> vtkStratusVDBReader::LeaveValues(const std::shared_ptr<vtkStratusSparseGrid>& grid) const
 {
   vtkStratusBrickSource source;
   std::array<int64_t, 3> origin;
+  const vtkStratusBox part = vtkStratusBoxOf(this->WholeExtent, this->Part, false);
   source.Name = this->GridName;
   source.Type = grid->Type;
   source.Components = grid->Components;
@@ -191,9 +209,6 @@ vtkSmartPointer<vtkDataArray> vtkStratusVDBReader::LeaveValues(const std::shared
     source.Brick[a] = BrickSide;
     source.Before[a] = origin[a] & (BrickSide - 1); // nodes begin at multiples of their side, also below 0
   }
-  const int64_t first[3] = { this->WholeExtent[0], this->WholeExtent[2], this->WholeExtent[4] };
-  const int64_t last[3] = { this->WholeExtent[1], this->WholeExtent[3], this->WholeExtent[5] };
-  source.Only = grid->ListOnly(first, last, BrickSide);
   const size_t voxel = static_cast<size_t>(vtkDataArray::GetDataTypeSize(grid->Type)) * static_cast<size_t>(grid->Components);
   source.Read = [grid, origin, voxel](const int64_t lo[3], const int64_t size[3], void* values) {
     int64_t low[3], high[3];
@@ -211,6 +226,9 @@ vtkSmartPointer<vtkDataArray> vtkStratusVDBReader::LeaveValues(const std::shared
     }
     return true;
   };
+  vtkStratusCutSource(source, part.Low, part.Size);
+  const int64_t first[3] = { this->Part[0], this->Part[2], this->Part[4] }, last[3] = { this->Part[1], this->Part[3], this->Part[5] };
+  source.Only = grid->ListOnly(first, last, BrickSide);
   return vtkStratusMakeBricks(source);
 }
 
@@ -248,7 +266,10 @@ void vtkStratusVDBReader::Build(size_t step, vtkDataObject* output)
 {
   std::shared_ptr<vtkStratusSparseGrid> grid = std::move(this->Grid);
   if (!grid) {
-    grid = vtkStratusSparseFile::Open(this->FileName)->Read(this->GridName, this->MapFile || vtkStratusHasBrickMemory());
+    grid = vtkStratusSparseFile::Open(this->FileName)->Read(this->GridName);
+    if (!this->Blocks.empty()) {
+      grid->ListActive(); // so that the file is read once, and not for each block
+    }
   }
   this->Mapped = 0;
   if (vtkImageData* image = vtkImageData::SafeDownCast(output)) {
@@ -256,24 +277,25 @@ void vtkStratusVDBReader::Build(size_t step, vtkDataObject* output)
     if (this->LeavesImage && grid->InFile) {
       values = this->BricksOf(step, [this, &grid](size_t) { return this->LeaveValues(grid); });
     }
-    if (!values && ImageBytes(*grid) > 1048576.0 * static_cast<double>(this->MemoryLimit)) {
+    const vtkStratusBox part = vtkStratusBoxOf(this->WholeExtent, this->Part, false);
+    const double bytes = VoxelBytes(*grid) * static_cast<double>(part.Size[0]) * static_cast<double>(part.Size[1] * part.Size[2]);
+    if (!values && bytes > 1048576.0 * static_cast<double>(this->MemoryLimit)) {
       throw std::bad_alloc();
     }
     this->Mapped = values ? 1 : 0;
-    this->BuildImage(image, *grid, this->WholeExtent, values);
+    this->BuildImage(image, *grid, this->Part, values);
     return;
   }
   vtkPartitionedDataSet* parts = vtkPartitionedDataSet::SafeDownCast(output);
   parts->Initialize();
   for (const vtkStratusCellBox& box : this->Blocks) {
-    int extent[6];
-    for (int a = 0; a < 3; ++a) {
-      extent[2 * a] = static_cast<int>(box.Low[a]);
-      extent[2 * a + 1] = static_cast<int>(box.High[a]);
+    int extent[6], owned[6];
+    if (Clip(box, this->OwnedPart, owned) && Clip(box, this->Part, extent)) {
+      vtkNew<vtkImageData> block;
+      this->BuildImage(block, *grid, extent);
+      vtkStratusFlagDuplicates(block, owned, false);
+      parts->SetPartition(parts->GetNumberOfPartitions(), block);
     }
-    vtkNew<vtkImageData> block;
-    this->BuildImage(block, *grid, extent);
-    parts->SetPartition(parts->GetNumberOfPartitions(), block);
   }
 }
 

@@ -22,6 +22,10 @@
  * corner. They are divided until at least half of their voxels are in leaves and active tiles, or there are 256 of them.
  * vtkStratusMultiBlockVolumeMapper draws them as one volume, without seams; the space between blocks is empty, whatever the background's
  * value. Blocks that need more than MemoryLimit are an error that reports the bytes.
+ *
+ * A rank gets its part of the image, or of each block, with ghost cells. Of a .nvdb file that is not compressed, it reads only the leaves
+ * in that part. Of a .vdb file whose grid becomes an image, it keeps only these; OpenVDB passes over the others. Other grids are in memory
+ * as a whole while the part is made.
  */
 #ifndef vtkStratusVDBReader_h
 #define vtkStratusVDBReader_h

@@ -325,6 +325,7 @@ int vtkStratusVariableReader::RequestInformation(vtkInformation*, vtkInformation
     }
   } else {
     info->Remove(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
+    info->Remove(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()); // of an output with an extent
   }
   if (this->Times.empty()) {
     info->Remove(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
@@ -342,8 +343,8 @@ bool vtkStratusVariableReader::FindPart(vtkInformation* request, vtkDataObject* 
 {
   std::copy_n(this->WholeExtent, 6, this->Part);
   std::copy_n(this->WholeExtent, 6, this->OwnedPart);
-  return !this->GivesParts || output->GetExtentType() != VTK_3D_EXTENT ||
-    vtkStratusFindPart(request, this->WholeExtent, this->Part, this->OwnedPart);
+  const bool divides = output->GetExtentType() == VTK_3D_EXTENT || output->IsA("vtkPartitionedDataSet");
+  return !this->GivesParts || !divides || vtkStratusFindPart(request, this->WholeExtent, this->Part, this->OwnedPart);
 }
 
 // Sets the unit of the variable's values, and how long a unit of the coordinates is if that is known.

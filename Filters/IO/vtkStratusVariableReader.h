@@ -7,7 +7,7 @@
  * first). An error names the file and the fault, and empties the output.
  *
  * Readers of images and of grids with an extent output the piece of a rank, with as many layers of ghost cells as are requested, or the
- * extent that a filter requests (vtkStratusVDBReader outputs the whole). Of values that stay in the file (SetMapFile()), only the piece's
+ * extent that a filter requests. Of values that stay in the file (SetMapFile()), only the piece's
  * are read, and the chunks that contain them. Other values are read as a whole first.
  *
  * The information of the output's array has the variable's unit as vtkDataArray::UNITS_LABEL(). If the unit of the coordinates is a length,
@@ -220,9 +220,10 @@ protected:
 #endif
   int WholeExtent[6]; // of an output with an extent
   /// Whether the reader gives parts of such an output, for ranks and for filters that request one. Build() makes all of it, or all but
-  /// arrays that have the values of Part only; the rest is cut out.
+  /// arrays that have the values of Part only; the rest is cut out. Blocks of WholeExtent it cuts itself.
   bool GivesParts = false;
-  int Part[6]; // what is requested of WholeExtent, with ghost cells
+  int Part[6];      // what is requested of WholeExtent, with ghost cells
+  int OwnedPart[6]; // Part without ghost cells
 
   /// Says that the output's coordinates are places on a sphere, in metres.
   void SetAxesOnSphere();
@@ -244,7 +245,6 @@ private:
   vtkSmartPointer<vtkDataArray> Ahead;                    // of the step that is read ahead
   uint64_t BricksFile = 0;                                // the identity of their file
   int BricksPart[6];                                      // the extent that they have
-  int OwnedPart[6];                                       // Part without ghost cells
 #endif
   size_t LastStep = 0; // of these
   std::string OutputClass;

@@ -473,7 +473,7 @@ def test_vdb():
         return
     subprocess.run([MAKERS["write-vdb"], "."], check=True)
     said = expect(0, r"kind +image of 41 x 41 x 25 points", "info", "cloud.vdb")
-    for pattern in (r"coordinates +fog volume of float, \d+ active voxels in \d+ leaves", r"variable +'density', float, 0 \.\. 1$",
+    for pattern in (r"coordinates +fog volume of float, \d+ active voxels in a sparse grid of \d+ bytes", r"variable +'density', float, 0 \.\. 1$",
                     r"variable +'wind', vec3s, 0 \.\. 5$", r"drawn +'density'", r"spacing 0\.5 x 2 x 1"):
         if not re.search(pattern, said, re.MULTILINE):
             fail(f"info of cloud.vdb does not say '{pattern}':\n{said}")

@@ -459,6 +459,29 @@ void test_wrong(const std::string& folder)
   }
 }
 
+// Nodes that the file has once, but which are at several places, as if there were many: a small file would take hours.
+void test_repeated(const std::string& folder)
+{
+  const auto grid = openvdb::FloatGrid::create(0.0F);
+  grid->tree().setValue(openvdb::Coord(1, 2, 3), 1);
+  grid->tree().setValue(openvdb::Coord(5000, 2, 3), 2);
+  for (const bool root : { true, false }) {
+    auto handle = vdb::to_nano(grid);
+    auto* top = reinterpret_cast<nanovdb::RootData<nanovdb::NanoUpper<float>>*>(&handle.grid<float>()->tree().root());
+    if (root) {
+      top->tile(1)->key = top->tile(0)->key;
+    } else {
+      auto* upper = reinterpret_cast<nanovdb::NanoUpper<float>::DataType*>(reinterpret_cast<char*>(top) + top->tile(0)->child);
+      for (uint32_t n = 1; n < 32768; ++n) {
+        upper->mTable[n].child = upper->mTable[0].child;
+      }
+      upper->mChildMask.setOn();
+    }
+    nanovdb::io::writeGrid(folder + "/repeated.nvdb", handle);
+    refuse<vtkStratusVDBReader>(folder + "/repeated.nvdb", nullptr, root ? "its root has two entries at" : "more nodes than fit in its");
+  }
+}
+
 // Whatever a byte of a grid becomes, the reader ends, with an image or an error.
 void test_damaged(const std::string& folder)
 {
@@ -528,6 +551,7 @@ int main(int argc, char* argv[])
   test_limit(folder);
   test_cut_later(folder);
   test_wrong(folder);
+  test_repeated(folder);
   test_damaged(folder);
   return failures ? 1 : 0;
 }

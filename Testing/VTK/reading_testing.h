@@ -22,7 +22,7 @@ static void check(bool right, const std::string& what)
   }
 }
 
-static bool near(double a, double b, double tolerance = 1e-9)
+inline bool near(double a, double b, double tolerance = 1e-9)
 {
   return std::fabs(a - b) <= tolerance * std::fmax(1.0, std::fabs(b));
 }
@@ -67,7 +67,7 @@ template <class Reader> void refuse(const std::string& path, const char* variabl
 }
 
 // Copies the first part of a file.
-static std::string cut(const std::string& path, const std::string& to, double part)
+inline std::string cut(const std::string& path, const std::string& to, double part)
 {
   std::ifstream in(path, std::ios::binary);
   const std::string all((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Bricks of which the source knows that they are one value: they are not read, and value ranges and coarse copies are those of all values.
+ * Bricks of one value, as their source says: they are not read, and value ranges and coarse copies are those of all values.
  */
 #include "bricks.h"
 #include "look_sample.h"
