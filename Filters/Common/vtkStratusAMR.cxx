@@ -3,6 +3,7 @@
 
 #include "vtkStratusAMRField.h"
 #include "vtkStratusAMRLeaves.h"
+#include "vtkStratusAMRParts.h"
 #include "stratus.h"
 #include "vtkStratusArrays.h"
 #include "vtkStratusVersions.h"
@@ -31,62 +32,8 @@
 namespace {
 
 using Box = vtkStratusAMRField::Box;
+using Parts = vtkStratusAMRParts;
 using Place = vtkStratusAMRField::Place;
-
-std::string NameOf(unsigned int level, unsigned int id)
-{
-  return "box " + std::to_string(id) + " of level " + std::to_string(level);
-}
-
-// Finds how many cells of each level fit along a cell of the level before.
-bool FindRatios(vtkOverlappingAMR* amr, std::vector<std::array<int, 3>>& ratios, std::string& error)
-{
-  for (unsigned int level = 0; level + 1 < amr->GetNumberOfLevels(); ++level) {
-    double coarse[3], fine[3];
-    amr->GetSpacing(level, coarse);
-    amr->GetSpacing(level + 1, fine);
-    std::array<int, 3> ratio;
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const double exact = coarse[axis] / fine[axis];
-      if (!(exact > 0.5 && exact < 1024.5) || std::fabs(exact - std::round(exact)) > 1e-6 * exact) {
-        error = "level " + std::to_string(level + 1) + " divides cells of level " + std::to_string(level) + " by " + std::to_string(exact) +
-          " along axis " + std::to_string(axis) + ", a whole number from 1 to 1024 is needed";
-        return false;
-      }
-      ratio[axis] = static_cast<int>(std::round(exact));
-    }
-    ratios.push_back(ratio);
-  }
-  return true;
-}
-
-// Checks that a box is where the levels' lattice says, and gives its cells.
-bool FindBox(vtkOverlappingAMR* amr, unsigned int level, unsigned int id, vtkStratusAMRGrid* grid, Box& box, std::string& error)
-{
-  double spacing[3], origin[3];
-  int dimensions[3];
-  amr->GetSpacing(level, spacing);
-  grid->GetDimensions(dimensions);
-  grid->GetOrigin(origin); // of the point of index 0
-  const int* extent = grid->GetExtent();
-  box.Level = static_cast<int>(level);
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const double own = grid->GetSpacing()[axis];
-    const double lo = (origin[axis] + own * extent[2 * axis] - amr->GetOrigin()[axis]) / spacing[axis];
-    if (dimensions[axis] < 2) {
-      error = NameOf(level, id) + " is flat along axis " + std::to_string(axis) + "; boxes of three dimensions are drawn";
-      return false;
-    }
-    if (!(std::fabs(own - spacing[axis]) <= 1e-5 * spacing[axis]) || !(std::fabs(lo) < 1e9) || std::fabs(lo - std::round(lo)) > 1e-2) {
-      error = NameOf(level, id) + " is not on its level's lattice: along axis " + std::to_string(axis) + " its spacing is " +
-        std::to_string(own) + " (the level's is " + std::to_string(spacing[axis]) + ") and it starts at cell " + std::to_string(lo);
-      return false;
-    }
-    box.Lo[axis] = static_cast<int64_t>(std::round(lo));
-    box.Hi[axis] = box.Lo[axis] + dimensions[axis] - 1;
-  }
-  return true;
-}
 
 // The drawn data of a box.
 struct Source {
@@ -246,41 +193,17 @@ vtkMTimeType vtkStratusAMR::GetTime(vtkUniformGridAMR* amr)
 bool vtkStratusAMR::GetBounds(vtkUniformGridAMR* amr, int piece, int pieces, double bounds[6])
 {
   vtkOverlappingAMR* overlapping = vtkOverlappingAMR::SafeDownCast(amr);
-  std::vector<std::array<int, 3>> ratios;
+  Parts::Ratios ratios;
   std::string unused;
-  if (!overlapping || !FindRatios(overlapping, ratios, unused)) {
+  if (!overlapping || !Parts::FindRatios(overlapping, ratios, unused)) {
     return false;
   }
-  std::vector<vtkStratusAMRLeaves::Box> boxes; // in halves of the finest level's cells, as the field counts
-  std::vector<double> values;
   Place lo, hi, cell;
+  if (!Parts::FindPiece(ratios, Parts::GetAll(overlapping), piece, pieces, lo, hi, cell)) {
+    return false;
+  }
   double unit[3];
   overlapping->GetSpacing(static_cast<unsigned int>(ratios.size()), unit);
-  for (unsigned int level = static_cast<unsigned int>(ratios.size()) + 1; level-- > 0;) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      cell[axis] = level == ratios.size() ? 2 : cell[axis] * ratios[level][axis];
-    }
-    for (unsigned int id = 0; id < vtkStratusNumberOfGrids(overlapping, level); ++id) {
-      vtkStratusAMRGrid* grid = vtkStratusGridOf(overlapping, level, id);
-      Box box;
-      if (!grid || grid->GetNumberOfPoints() == 0 || !FindBox(overlapping, level, id, grid, box, unused)) {
-        continue;
-      }
-      double count = 1.0;
-      for (size_t axis = 0; axis < 3; ++axis) {
-        count *= static_cast<double>(box.Hi[axis] - box.Lo[axis]);
-        box.Lo[axis] *= cell[axis];
-        box.Hi[axis] *= cell[axis];
-        lo[axis] = boxes.empty() ? box.Lo[axis] : std::min(lo[axis], box.Lo[axis]);
-        hi[axis] = boxes.empty() ? box.Hi[axis] : std::max(hi[axis], box.Hi[axis]);
-      }
-      boxes.push_back({ box.Level, box.Lo, box.Hi });
-      values.push_back(count);
-    }
-  }
-  if (boxes.empty() || !vtkStratusAMRLeaves::FindPiece(boxes, cell, values, piece, pieces, lo, hi)) {
-    return false;
-  }
   for (size_t axis = 0; axis < 3; ++axis) {
     bounds[2 * axis] = overlapping->GetOrigin()[axis] + 0.5 * unit[axis] * static_cast<double>(lo[axis]);
     bounds[2 * axis + 1] = overlapping->GetOrigin()[axis] + 0.5 * unit[axis] * static_cast<double>(hi[axis]);
@@ -315,10 +238,11 @@ bool vtkStratusAMR::Set(vtkUniformGridAMR* amr, const FindArray& find, const Use
 
 bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, const Use& use, std::string& error)
 {
-  std::vector<std::array<int, 3>> ratios;
-  if (!FindRatios(amr, ratios, error)) {
+  Parts::Ratios ratios;
+  if (!Parts::FindRatios(amr, ratios, error)) {
     return false;
   }
+  const std::vector<Box> all = Parts::GetAll(amr);
   std::vector<Source> sources;
   int type = VTK_VOID, components = 0;
   for (unsigned int level = 0; level < amr->GetNumberOfLevels(); ++level) {
@@ -331,7 +255,7 @@ bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, const Us
       bool cells = false;
       source.Values = find(grid, cells);
       if (!source.Values) {
-        error = NameOf(level, id) + " lacks the array";
+        error = Parts::NameOf(level, id) + " lacks the array";
         return false;
       }
       if (sources.empty()) {
@@ -342,11 +266,11 @@ bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, const Us
         this->Levels = static_cast<int>(level) + 1;
       }
       if (cells != this->Cells || source.Values->GetDataType() != type || source.Values->GetNumberOfComponents() != components) {
-        error = NameOf(level, id) +
+        error = Parts::NameOf(level, id) +
           " has its array of another type or number of components than the first box, or on points where that has cells";
         return false;
       }
-      if (!FindBox(amr, level, id, grid, source.Where, error) || !FindSource(grid, NameOf(level, id), cells, source, error)) {
+      if (!Parts::FindBox(amr, level, id, grid, source.Where, error) || !FindSource(grid, Parts::NameOf(level, id), cells, source, error)) {
         return false;
       }
       this->Levels = std::max(this->Levels, static_cast<int>(level) + 1);
@@ -360,6 +284,9 @@ bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, const Us
     error =
       "nearest interpolation of AMR's values of points is not drawn: cells about points of two levels overlap. Use linear interpolation";
     return false;
+  }
+  for (const Box& box : all) {
+    this->Levels = std::max(this->Levels, box.Level + 1);
   }
   ratios.resize(static_cast<size_t>(this->Levels - 1));
   vtkStratusAMRField field;
@@ -390,7 +317,7 @@ bool vtkStratusAMR::Make(vtkOverlappingAMR* amr, const FindArray& find, const Us
     per_length[axis] = 1.0 / unit[axis];
   }
   this->Spacing = (coarsest[0] + coarsest[1] + coarsest[2]) / 3.0;
-  const vtkStratusAMRLeaves leaves(field, use.Nearest, use.Piece, use.Pieces);
+  const vtkStratusAMRLeaves leaves(field, all, use.Nearest, use.Piece, use.Pieces);
   for (const vtkStratusAMRLeaf& leaf : leaves.GetLeaves()) {
     std::vector<int64_t> planes[3];
     size_t counts[3];

@@ -56,7 +56,6 @@ public:
   // Numbers at each place: the components, and behind them each one's derivatives, per unit, along the axes, if there are gradients.
   int GetNumberOfNumbers() const { return this->Numbers; }
   bool IsOfCells() const { return this->Cells; }
-  const std::vector<Box>& GetBoxes() const { return this->Boxes; }
   // Gets the range of the visible values, without values beyond 1e30, which mean "no value". Returns false if there are none.
   bool GetRange(double range[2]) const;
   // Units along a cell of a level.

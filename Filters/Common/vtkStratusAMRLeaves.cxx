@@ -79,7 +79,8 @@ bool vtkStratusAMRLeaves::FindPiece(
   return true;
 }
 
-vtkStratusAMRLeaves::vtkStratusAMRLeaves(const vtkStratusAMRField& field, bool nearest, int piece, int pieces)
+vtkStratusAMRLeaves::vtkStratusAMRLeaves(
+  const vtkStratusAMRField& field, const std::vector<vtkStratusAMRField::Box>& all, bool nearest, int piece, int pieces)
     : Field(field), Nearest(nearest)
 {
   std::vector<Box> boxes;
@@ -88,7 +89,7 @@ vtkStratusAMRLeaves::vtkStratusAMRLeaves(const vtkStratusAMRField& field, bool n
   for (size_t axis = 0; axis < 3; ++axis) {
     cell[axis] = field.GetCell(0, static_cast<int>(axis));
   }
-  for (const vtkStratusAMRField::Box& box : field.GetBoxes()) {
+  for (const vtkStratusAMRField::Box& box : all) {
     Box one = { box.Level, box.Lo, box.Hi };
     for (size_t axis = 0; axis < 3; ++axis) {
       const int64_t cell = field.GetCell(box.Level, static_cast<int>(axis));

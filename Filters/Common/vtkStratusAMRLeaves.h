@@ -23,9 +23,10 @@ struct VTK_STRATUS_PRIVATE vtkStratusAMRLeaf {
 class VTK_STRATUS_PRIVATE vtkStratusAMRLeaves
 {
 public:
-  // nearest: cell values are not interpolated, and a leaf's lattice equals its cells' lattice. piece of pieces: the part of the space that
-  // is divided.
-  vtkStratusAMRLeaves(const vtkStratusAMRField& field, bool nearest, int piece = 0, int pieces = 1);
+  // all: the boxes, of which the field has the values in the piece and around it. nearest: cell values are not interpolated, and a leaf's
+  // lattice equals its cells' lattice. piece of pieces: the part of the space that is divided.
+  vtkStratusAMRLeaves(
+    const vtkStratusAMRField& field, const std::vector<vtkStratusAMRField::Box>& all, bool nearest, int piece = 0, int pieces = 1);
   const std::vector<vtkStratusAMRLeaf>& GetLeaves() const { return this->Leaves; }
   // The planes of a leaf's lattice along an axis.
   std::vector<int64_t> GetPlanes(const vtkStratusAMRLeaf& leaf, int axis) const;

@@ -134,7 +134,7 @@ int vtkStratusVolumeRepresentation::RequestData(vtkInformation* request, vtkInfo
   return this->vtkVolumeRepresentation::RequestData(request, input, output);
 }
 
-// Keeps a copy of the data, or, for AMR, of all ranks' data.
+// Keeps a copy of the data, or, for AMR, of the parts of all ranks' boxes that this rank needs.
 void vtkStratusVolumeRepresentation::TakeData(vtkDataObject* data)
 {
   auto* refined = vtkOverlappingAMR::SafeDownCast(data);
@@ -545,6 +545,11 @@ void vtkStratusVolumeRepresentation::SetDevice(const char* device)
   const char* used = this->GetSettings()->GetDevice(); // a device that is not there is refused, and the last stays
   const bool same = std::string(device ? device : "") == (used ? used : "");
   this->Refusal = same ? "" : std::string("there is no device \"") + device + "\" here, \"" + (used ? used : "") + "\" draws";
+}
+
+double vtkStratusVolumeRepresentation::GetHeldCells()
+{
+  return this->Cache ? static_cast<double>(this->Cache->GetNumberOfElements(vtkDataObject::CELL)) : 0.0;
 }
 
 #define SUM_OF_BLOCKS(getter)                                                                                                              \

@@ -4,11 +4,11 @@
  * @brief   ParaView's volume rendering of uniform and rectilinear grids by vtkStratusVolumeMapper
  *
  * Composite data are drawn block by block, in exact order, and AMR by levels (vtkStratusMultiBlockVolumeMapper). Of AMR each of several
- * ranks gets all boxes, and draws a part of the space; each grid has its own sampling. On several ranks each draws the cells that it owns.
- * It requests a layer of ghost cells, so that light and values at borders equal those in the whole volume. All ranks sample alike: they
- * agree on one choice of the automatic settings.
- * Supports everything of ParaView's own representation "Volume" that the mapper supports. The mapper refuses the rest by an error in
- * ParaView's messages. vtkStratusVolumeMapper documents the setters below.
+ * ranks draws a part of the space, and gets the parts of boxes in it and around it; each grid has its own sampling. On several ranks each
+ * draws the cells that it owns. It requests a layer of ghost cells, so that light and values at borders equal those in the whole volume.
+ * All ranks sample alike: they agree on one choice of the automatic settings. Supports everything of ParaView's own representation "Volume"
+ * that the mapper supports. The mapper refuses the rest by an error in ParaView's messages. vtkStratusVolumeMapper documents the setters
+ * below.
  *
  * @sa vtkStratusVolumeMapper vtkStratusMultiBlockVolumeMapper
  */
@@ -90,9 +90,11 @@ public:
 
   //@{
   /**
-   * Get what the last picture took on this rank: numbers of all blocks together, and how the first block was drawn. Milliseconds are those
-   * of casting rays. The sample distance is 0 where rays go from cell to cell, which takes no step.
+   * Get what the last picture took on this rank: numbers of all blocks together, and how the first block was drawn. Held cells are those of
+   * the data in this rank's memory, with cells around its part. Milliseconds are for casting rays. The sample distance is 0 where rays
+   * go from cell to cell, which takes no step.
    */
+  double GetHeldCells();
   double GetSamplesTaken();
   double GetSamplesSkipped();
   double GetCastTime();

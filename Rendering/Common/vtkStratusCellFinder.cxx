@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusCellFinder.h"
 
+#include "vtkStratusUncut.h"
 #include "vtkStratusVersions.h"
 
 #include "vtkCompositeDataIterator.h"
@@ -14,6 +15,7 @@
 #include "vtkNew.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStaticCellLocator.h"
+#include "vtkStructuredData.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +60,15 @@ vtkIdType FindInImage(vtkImageData* image, const double place[3], bool points)
     const double whole = std::floor(points ? index[a] + 0.5 : index[a]);
     ijk[a] = static_cast<int>(std::min(std::max(whole, static_cast<double>(extent[2 * a])), static_cast<double>(last)));
   }
-  return points ? image->ComputePointId(ijk) : image->ComputeCellId(ijk);
+  const int* numbered = vtkStratusGetUncut(image); // of a part of a box of AMR, as in the box
+  return points ? vtkStructuredData::ComputePointIdForExtent(numbered, ijk) : vtkStructuredData::ComputeCellIdForExtent(numbered, ijk);
+}
+
+// Returns the number of an image's points, which its numbers of points and cells are below.
+vtkIdType CountNumbers(vtkImageData* image)
+{
+  const int* e = vtkStratusGetUncut(image);
+  return vtkIdType(e[1] - e[0] + 1) * (e[3] - e[2] + 1) * (e[5] - e[4] + 1);
 }
 
 vtkIdType FindInRectilinear(vtkRectilinearGrid* grid, const double bounds[6], const double place[3], bool points)
@@ -114,11 +124,13 @@ void vtkStratusCellFinder::Add(vtkDataSet* data, unsigned int block, std::vector
     return;
   }
   Grid grid;
+  auto* const image = vtkImageData::SafeDownCast(data);
   grid.Data = data;
   grid.Block = block;
   data->GetBounds(grid.Bounds);
-  grid.Length = data->GetLength() / std::cbrt(static_cast<double>(data->GetNumberOfCells()));
-  if (!vtkImageData::SafeDownCast(data) && !vtkRectilinearGrid::SafeDownCast(data)) {
+  // Of an image, whatever its shape, because this orders boxes of AMR by their level.
+  grid.Length = image ? vtkMath::Norm(image->GetSpacing()) : data->GetLength() / std::cbrt(static_cast<double>(data->GetNumberOfCells()));
+  if (!image && !vtkRectilinearGrid::SafeDownCast(data)) {
     const auto same = [data](const Grid& other) { return other.Data == data && other.Locator && other.Time == data->GetMTime(); };
     const auto found = std::find_if(before.begin(), before.end(), same);
     grid.Time = data->GetMTime();
@@ -130,7 +142,7 @@ void vtkStratusCellFinder::Add(vtkDataSet* data, unsigned int block, std::vector
       grid.Locator->BuildLocator();
     }
   }
-  this->Most = std::max({ this->Most, data->GetNumberOfCells(), data->GetNumberOfPoints() });
+  this->Most = std::max({ this->Most, data->GetNumberOfCells(), image ? CountNumbers(image) : data->GetNumberOfPoints() });
   this->Grids.push_back(grid);
 }
 

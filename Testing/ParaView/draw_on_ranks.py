@@ -2,7 +2,8 @@
 """Draws scenes on so many ranks: pvbatch --sym draw_on_ranks.py PLUGIN FOLDER, by mpiexec. Pictures are FOLDER/NAME-RANKS.png. One rank
 writes the data; more find it there. FOLDER/differences-RANKS gets a line a scene, which begins with "holds" or "fails": how the picture
 differs from one rank's, or, of a scene of PROMISED, how far both are from one rank's picture at a strict tolerance. The differences from one
-rank's picture, 16 times as large, are FOLDER/NAME-RANKS-difference.png. Without a scene's name, up to 3 ranks also write the filters'
+rank's picture, 16 times as large, are FOLDER/NAME-RANKS-difference.png. Of the scene "refined-row" each rank writes the number of cells that it
+holds into FOLDER/held-RANKS-RANK. Without a scene's name, up to 3 ranks also write the filters'
 numbers (write_numbers)."""
 import os
 import sys
@@ -153,7 +154,8 @@ SCENES = [("image", "even.vti", "POINTS", []), ("image-shade", "even.vti", "POIN
           ("image-in-file", "even.nc", "POINTS", []), ("image-in-file-opaque", "even.nc", "POINTS", [opaque]),
           ("unstructured-cloud", "cells.vtu", "POINTS", [cloud]),
           ("unstructured-shade", "cells.vtu", "POINTS", [shade, strict]), ("unstructured-isosurface", "cells.vtu", "POINTS", [isosurface]),
-          ("unstructured", "cells.vtu", "POINTS", []), ("unstructured-opaque", "cells.vtu", "POINTS", [opaque])]
+          ("unstructured", "cells.vtu", "POINTS", []), ("unstructured-opaque", "cells.vtu", "POINTS", [opaque]),
+          ("refined-row", "row.vthb", "CELLS", [strict])]
 # Scenes whose lit samples are up to two voxels long where the field is smooth. A rank's border cuts them and moves those behind it, so that
 # a third of the lit pixels differ from one rank's by 1, and few by up to 4. Nothing promises that such pictures are alike. The tolerance
 # promises that each is near the exact picture, so they are compared with NAME-strict of one rank. The pictures of several ranks at the
@@ -229,6 +231,8 @@ for number, (name, file, of, changes) in enumerate(SCENES):
     for change in changes:
         change(view, shown)
     simple.SaveScreenshot(os.path.join(folder, f"{name}-{ranks}.png"), view, ImageResolution=list(SIZE), TransparentBackground=0)
+    if name == "refined-row":
+        open(os.path.join(folder, f"held-{ranks}-{rank}"), "w").write(f"{shown.StratusHeldCells}\n")
     simple.Delete(view)
     if rank == 0 and ranks > 1:
         one = picture(name, 1)

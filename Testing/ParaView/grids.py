@@ -122,6 +122,16 @@ def refined():
     return data.data(vtkCommonDataModel, name="hill")
 
 
+def refined_row():
+    """The refined grid four times in a row, so that ranks have much that is far from the others' parts."""
+    boxes = []
+    for level, lo, hi in uneven():
+        boxes += [(level, (lo[0] + shift, *lo[1:]), (hi[0] + shift, *hi[1:])) for shift in (16 * 2**level * n for n in range(4))]
+    function = lambda x, y, z: vectors(numpy.stack([x, y, z], axis=-1))[..., 0]
+    data = Refined(boxes, counts=(64, 12, 10), spacing=(0.625, 3.75, 2.6), origin=(100, -20, 5), function=function)
+    return data.data(vtkCommonDataModel, name="hill")
+
+
 def unstructured(grid):
     join = vtkFiltersCore.vtkAppendFilter()
     join.AddInputData(grid)
@@ -141,12 +151,13 @@ def write_netcdf(data, path):
 
 def write_all(folder):
     """Returns the names of four files: levels.vtr, hills.vts, cells.vtu (the cells of hills.vts) and parts.vtm (blocks of levels.vtr).
-    Also writes even.vti, even.nc of the same points, and early.vti before it in time; refined.vthb, which is AMR; boxes.vti, whose values are of cells; and two.vti, of
+    Also writes even.vti, even.nc of the same points, and early.vti before it in time; refined.vthb and row.vthb, which are AMR; boxes.vti, whose values are of cells; and two.vti, of
     two cells."""
     for name, made in ("even.vti", image()), ("early.vti", image(ripple=25)), ("boxes.vti", image(cells=True)):
         write(made, vtkIOXML.vtkXMLImageDataWriter(), folder, name)
     write_netcdf(image(), os.path.join(folder, "even.nc"))
     write(refined(), vtkIOXML.vtkXMLUniformGridAMRWriter(), folder, "refined.vthb")
+    write(refined_row(), vtkIOXML.vtkXMLUniformGridAMRWriter(), folder, "row.vthb")
     two = vtkCommonDataModel.vtkImageData()
     two.SetDimensions(3, 2, 2)
     add(two, "hill", numpy.arange(12.0).reshape(3, 2, 2) / 10)
