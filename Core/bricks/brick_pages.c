@@ -35,7 +35,10 @@
 #endif
 #endif
 
-#define RESTING_SHARE 4 /* one of so many parts rests: more would stop their readers more often */
+/* One of so many parts rests, and at most so many do: each stops its reader once more, and a reader needs no longer than a few reads take
+ * to come back to it. */
+#define RESTING_SHARE 4
+#define RESTING_MOST 16
 
 /* Puts the runs of a part from the room into the array. Returns how many bytes could not be written, for want of memory. */
 uint64_t stratus_brick_store_part(const stratus_brick_view* view, int64_t part, const stratus_brick_room* room)
@@ -229,7 +232,8 @@ static void make_room(stratus_brick_pool* pool)
       rest_part(view, part);
     }
   }
-  const uint64_t rest = pool->resident > memory / 2 ? pool->parts_here / RESTING_SHARE : 0;
+  const uint64_t share = pool->parts_here / RESTING_SHARE, most = share < RESTING_MOST ? share : RESTING_MOST;
+  const uint64_t rest = pool->resident > memory / 2 ? most : 0;
   for (int64_t visit = 0; pool->resting < rest && visit < parts; ++visit) {
     stratus_brick_view* const view = next_part(pool, &pool->rests, &part);
     if ((view->state[part] & STRATUS_PART_STATE) == STRATUS_PART_HERE) {
