@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Bricks of one value, as their source says: they are not read, and value ranges and coarse copies are those of all values.
  */
-#include "bricks.h"
+#include "bricks_testing.h"
 #include "look_sample.h"
-#include "structures.h"
-#include "stratus.h"
 
 /* A source of which about two in three bricks are one value; of some of these it does not say so. */
 typedef struct sparse {
@@ -13,22 +11,6 @@ typedef struct sparse {
   float* only;
   int calls, useless; /* the latter: for bricks of which it was known */
 } sparse;
-
-static stratus_context* host;
-
-static int begin(void** state)
-{
-  (void)state;
-  host = make_context("host", 2);
-  return 0;
-}
-
-static int end(void** state)
-{
-  (void)state;
-  stratus_context_destroy(host);
-  return 0;
-}
 
 static uint32_t mix(int64_t at)
 {
@@ -121,21 +103,6 @@ static void* all_values(const sparse* s)
   return values;
 }
 
-static void expect_same_ranges(const stratus_volume* one, const stratus_volume* other, int block_size)
-{
-  stratus_value_range *a = NULL, *b = NULL;
-  assert_int_equal(stratus_value_range_create(host, one, block_size, &a), STRATUS_OK);
-  assert_int_equal(stratus_value_range_create(host, other, block_size, &b), STRATUS_OK);
-  const size_t count = (size_t)(a->blocks[0] * a->blocks[1] * a->blocks[2]);
-  assert_memory_equal(a->blocks, b->blocks, sizeof a->blocks);
-  assert_memory_equal(a->lo, b->lo, count * sizeof *a->lo);
-  assert_memory_equal(a->hi, b->hi, count * sizeof *a->hi);
-  assert_memory_equal(a->gaps, b->gaps, count * sizeof *a->gaps);
-  assert_true(a->whole_lo == b->whole_lo && a->whole_hi == b->whole_hi);
-  stratus_value_range_destroy(a);
-  stratus_value_range_destroy(b);
-}
-
 static void bricks_of_one_value_are_as_if_read(void** state)
 {
   (void)state;
@@ -148,11 +115,9 @@ static void bricks_of_one_value_are_as_if_read(void** state)
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
     sparse* const s = &all[i];
-    stratus_brick_pool_options options = stratus_brick_pool_options_default();
-    stratus_brick_pool* pool = NULL;
+    stratus_brick_pool* const pool = make_pool(0);
     stratus_bricks* bricks = NULL;
     const stratus_brick_source source = make_source(s);
-    assert_int_equal(stratus_brick_pool_create(host, &options, &pool), STRATUS_OK);
     assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_OK);
     if (stratus_bricks_tiles(bricks)) { /* there are pages that stop their readers */
       void* const values = all_values(s);
@@ -190,11 +155,9 @@ static void kinds_of_values_without_constants_are_refused(void** state)
 {
   (void)state;
   sparse s = { .type = STRATUS_FLOAT64, .dimensions = { 8, 8, 8 }, .brick = 8 };
-  stratus_brick_pool_options options = stratus_brick_pool_options_default();
-  stratus_brick_pool* pool = NULL;
+  stratus_brick_pool* const pool = make_pool(0);
   stratus_bricks* bricks = NULL;
   stratus_brick_source source = make_source(&s);
-  assert_int_equal(stratus_brick_pool_create(host, &options, &pool), STRATUS_OK);
   assert_int_equal(stratus_bricks_create(host, pool, &source, &bricks), STRATUS_INVALID_ARGUMENT);
   assert_non_null(strstr(stratus_context_message(host), "must have one of FLOAT32, or of 8 or 16 bits"));
   source.type = STRATUS_FLOAT32;

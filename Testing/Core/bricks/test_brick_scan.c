@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Value ranges and coarse copies that are made part after part are those of the values in memory, and each value is read once. */
-#include "bricks.h"
+#include "bricks_testing.h"
 #include "look_sample.h"
-#include "structures.h"
-#include "stratus.h"
 
 /* A source of given values. */
 typedef struct kept_values {
@@ -12,22 +10,6 @@ typedef struct kept_values {
   char* values;
   int64_t fails_at; /* a value that cannot be read, with its box; -1: none */
 } kept_values;
-
-static stratus_context* host;
-
-static int begin(void** state)
-{
-  (void)state;
-  host = make_context("host", 2);
-  return 0;
-}
-
-static int end(void** state)
-{
-  (void)state;
-  stratus_context_destroy(host);
-  return 0;
-}
 
 static int read_values(void* user, const int64_t lo[3], const int64_t size[3], void* to)
 {
@@ -109,35 +91,11 @@ static stratus_volume volume_of(const kept_values* k, stratus_bricks* bricks)
   return v;
 }
 
-static void expect_same_ranges(const stratus_volume* one, const stratus_volume* other, int block_size)
-{
-  stratus_value_range *a = NULL, *b = NULL;
-  assert_int_equal(stratus_value_range_create(host, one, block_size, &a), STRATUS_OK);
-  assert_int_equal(stratus_value_range_create(host, other, block_size, &b), STRATUS_OK);
-  const size_t count = (size_t)(a->blocks[0] * a->blocks[1] * a->blocks[2]);
-  assert_memory_equal(a->blocks, b->blocks, sizeof a->blocks);
-  assert_memory_equal(a->lo, b->lo, count * sizeof *a->lo);
-  assert_memory_equal(a->hi, b->hi, count * sizeof *a->hi);
-  assert_memory_equal(a->gaps, b->gaps, count * sizeof *a->gaps);
-  assert_true(a->whole_lo == b->whole_lo && a->whole_hi == b->whole_hi);
-  stratus_value_range_destroy(a);
-  stratus_value_range_destroy(b);
-}
-
-static stratus_brick_pool* make_pool(void)
-{
-  stratus_brick_pool_options options = stratus_brick_pool_options_default();
-  stratus_brick_pool* pool = NULL;
-  options.memory = 16 << 20;
-  assert_int_equal(stratus_brick_pool_create(host, &options, &pool), STRATUS_OK);
-  return pool;
-}
-
 static void ranges_of_parts_are_those_of_values(void** state)
 {
   (void)state;
   uint32_t random = 44;
-  stratus_brick_pool* pool = make_pool();
+  stratus_brick_pool* pool = make_pool(16 << 20);
   for (int repeat = 0; repeat < 120; ++repeat) {
     kept_values k = { .type = (stratus_type)(repeat % 10) };
     for (int a = 0; a < 3; ++a) {
@@ -170,7 +128,7 @@ static void each_value_is_read_once(void** state)
   static const int64_t layers[2] = { 300, 420 }; /* 12 and 16.8 million values, in a pool of 16.8 million bytes */
   for (int large = 0; large < 2; ++large) {
     kept_values k = { .type = STRATUS_UINT8, .dimensions = { 200, 200, layers[large] }, .brick = { 33, 21, 18 }, .before = { 0, 20, 1 } };
-    stratus_brick_pool* pool = make_pool();
+    stratus_brick_pool* pool = make_pool(16 << 20);
     make_values(&k, &random);
     stratus_bricks* bricks = make_bricks(pool, &k);
     const stratus_volume plain = volume_of(&k, NULL), parts = volume_of(&k, bricks);
@@ -201,7 +159,7 @@ static void coarse_copies_of_parts_are_those_of_values(void** state)
   (void)state;
   uint32_t random = 46;
   kept_values k = { .type = STRATUS_UINT8, .dimensions = { 512, 500, 270 }, .brick = { 64, 40, 50 }, .before = { 3, 0, 49 } };
-  stratus_brick_pool* pool = make_pool();
+  stratus_brick_pool* pool = make_pool(16 << 20);
   make_values(&k, &random);
   stratus_bricks* bricks = make_bricks(pool, &k);
   const stratus_volume plain = volume_of(&k, NULL), parts = volume_of(&k, bricks);
@@ -223,7 +181,7 @@ static void values_that_parts_lack_are_an_error(void** state)
   uint32_t random = 47;
   for (int large = 0; large < 2; ++large) {
     kept_values k = { .type = STRATUS_UINT8, .dimensions = { 200, 200, large ? 420 : 100 }, .brick = { 50, 50, 10 } };
-    stratus_brick_pool* pool = make_pool();
+    stratus_brick_pool* pool = make_pool(16 << 20);
     make_values(&k, &random);
     k.fails_at = 1000000;
     stratus_bricks* bricks = make_bricks(pool, &k);

@@ -2,10 +2,8 @@
  * Arrays of bricks against the values that their source has: whatever the shapes, the limit of memory and the threads that read, and
  * which parts are read, dropped and kept. */
 #define _GNU_SOURCE /* MAP_ANONYMOUS */
-#include "bricks.h"
+#include "bricks_testing.h"
 #include "remove_folder.h"
-#include "structures.h"
-#include "stratus.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -19,22 +17,6 @@ typedef struct formula {
   int64_t fails_at; /* a brick that holds this value cannot be read; -1: none */
   int released, calls, misplaced;
 } formula;
-
-static stratus_context* host;
-
-static int begin(void** state)
-{
-  (void)state;
-  host = make_context("host", 2);
-  return 0;
-}
-
-static int end(void** state)
-{
-  (void)state;
-  stratus_context_destroy(host);
-  return 0;
-}
 
 static uint32_t mix(int64_t at)
 {
@@ -121,15 +103,6 @@ static stratus_brick_source source_of(formula* f)
   memcpy(source.brick, f->brick, sizeof source.brick);
   memcpy(source.before, f->before, sizeof source.before);
   return source;
-}
-
-static stratus_brick_pool* make_pool(uint64_t memory)
-{
-  stratus_brick_pool_options options = stratus_brick_pool_options_default();
-  stratus_brick_pool* pool = NULL;
-  options.memory = memory;
-  assert_int_equal(stratus_brick_pool_create(host, &options, &pool), STRATUS_OK);
-  return pool;
 }
 
 static stratus_bricks* make_bricks(stratus_brick_pool* pool, formula* f)
