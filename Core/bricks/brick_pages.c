@@ -8,8 +8,9 @@
  * memory: then all parts are dropped. An array that does not fit in the pool's memory has a second file and mapping for rays, in which each
  * tile of the grid has pages of its own.
  *
- * A clock with two hands chooses what is dropped. One hand takes the pages of parts out of the readers' mapping, so that the next read of
- * them is noticed. The other one follows later and drops those that nothing has read since. */
+ * A clock chooses what is dropped: its hand first takes the pages of a part out of the readers' mapping, and drops the part when it comes
+ * around again and nothing has read it. It may come around at once. So it passes the half of the parts that were brought last, because
+ * their readers may not be done with them. */
 #define _GNU_SOURCE
 #include "bricks.h"
 
@@ -34,11 +35,6 @@
 #define UFFD_USER_MODE_ONLY 1
 #endif
 #endif
-
-/* One of so many parts rests, and at most so many do: each stops its reader once more, and a reader needs no longer than a few reads take
- * to come back to it. */
-#define RESTING_SHARE 4
-#define RESTING_MOST 16
 
 /* Puts the runs of a part from the room into the array. Returns how many bytes could not be written, for want of memory. */
 uint64_t stratus_brick_store_part(const stratus_brick_view* view, int64_t part, const stratus_brick_room* room)
@@ -181,26 +177,17 @@ static void hide_part(const stratus_brick_view* view, int64_t part, bool drop)
 
 static void set_state(stratus_brick_view* view, int64_t part, int state)
 {
-  stratus_brick_pool* const pool = view->bricks->pool;
-  pool->resting += (uint64_t)(state == STRATUS_PART_RESTING) - (uint64_t)((view->state[part] & STRATUS_PART_STATE) == STRATUS_PART_RESTING);
   view->state[part] = (uint8_t)((view->state[part] & ~STRATUS_PART_STATE) | state);
-}
-
-/* Moves a hand by one part. Gives the part that it was at. */
-static stratus_brick_view* next_part(const stratus_brick_pool* pool, stratus_brick_hand* hand, int64_t* part)
-{
-  if (!hand->view || hand->part >= hand->view->parts) {
-    hand->view = hand->view && hand->view->next ? hand->view->next : pool->first;
-    hand->part = 0;
+  if (state == STRATUS_PART_HERE) {
+    view->brought[part] = ++view->bricks->pool->brought;
   }
-  *part = hand->part++;
-  return hand->view;
 }
 
-static void rest_part(stratus_brick_view* view, int64_t part)
+/* Whether a part is in the half of those in memory that were brought last. */
+static bool is_young(const stratus_brick_view* view, int64_t part)
 {
-  hide_part(view, part, false);
-  set_state(view, part, STRATUS_PART_RESTING);
+  const stratus_brick_pool* pool = view->bricks->pool;
+  return 2 * (uint64_t)(pool->brought - view->brought[part]) < pool->parts_here;
 }
 
 static void drop_part(stratus_brick_view* view, int64_t part)
@@ -214,30 +201,27 @@ static void drop_part(stratus_brick_view* view, int64_t part)
   ++view->bricks->report.parts_dropped;
 }
 
-/* Drops parts that rest until the pool is within its limit. If these are too few, others rest and are dropped. Then some more come to rest:
- * those that are read before the next call are not dropped by it. */
+/* Moves the clock's hand until the pool is within its limit, or has gone around three times: the third time it drops young parts, too. */
 static void make_room(stratus_brick_pool* pool)
 {
-  int64_t parts = 0, part = 0;
+  int64_t parts = 0;
   for (const stratus_brick_view* b = pool->first; b; b = b->next) {
     parts += b->parts;
   }
   const uint64_t memory = stratus_brick_memory_left(pool);
   for (int64_t visit = 0; pool->resident > memory && visit < 3 * parts; ++visit) {
-    stratus_brick_view* const view = next_part(pool, &pool->drops, &part);
-    const int state = view->state[part] & STRATUS_PART_STATE;
-    if (state == STRATUS_PART_RESTING) {
-      drop_part(view, part);
-    } else if (state == STRATUS_PART_HERE && visit >= parts) {
-      rest_part(view, part);
+    if (!pool->hand || pool->hand_part >= pool->hand->parts) {
+      pool->hand = pool->hand && pool->hand->next ? pool->hand->next : pool->first;
+      pool->hand_part = 0;
     }
-  }
-  const uint64_t share = pool->parts_here / RESTING_SHARE, most = share < RESTING_MOST ? share : RESTING_MOST;
-  const uint64_t rest = pool->resident > memory / 2 ? most : 0;
-  for (int64_t visit = 0; pool->resting < rest && visit < parts; ++visit) {
-    stratus_brick_view* const view = next_part(pool, &pool->rests, &part);
-    if ((view->state[part] & STRATUS_PART_STATE) == STRATUS_PART_HERE) {
-      rest_part(view, part);
+    stratus_brick_view* const view = pool->hand;
+    const int64_t part = pool->hand_part++;
+    const int state = view->state[part] & STRATUS_PART_STATE;
+    if (state == STRATUS_PART_HERE) {
+      hide_part(view, part, false);
+      set_state(view, part, STRATUS_PART_RESTING);
+    } else if (state == STRATUS_PART_RESTING && (visit >= 2 * parts || !is_young(view, part))) {
+      drop_part(view, part);
     }
   }
 }
@@ -261,8 +245,7 @@ static void empty(stratus_brick_view* view)
     view->bricks->pool->parts_here -= (uint64_t)here;
     report->parts_here -= (uint64_t)here;
     report->parts_dropped += (uint64_t)here;
-    set_state(view, part, STRATUS_PART_ABSENT);
-    view->state[part] = STRATUS_PART_ABSENT; /* and its pages that others share are not counted */
+    view->state[part] = STRATUS_PART_ABSENT;
   }
   (void)fallocate(view->memory, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, (off_t)view->mapped);
   view->shared = 0;

@@ -143,18 +143,22 @@ static box box_of(const stratus_brick_view* view, int64_t part)
   return b;
 }
 
+/* Gives how many bytes values, rows and layers of a part are apart in a room. A tile at the array's end is as wide as all others. */
+static void find_pitch(const stratus_brick_view* view, const box* part, size_t pitch[3])
+{
+  const int64_t* const size = view->tiled ? view->side : part->size;
+  pitch[0] = stratus_type_size(view->bricks->source.type);
+  pitch[1] = pitch[0] * (size_t)size[0];
+  pitch[2] = pitch[1] * (size_t)size[1];
+}
+
 void stratus_brick_part_box(const stratus_brick_view* view, int64_t part, int64_t lo[3], int64_t size[3], int64_t inset[3], size_t pitch[3])
 {
   const box b = box_of(view, part);
-  const size_t value = stratus_type_size(view->bricks->source.type);
   memcpy(lo, b.lo, sizeof b.lo);
   memcpy(size, b.size, sizeof b.size);
   memcpy(inset, b.inset, sizeof b.inset);
-  /* a tile at the array's end is as wide as all others */
-  const int64_t wide = view->tiled ? view->side[0] : b.size[0], high = view->tiled ? view->side[1] : b.size[1];
-  pitch[0] = value;
-  pitch[1] = value * (size_t)wide;
-  pitch[2] = value * (size_t)(wide * high);
+  find_pitch(view, &b, pitch);
 }
 
 /* Whether the values of a part are one run. */
@@ -316,10 +320,10 @@ static bool fill_with_one(const stratus_bricks* bricks, const int64_t lo[3], con
   return true;
 }
 
-/* A part in the room: rows and layers of values are so many bytes apart. */
+/* A part in the room, with the bytes from a value to the next one along each axis. */
 typedef struct part_room {
   char* bytes;
-  size_t row, layer;
+  size_t pitch[3];
 } part_room;
 
 /* Reads a box of values of a part. scratch: where the source writes it, if not as the room has it. Returns the bytes that are missing. */
@@ -329,9 +333,8 @@ static uint64_t read_box(
   const stratus_brick_source* s = &bricks->source;
   const size_t value = stratus_type_size(s->type), count = (size_t)(size[0] * size[1] * size[2]), row = (size_t)size[0] * value;
   char* place = room->bytes;
-  const size_t pitch[3] = { value, room->row, room->layer };
   for (int a = 0; a < 3; ++a) {
-    place += (size_t)(part->inset[a] + lo[a] - part->lo[a]) * pitch[a];
+    place += (size_t)(part->inset[a] + lo[a] - part->lo[a]) * room->pitch[a];
   }
   char* const to = scratch ? scratch : place;
   const int failed = fill_with_one(bricks, lo, size, to) ? 0 : s->read(s->user, lo, size, to);
@@ -340,7 +343,7 @@ static uint64_t read_box(
   }
   for (int64_t z = 0; scratch && z < size[2]; ++z) {
     for (int64_t y = 0; y < size[1]; ++y) {
-      memcpy(place + (size_t)z * room->layer + (size_t)y * room->row, scratch + (size_t)(z * size[1] + y) * row, row);
+      memcpy(place + (size_t)z * room->pitch[2] + (size_t)y * room->pitch[1], scratch + (size_t)(z * size[1] + y) * row, row);
     }
   }
   return failed ? count * value : 0;
@@ -358,13 +361,13 @@ uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, s
   const stratus_brick_source* s = &bricks->source;
   const box b = box_of(view, part);
   const size_t value = stratus_type_size(s->type), bytes = view->tiled ? view->tile : (size_t)stratus_brick_part_bytes(view, part);
-  /* a tile at the array's end is as wide as all others */
-  const int64_t wide = view->tiled ? view->side[0] : b.size[0], high = view->tiled ? view->side[1] : b.size[1];
+  part_room at_hand;
+  find_pitch(view, &b, at_hand.pitch);
   const bool any = has_no_bricks(s);
   const int64_t most[3] = { any ? b.size[0] : least(s->brick[0], b.size[0]), any ? b.size[1] : least(s->brick[1], b.size[1]),
     any ? b.size[2] : least(s->brick[2], b.size[2]) };
   /* one call for all rows of some layers, which the room has as the source writes them */
-  const bool whole = most[0] == wide && b.size[1] == high;
+  const bool whole = at_hand.pitch[1] == (size_t)most[0] * value && at_hand.pitch[2] == (size_t)b.size[1] * at_hand.pitch[1];
   const size_t scratch = whole ? 0 : (size_t)(most[0] * most[1] * most[2]) * value;
   if (room->capacity < bytes + scratch) {
     free(room->bytes);
@@ -374,7 +377,7 @@ uint64_t stratus_brick_part_read(const stratus_brick_view* view, int64_t part, s
   if (!room->bytes) {
     return stratus_brick_part_bytes(view, part);
   }
-  const part_room at_hand = { .bytes = room->bytes, .row = (size_t)wide * value, .layer = (size_t)(wide * high) * value };
+  at_hand.bytes = room->bytes;
   uint64_t missing = 0;
   if (view->tiled && bytes > stratus_brick_part_bytes(view, part)) {
     memset(room->bytes, 0, bytes); /* the rest beyond the grid */

@@ -9,7 +9,7 @@
 /* The layout whose parts are scanned. */
 static stratus_brick_view* scanned(stratus_bricks* bricks)
 {
-  return bricks->parts_are_tiles ? &bricks->tiles : &bricks->rows;
+  return bricks->lists_only && bricks->tiles.parts > 0 ? &bricks->tiles : &bricks->rows;
 }
 
 /* Reads a part into the room, but for one that is in memory: then nothing is read, and false is returned. */
@@ -73,7 +73,6 @@ static void read_part(void* user, int64_t number, stratus_part* part)
 
 void stratus_brick_set_parts(stratus_bricks* bricks)
 {
-  bricks->parts_are_tiles = bricks->told && bricks->tiles.parts > 0;
   const stratus_brick_view* const view = scanned(bricks);
   bricks->parts = (stratus_parts){ .values = bricks->rows.values,
     .type = bricks->source.type,

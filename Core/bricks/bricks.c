@@ -166,10 +166,23 @@ static stratus_status read_all(stratus_context* context, stratus_bricks* bricks)
   return STRATUS_OK;
 }
 
+static bool make_states(stratus_brick_view* view)
+{
+  view->state = calloc((size_t)view->parts, sizeof *view->state);
+  view->brought = calloc((size_t)view->parts, sizeof *view->brought);
+  return view->state && view->brought;
+}
+
+static void release_states(const stratus_brick_view* view)
+{
+  free(view->state);
+  free(view->brought);
+}
+
 static void release_tiles(stratus_bricks* bricks)
 {
   stratus_brick_unmap(&bricks->tiles);
-  free(bricks->tiles.state);
+  release_states(&bricks->tiles);
   bricks->tiles = (stratus_brick_view){ .bricks = bricks, .tiled = true, .memory = -1 };
   for (int a = 0; a < 3; ++a) {
     free(bricks->at[a]);
@@ -181,10 +194,7 @@ static void release_tiles(stratus_bricks* bricks)
 static void make_tiles(stratus_bricks* bricks)
 {
   stratus_brick_view* const view = &bricks->tiles;
-  bool made = stratus_brick_tiles_divide(view, bricks->pool->page);
-  view->state = made ? calloc((size_t)view->parts, 1) : NULL;
-  made = view->state && stratus_brick_map(view);
-  if (made) {
+  if (stratus_brick_tiles_divide(view, bricks->pool->page) && make_states(view) && stratus_brick_map(view)) {
     bricks->report.parts += (uint64_t)view->parts;
     bricks->shown.values = view->values;
   } else {
@@ -205,7 +215,7 @@ static void release(stratus_context* context, stratus_bricks* bricks)
     bricks->source.release(bricks->source.user);
   }
   free(bricks->only);
-  free(bricks->rows.state);
+  release_states(&bricks->rows);
   free(bricks);
 }
 
@@ -227,18 +237,13 @@ static void leave_pool(stratus_brick_pool* pool, const stratus_brick_view* view)
       break;
     }
   }
-  stratus_brick_hand* const hands[] = { &pool->rests, &pool->drops };
-  for (int h = 0; h < 2; ++h) {
-    if (hands[h]->view == view) {
-      *hands[h] = (stratus_brick_hand){ .view = NULL };
-    }
+  if (pool->hand == view) {
+    pool->hand = NULL;
   }
   pool->resident -= view->memory < 0 ? view->bytes : 0;
   pool->resident -= stratus_brick_resident(view);
   for (int64_t part = 0; view->memory >= 0 && part < view->parts; ++part) {
-    const int state = view->state[part] & STRATUS_PART_STATE;
-    pool->parts_here -= state != STRATUS_PART_ABSENT;
-    pool->resting -= state == STRATUS_PART_RESTING;
+    pool->parts_here -= (view->state[part] & STRATUS_PART_STATE) != STRATUS_PART_ABSENT;
   }
 }
 
@@ -264,15 +269,14 @@ stratus_status stratus_bricks_create(
   b->tiles = (stratus_brick_view){ .bricks = b, .tiled = true, .memory = -1 };
   stratus_brick_rows_divide(&b->rows);
   b->report.parts = (uint64_t)b->rows.parts;
-  b->told = source->only != NULL;
+  b->lists_only = source->only != NULL;
   stratus_brick_find_only(context, b);
-  b->rows.state = calloc((size_t)b->rows.parts, 1);
-  if (!b->rows.state) {
+  if (!make_states(&b->rows)) {
     status = stratus_fail(context, STRATUS_OUT_OF_MEMORY, "out of memory for the states of %lld parts", (long long)b->rows.parts);
   } else if (pool->faults < 0 || !stratus_brick_map(&b->rows)) {
     stratus_brick_unmap(&b->rows);
     status = read_all(context, b);
-  } else if (b->told || bytes > memory_of(pool)) {
+  } else if (b->lists_only || bytes > memory_of(pool)) {
     make_tiles(b);
   }
   if (status != STRATUS_OK) {

@@ -35,6 +35,7 @@ typedef struct stratus_brick_view {
   int64_t parts;     /* and in all */
   size_t tile;       /* bytes from a tile to the next: whole pages */
   uint8_t* state;    /* of each part */
+  uint32_t* brought; /* of each part: the pool's count when it was last brought */
   int64_t ahead;     /* the part where the search for one to read ahead goes on */
   uint64_t shared;   /* bytes in memory of pages that parts share */
   uint64_t emptied;  /* how often all parts were dropped, with the pages that they share */
@@ -47,8 +48,8 @@ struct stratus_bricks {
   stratus_brick_view tiles; /* the same values for rays; no parts if the array fits in the pool's memory */
   uint64_t* at[3];          /* offsets in `shown` */
   stratus_tiles shown;
-  stratus_parts parts; /* those of the rows; of the tiles where the source told which bricks are one value */
-  bool told, parts_are_tiles;
+  stratus_parts parts;  /* for code that reads all values: rows, or tiles if the source lists bricks of one value */
+  bool lists_only;      /* it does */
   uint64_t waited_for;  /* parts that were read because something waited for them */
   stratus_bricks* like; /* its parts are read ahead; NULL: none */
   int threads;          /* of the pool that bring parts now; the array stays until there are none */
@@ -56,12 +57,6 @@ struct stratus_bricks {
   float* only;          /* of each brick the one value that all of its values are, or NaN; NULL: nothing is known */
   stratus_bricks_report report;
 };
-
-/* A hand of the clock that chooses what is dropped. */
-typedef struct stratus_brick_hand {
-  stratus_brick_view* view; /* NULL: before the pool's first */
-  int64_t part;
-} stratus_brick_hand;
 
 /* Memory that a thread reads parts into. */
 typedef struct stratus_brick_room {
@@ -79,9 +74,11 @@ struct stratus_brick_pool {
   uint64_t began, grown; /* its bytes when the pool was made, and those that were added */
   double looked;         /* when that was found, by stratus_now_ms() */
   stratus_brick_view* first;
-  stratus_brick_hand rests, drops; /* which parts rest next, and which of those are dropped next */
-  uint64_t parts_here, resting;    /* of all arrays that are paged: parts in memory, and how many of these rest */
-  int faults, quit;                /* where the kernel reports pages that are read, and the handle that ends the threads; -1: not paged */
+  stratus_brick_view* hand; /* of the clock, at its part number hand_part */
+  int64_t hand_part;
+  uint64_t parts_here; /* in memory, of all arrays that are paged */
+  uint32_t brought;    /* how often parts were brought: read, or read by something again while they rested */
+  int faults, quit;    /* where the kernel reports pages that are read, and the handle that ends the threads; -1: not paged */
   size_t page;
   pthread_t threads[64];
   int thread_count;
