@@ -62,7 +62,7 @@ struct printed_row {
 };
 // Prints a line.
 void row(const char* name, const std::string& value, const std::vector<double>& numbers = {});
-// Prints the line above rows: what they are about.
+// Prints the line above rows, which names their subject.
 void heading(const std::string& text);
 // All rows so far, also if they are silenced.
 const std::vector<printed_row>& printed_rows();

@@ -14,7 +14,7 @@
 
 #define ROW_BYTES 8 /* bytes of the widest value or extreme */
 
-/* What a part of the volume has of one row of blocks, and one thread's scratch to reduce it. */
+/* The rows of a part that are in one row of blocks, and one thread's scratch to reduce them. */
 typedef struct span {
   const char* values; /* of the first row */
   size_t pitch[3];    /* bytes from a value to the next one along each axis */
@@ -147,16 +147,21 @@ static reduce_function reduce_of(stratus_type type)
   return NULL;
 }
 
-/* Returns the bytes of a thread's scratch, which give_room() divides: for rows, and for the ranges of a row of blocks. */
+/* Returns the bytes of a row of scratch: values or extremes, of `nx` values and what precedes them in their block. */
+static size_t row_bytes(const stratus_value_range* ranges, int64_t nx)
+{
+  return ((size_t)(nx + ranges->block_size) * ROW_BYTES + 63) / 64 * 64;
+}
+
+/* Returns the bytes of a thread's scratch, which give_room() divides: for seven rows, and for the ranges of a row of blocks. */
 static size_t room_bytes(const stratus_value_range* ranges, int64_t nx)
 {
-  const size_t row = ((size_t)(nx + ranges->block_size) * ROW_BYTES + 63) / 64 * 64;
-  return 7 * row + ((size_t)ranges->blocks[0] * (2 * sizeof(float) + 1) + 63) / 64 * 64;
+  return 7 * row_bytes(ranges, nx) + ((size_t)ranges->blocks[0] * (2 * sizeof(float) + 1) + 63) / 64 * 64;
 }
 
 static void give_room(span* s, const stratus_value_range* ranges, int64_t nx, uint8_t* memory)
 {
-  const size_t row = ((size_t)(nx + ranges->block_size) * ROW_BYTES + 63) / 64 * 64;
+  const size_t row = row_bytes(ranges, nx);
   s->lo = memory;
   s->hi = memory + row;
   s->strided = memory + 2 * row;
@@ -261,7 +266,7 @@ void stratus_value_range_begin_blocks(const stratus_value_range* ranges)
   }
 }
 
-/* What the threads share. */
+/* Data that the threads share. */
 typedef struct job {
   stratus_context* context;
   const stratus_value_range* ranges;

@@ -38,8 +38,8 @@ typedef struct stratus_part {
   size_t capacity;
 } stratus_part;
 
-/* Gives part `number`; its room is that of another part before. Several threads call it at once. Values that cannot be read count as
- * missing.
+/* Gives part `number`. `part` may hold another one before, whose room is then used again. Several threads call it at once. Values that
+ * cannot be read count as missing.
  */
 typedef void stratus_part_read_function(void* user, int64_t number, stratus_part* part);
 

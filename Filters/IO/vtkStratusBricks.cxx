@@ -87,19 +87,20 @@ void Free(void* values)
 }
 
 // Finds the range of an array's finite values by the core, which reads each part once, or knows the ranges of the file. Returns false where
-// the array has other values now, and where not all of them are finite but all count.
+// the array has other values now, and where not all of them are finite but all count. The pool's context has a lock, which a source that
+// reads may need itself: this makes another context.
 bool FindRange(vtkDataArray* array, const std::array<int64_t, 3>& dimensions, bool finite, double range[2])
 {
   stratus_volume volume = stratus_volume_default();
   volume.values = array->GetVoidPointer(0);
   std::copy(dimensions.begin(), dimensions.end(), volume.dimensions);
+  const bool known = vtkStratusCoreType(array->GetDataType(), volume.type);
   vtkStratusSetSource(array, 0, volume);
   stratus_context* context = nullptr;
   stratus_context_options options = stratus_context_options_default();
   options.device = "host";
   stratus_value_range* ranges = nullptr;
-  if (!volume.parts || !vtkStratusCoreType(array->GetDataType(), volume.type) ||
-    stratus_context_create(&options, &context, nullptr, 0) != STRATUS_OK) {
+  if (!known || !volume.parts || stratus_context_create(&options, &context, nullptr, 0) != STRATUS_OK) {
     return false;
   }
   bool found = stratus_value_range_create(context, &volume, 0, &ranges) == STRATUS_OK;
