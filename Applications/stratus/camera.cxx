@@ -97,19 +97,19 @@ stratus_camera place_camera(const context& core, const options& o, const stratus
 stratus_camera place_camera(const context& core, const options& o, const std::vector<shown_volume>& shown, int up, const double* room)
 {
   const double degree = std::acos(-1.0) / 180.0;
-  double bounds[6];
+  double bounds[6] = { HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL };
   double focal[3];
   double half[3];
   double eye[3];
-  for (size_t n = 0; n < shown.size(); ++n) {
+  for (const shown_volume& one : shown) {
     double own[6];
     if (o.axes || (o.coast && !o.globe)) { // the box is seen as a whole
-      core.check(stratus_volume_bounds(core, shown[n].volume, own), "bounds");
+      core.check(stratus_volume_bounds(core, one.volume, own), "bounds");
     } else {
-      shown_bounds(core, *shown[n].volume, shown[n].transfer, own);
+      shown_bounds(core, *one.volume, one.transfer, own);
     }
     for (int side = 0; side < 6; ++side) {
-      bounds[side] = n == 0 ? own[side] : side % 2 ? std::max(bounds[side], own[side]) : std::min(bounds[side], own[side]);
+      bounds[side] = side % 2 ? std::max(bounds[side], own[side]) : std::min(bounds[side], own[side]);
     }
   }
   for (int a = 0; a < 3; ++a) {
