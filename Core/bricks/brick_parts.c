@@ -10,7 +10,7 @@
 
 #define RUN_LEAST ((size_t)64 << 10)   /* bytes: pages that several parts share are then few */
 #define TILE_LEAST ((int64_t)64 << 10) /* bytes: a fault costs little next to reading them */
-#define TILE_ROW ((int64_t)64)         /* bytes of a row of a tile, where a source has no bricks: a line of the cache */
+#define TILE_ROW ((int64_t)128)        /* bytes of a row of a tile, where a source has no bricks: two lines of the cache come at once */
 #define LAYERS_LEAST 16                /* of a part, where a source has no bricks */
 
 static int64_t least(int64_t a, int64_t b)

@@ -204,8 +204,8 @@ vtkSmartPointer<vtkDataArray> MakeRawBricks(const std::string& path, int64_t beg
     const int64_t runs = wide ? 1 : size[1];
     const size_t bytes = static_cast<size_t>(size[0] * value * (wide ? size[1] : 1));
     const auto at = [&](int64_t z) { return ((lo[2] + z) * rows + lo[1]) * row + lo[0] * value; };
-    for (int64_t z = 0; !wide && !first && z < size[2]; ++z) {
-      file->Expect(begin + at(z), size[1] * row); // of parts of rows, the disk reads whole ones; of mappings it does so by itself
+    for (int64_t z = 0; !wide && z < size[2]; ++z) {
+      file->Expect(begin + at(z), size[1] * row); // all layers at once: of parts of rows, the disk reads whole ones
     }
     char* to = static_cast<char*>(values);
     const uint64_t before = missing ? *missing : 0;
