@@ -27,7 +27,7 @@ stratus_add_test(paraview_plugin paraview "${CMAKE_CTEST_COMMAND}" --build-and-t
 stratus_test_needs(paraview_plugin stratus-core)
 set_tests_properties(paraview_plugin PROPERTIES FIXTURES_REQUIRED paraview FIXTURES_SETUP paraview_plugin TIMEOUT 2700 PROCESSORS 2)
 
-foreach (test IN ITEMS pictures clouds datasets files lights quantities refined session)
+foreach (test IN ITEMS pictures clouds datasets files lights quantities refined session streamed)
   stratus_add_test(paraview_${test} paraview ${stratus_display} "${paraview}/usr/bin/pvbatch" "${PROJECT_SOURCE_DIR}/Testing/ParaView/test_${test}.py"
     "${paraview_plugin}" $<TARGET_FILE:stratus-command> $<TARGET_FILE:compare-pictures>
     "${CMAKE_BINARY_DIR}/Testing/Temporary/paraview")

@@ -15,6 +15,7 @@
 
 #include "vtkCellData.h"
 #include "vtkColorTransferFunction.h"
+#include "vtkCommand.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
@@ -159,8 +160,39 @@ int vtkStratusVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey*
   }
   if (request == vtkPVView::REQUEST_UPDATE()) {
     this->ShareBounds();
+    this->Refine(in);
+  } else if (request == vtkPVRenderView::REQUEST_STREAMING_UPDATE() && this->Unfinished) {
+    this->Unfinished = false;
+    // ParaView draws again where anything comes. The rays read the values themselves, so that this may be empty.
+    vtkPVRenderView::SetNextStreamedPiece(in, this, vtkSmartPointer<vtkDataObject>::Take(this->Cache->NewInstance()));
   }
   return 1;
+}
+
+// Where ParaView streams (its option --enable-streaming), its client requests another picture after each one that was not the last.
+void vtkStratusVolumeRepresentation::Refine(vtkInformation* view)
+{
+  const bool streams = vtkPVView::GetEnableStreaming();
+  vtkPVRenderView::SetStreamable(view, this, streams);
+  if (!streams) {
+    this->VolumeMapper->RemoveObservers(vtkCommand::UpdateEvent);
+  } else if (!this->VolumeMapper->HasObserver(vtkCommand::UpdateEvent)) {
+    this->VolumeMapper->AddObserver(vtkCommand::UpdateEvent, this, &vtkStratusVolumeRepresentation::OnUnfinished);
+  }
+}
+
+void vtkStratusVolumeRepresentation::OnUnfinished()
+{
+  this->Unfinished = true;
+}
+
+// The client gets parts from all ranks or from none. Every rank must call it.
+void vtkStratusVolumeRepresentation::AgreeOnUnfinished(vtkMultiProcessController* ranks)
+{
+  const int mine = this->Unfinished ? 1 : 0;
+  int any = 0;
+  ranks->AllReduce(&mine, &any, 1, vtkCommunicator::MAX_OP);
+  this->Unfinished = any != 0;
 }
 
 // Finds the bounds of all ranks' data, by which a crop is set, and the range of a solid colour's ramp. Every rank must call it.
@@ -413,7 +445,10 @@ bool vtkStratusVolumeRepresentation::AddToView(vtkView* view)
     vtkStratusCompositePass::Enter(
       renderer, this,
       [this, renderer](vtkMultiProcessController* ranks, const std::vector<vtkBoundingBox>&) { this->AgreeOnSampling(renderer, ranks); },
-      [this](vtkMultiProcessController* ranks) { this->ReportProblem(ranks); });
+      [this](vtkMultiProcessController* ranks) {
+        this->AgreeOnUnfinished(ranks);
+        this->ReportProblem(ranks);
+      });
   }
   return this->Superclass::AddToView(view);
 }

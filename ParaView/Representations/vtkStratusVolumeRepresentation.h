@@ -127,6 +127,9 @@ private:
   void ApplyBlendMode();
   void ApplySampling();
   void ShareBounds();
+  void Refine(vtkInformation* view);
+  void OnUnfinished();
+  void AgreeOnUnfinished(vtkMultiProcessController* ranks);
   vtkMTimeType GetSamplingTime();
   void ReportProblem(vtkMultiProcessController* ranks);
   void EndAtBorders(bool end);
@@ -150,6 +153,7 @@ private:
   std::string Refusal;                   // of a device that is not there
   std::string Problem, Reported;         // the fault in this rank's part, and the last message about it
   bool EndsAtBorders = false;
+  bool Unfinished = false;           // the last picture: the next one is better
   vtkMTimeType EndedFor = 0;         // of the data
   vtkSmartPointer<vtkDataSet> Whole; // of all ranks' pieces, on rank 0
   bool Gathered = false;             // whether rank 0 has it

@@ -10,6 +10,7 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkBoundingBox.h"
+#include "vtkCallbackCommand.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataSetAttributes.h"
@@ -89,7 +90,8 @@ public:
   std::vector<Block> Find(vtkStratusMultiBlockVolumeMapper* mapper, vtkVolume* volume, std::string& warning, std::string& error);
   void Configure(vtkStratusMultiBlockVolumeMapper* from, const std::vector<Block>& blocks); // makes a mapper of each block
   void Configure(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to) const;
-  bool CutMask(std::string& error);                                         // gives each block its part of the mask
+  void PassUpdates(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to); // its requests to draw again
+  bool CutMask(std::string& error);                                                     // gives each block its part of the mask
   bool Measure(vtkRenderer* renderer, vtkVolume* volume, double choice[4]); // vtkStratusMultiBlockVolumeMapper::MeasureSampling()
   // Draws all mappers' blocks in one picture. `error` stays empty where an abort ended it.
   bool Render(vtkRenderer* renderer, vtkVolume* volume, std::string& error);
@@ -111,6 +113,7 @@ private:
   bool PrepareContext(std::string& error);
   bool Cast(const stratus_camera& camera, const stratus_image& image, bool whole, std::string& error);
 
+  vtkNew<vtkCallbackCommand> Updates; // of the one block
   vtkStratusContext Context;
   vtkStratusAMR Refined;        // of the input, where it is AMR
   std::string RefinedError;     // why there are no grids of it
@@ -268,6 +271,20 @@ void vtkStratusMultiBlockVolumeMapper::Internals::Configure(vtkStratusMultiBlock
   }
   if (blocks.size() == 1) { // several have a context in common, and their mappers none
     this->Mappers[0]->SetDevice(this->Settings->GetDevice());
+    this->PassUpdates(from, this->Mappers[0]);
+  }
+}
+
+// The block's mapper shows coarse pictures of large files only to programs that draw again, which observe this mapper.
+void vtkStratusMultiBlockVolumeMapper::Internals::PassUpdates(vtkStratusMultiBlockVolumeMapper* from, vtkStratusVolumeMapper* to)
+{
+  to->RemoveObserver(this->Updates);
+  if (from->HasObserver(vtkCommand::UpdateEvent)) {
+    this->Updates->SetClientData(from);
+    this->Updates->SetCallback([](vtkObject*, unsigned long event, void* mapper, void*) {
+      static_cast<vtkStratusMultiBlockVolumeMapper*>(mapper)->InvokeEvent(event);
+    });
+    to->AddObserver(vtkCommand::UpdateEvent, this->Updates);
   }
 }
 
