@@ -5,7 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <iterator>
 #include <vector>
+
+namespace {
+// VTK's readers of images have these names for values that a file does not name. The file's own name says more.
+const char* const UNNAMED[] = { "ImageFile", "MetaImage", "NIFTI", "ImageScalars", "Scalars_" };
+} // namespace
 
 namespace cli {
 
@@ -58,7 +65,8 @@ void annotation::lend(const scene_frame& frame, const transfer& look, lent& to) 
     view.axis[axis].level_count = to.levels[axis].size() / 2;
   }
   if (o.color_bar) {
-    to.title = frame.title;
+    const bool unnamed = std::find(std::begin(UNNAMED), std::end(UNNAMED), frame.title) != std::end(UNNAMED);
+    to.title = unnamed && !o.source.empty() ? std::filesystem::path(o.source).stem().string() : frame.title;
     view.color = look.color.data();
     view.color_count = look.color.size() / 4;
     view.low = look.low;

@@ -276,8 +276,7 @@ static stratus_status draw_title(
   const bool degrees = axis->kind == STRATUS_AXIS_LONGITUDE || axis->kind == STRATUS_AXIS_LATITUDE;
   const char *name = axis->title && axis->title[0] ? axis->title : letters[where->axis], *units = kilo ? "km" : axis->units;
   char title[STRATUS_LAYOUT_BYTES];
-  const bool has_units = !degrees && units && units[0] && strcmp(units, "1") != 0;
-  snprintf(title, sizeof title, "%s%s%s%s", name, has_units ? " (" : "", has_units ? units : "", has_units ? ")" : "");
+  stratus_layout_title(name, degrees ? NULL : units, title);
   double size = layout->title_size;
   for (int smaller = 0; smaller < 2; ++smaller, size = sheet->size) {
     const int extent[2] = { stratus_text_width(title, size), stratus_text_height(title, size) };

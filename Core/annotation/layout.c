@@ -159,14 +159,32 @@ static stratus_status find_bar_ticks(stratus_context* context, const stratus_ann
   return STRATUS_OK;
 }
 
+void stratus_layout_title(const char* name, const char* units, char title[STRATUS_LAYOUT_BYTES])
+{
+  const bool has_units = units && units[0] && strcmp(units, "1") != 0;
+  const int at = snprintf(title, STRATUS_LAYOUT_BYTES, "%s%s", name ? name : "", has_units ? " (" : "");
+  char* to = title + (at < STRATUS_LAYOUT_BYTES ? at : STRATUS_LAYOUT_BYTES - 1);
+  bool raised = false;
+  for (const char* from = units; has_units && *from && to < title + STRATUS_LAYOUT_BYTES - 2; ++from) {
+    const bool begins = from[0] == '^' && from[1] == '{', ends = raised && *from == '}';
+    if (!begins && !ends) {
+      *to++ = *from;
+    }
+    from += begins;
+    raised = begins || (raised && !ends);
+  }
+  if (has_units) {
+    *to++ = ')';
+    *to = '\0';
+  }
+}
+
 /* The bar is at the right of the picture, under the caption, with its title above it. All are in a column. */
 static stratus_status place_bar(stratus_context* context, const stratus_annotation* a, int width, int height, stratus_layout* layout)
 {
   const double size = layout->size, title_size = layout->title_size;
   char title[STRATUS_LAYOUT_BYTES];
-  const bool has_units = a->bar_units && a->bar_units[0] && strcmp(a->bar_units, "1") != 0;
-  snprintf(title, sizeof title, "%s%s%s%s", a->bar_title ? a->bar_title : "", has_units ? " (" : "", has_units ? a->bar_units : "",
-    has_units ? ")" : "");
+  stratus_layout_title(a->bar_title, a->bar_units, title);
   keep_units_together(title);
   const int gap = (int)(0.5 * size), below = height - layout->caption_height;
   TRY(find_bar_ticks(context, a, (int)fmin(fmax(0.5 * below / (2.4 * size), 1.0), 12.0), layout));

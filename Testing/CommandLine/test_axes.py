@@ -7,8 +7,10 @@ import sys
 
 import netCDF4
 import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 STRATUS, FOLDER = os.path.realpath(sys.argv[1]), sys.argv[2]
 os.makedirs(FOLDER, exist_ok=True)
@@ -197,6 +199,25 @@ side = [numpy.nonzero(drawn(path, "--coast", "--parallel", "--elevation", "0", "
 check(side[0] < 250 and side[1] > 262, "the coast is at the bottom of the air and at the top of the sea: rows %s" % side)
 refused = run("render", "flat.nc", "-o", "out.png", "--coast")
 check(refused.returncode == 2 and "'flat.nc' has no longitudes and latitudes" in refused.stdout, "--coast without degrees: " + refused.stdout)
+
+# Scans have no name for their values: the colour bar has the file's. A name in the file stays.
+for name in "smoke", "water":
+    with open(name + ".nrrd", "wb") as file:
+        file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n" + bytes(range(64)))
+scans = []
+for name in "smoke.nrrd", "water.nrrd", "smoke.vti":
+    if name.endswith(".vti"):
+        image = vtkImageData()
+        image.SetDimensions(4, 4, 4)
+        values = numpy_to_vtk(numpy.arange(64, dtype="u1"))
+        values.SetName("smoke")
+        image.GetPointData().SetScalars(values)
+        writer = vtkXMLImageDataWriter()
+        writer.SetFileName(name), writer.SetInputData(image), writer.Write()
+    done = run("render", name, "-o", "out.png", "--size", "300", "--color-bar", "--opacity", "0:0")
+    check(done.returncode == 0, name + ": " + done.stdout)
+    scans.append(open("out.png", "rb").read())
+check(scans[0] != scans[1] and scans[0] == scans[2], "the colour bar of a scan has the name of its file")
 
 # Levels that are only numbers are drawn, with one line that says this.
 numbers = write("numbers", (("lev", numpy.arange(nz) + 1.0, {}), ("lat", lat, {"units": "degrees_north"}),

@@ -172,6 +172,25 @@ static void text_is_whole_and_covers_no_other(void** state)
   }
 }
 
+static void exponents_in_braces_are_written_as_cf_does(void** state)
+{
+  (void)state;
+  float* pictures[3];
+  for (int n = 0; n < 3; ++n) {
+    stratus_annotation a = crowded(1.0, 1.0, 1.0);
+    a.bar_units = n == 0 ? "kg kg^{-1}" : "kg kg-1";
+    a.axis[2].units = n == 2 ? "103 m" : "10^3 m";
+    const stratus_camera camera = fitted(&a, 480, 360, 30.0, 20.0, false);
+    pictures[n] = draw(&a, &camera, 480, 360, NULL, 0, NULL);
+  }
+  const size_t bytes = 4 * sizeof(float) * 480 * 360;
+  assert_memory_equal(pictures[0], pictures[1], bytes);
+  assert_true(memcmp(pictures[1], pictures[2], bytes) != 0);
+  for (int n = 0; n < 3; ++n) {
+    free(pictures[n]);
+  }
+}
+
 /* No picture is too small, too narrow or too crowded to be drawn, and none has text that is cut off. */
 static void pictures_without_room_leave_text_out(void** state)
 {
@@ -468,6 +487,7 @@ int test_annotation(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(text_is_whole_and_covers_no_other),
+    cmocka_unit_test(exponents_in_braces_are_written_as_cf_does),
     cmocka_unit_test(pictures_without_room_leave_text_out),
     cmocka_unit_test(camera_of_the_whole_picture_sees_the_part_as_before),
     cmocka_unit_test(wrong_annotations_are_refused),
