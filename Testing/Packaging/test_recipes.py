@@ -117,7 +117,7 @@ def check_needs(recipe):
         hold(wanted <= found, f"{path} lacks {sorted(wanted - found)} of needs.toml")
         hold(found - wanted <= others, f"{path} has {sorted(found - wanted - others)}, which needs.toml lacks")
 
-    tools = {"debhelper-compat", "dh-python", "cmake", "ninja-build", "pkg-config"}
+    tools = {"debhelper-compat", "dh-python", "python3:any", "cmake", "ninja-build", "pkg-config"}
     compare("debian/control", "debian", set(packages(recipe["debian"][0]["Build-Depends"])), tools)
     made = re.search(r"^packages=\((.*?)\)", read("cmake/make-packages"), re.M | re.S)[1].split()
     compare("cmake/make-packages", "debian", set(made), {"build-essential", "cmake", "ninja-build", "dpkg-dev", "file", "zstd"})
