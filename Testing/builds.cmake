@@ -32,9 +32,9 @@ stratus_add_core_build(core_under_sanitizers
 # would show little that gcc's build does not show.
 stratus_add_core_build(core_by_clang "--label-exclude;^Device$" -DCMAKE_C_COMPILER=${CLANG} -DCMAKE_BUILD_TYPE=Release -DSTRATUS_ISAS=avx2)
 
-# ---- consumers of installed builds: the core that clang built without VTK, and everything
+# ---- consumers of installed builds, which were moved: the core that clang built without VTK, and everything
 function (stratus_add_installation name folder)
-  stratus_add_test(${name} consumers "${CMAKE_COMMAND}" --install "${folder}" --prefix "${CMAKE_BINARY_DIR}/${name}")
+  stratus_add_test(${name} consumers "${PROJECT_SOURCE_DIR}/Testing/Consumers/install_and_move" "${folder}" "${CMAKE_BINARY_DIR}/${name}")
   if (NOT folder STREQUAL CMAKE_BINARY_DIR)
     stratus_test_needs(${name} NOTHING)
   endif ()
