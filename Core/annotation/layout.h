@@ -32,7 +32,7 @@ stratus_status stratus_layout_make(
   stratus_context* context, const stratus_annotation* annotation, int width, int height, stratus_layout* layout);
 /* Returns whether any axis of m has numbers of km, for each axis. */
 void stratus_layout_kilo(const stratus_annotation* annotation, int kilo[3]);
-/* Writes "name (units)", or the name alone where there are no units. Exponents in braces, ^{-1}, are written as CF does: -1. */
+/* Writes "name (units)"; without units, the name. Exponents in braces, ^{-1}, are written as CF does: -1. */
 void stratus_layout_title(const char* name, const char* units, char title[STRATUS_LAYOUT_BYTES]);
 bool stratus_layout_has_bar(const stratus_annotation* annotation);
 
