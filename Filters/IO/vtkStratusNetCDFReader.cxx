@@ -18,6 +18,7 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkRectilinearGrid.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <array>
@@ -156,6 +157,47 @@ void vtkStratusNetCDFReader::Build(size_t step, vtkDataObject* output)
   } else if (this->Coordinates == PLANE) {
     this->UsedHeightFactor = 0.0;
   }
+  if (this->Coordinates == PLANE) {
+    this->NameAxes(vtkDataSet::SafeDownCast(output));
+  }
+}
+
+// Field data that ParaView's axes follow: titles, and how the file's own numbers become coordinates. They stay as they are where these are
+// not proportional.
+void vtkStratusNetCDFReader::NameAxes(vtkDataSet* output)
+{
+  double bounds[6];
+  output->GetBounds(bounds);
+  vtkNew<vtkDoubleArray> matrix, box;
+  matrix->SetName("ChangeOfBasisMatrix");
+  matrix->SetNumberOfComponents(16);
+  matrix->SetNumberOfTuples(1);
+  matrix->Fill(0.0);
+  matrix->SetComponent(0, 15, 1.0);
+  box->SetName("BoundingBoxInModelCoordinates");
+  box->SetNumberOfComponents(6);
+  box->SetNumberOfTuples(1);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double factor = axis == 2 && this->UsedHeightFactor > 0.0 ? this->UsedHeightFactor : 1.0;
+    const double scale = this->GetScaleOfAxis(axis) / factor;
+    const std::string letter(1, "XYZ"[axis]);
+    const int kind = this->GetKindOfAxis(axis);
+    const bool levels = kind == AXIS_OF_LEVELS, degrees = kind == AXIS_OF_LONGITUDES || kind == AXIS_OF_LATITUDES;
+    const std::string name = levels ? this->GetNameOfAxis(axis) : this->GetTitleOfAxis(axis);
+    const std::string units = degrees ? "\u00b0" : levels ? this->GetUnitsOfAxis(axis) : this->GetFileUnitsOfAxis(axis);
+    const std::string title = (name.empty() ? letter : name) + (units.empty() || units == "1" ? "" : " (" + units + ")");
+    matrix->SetComponent(0, 5 * axis, 1.0 / scale);
+    box->SetComponent(0, 2 * axis, std::min(scale * bounds[2 * axis], scale * bounds[2 * axis + 1]));
+    box->SetComponent(0, 2 * axis + 1, std::max(scale * bounds[2 * axis], scale * bounds[2 * axis + 1]));
+    vtkNew<vtkStringArray> text; // its component is called as the title, which is what a client gets
+    text->SetName(("AxisTitleFor" + letter).c_str());
+    text->SetNumberOfComponents(1);
+    text->SetComponentName(0, title.c_str());
+    text->InsertNextValue(title);
+    output->GetFieldData()->AddArray(text);
+  }
+  output->GetFieldData()->AddArray(matrix);
+  output->GetFieldData()->AddArray(box);
 }
 
 void vtkStratusNetCDFReader::Exaggerate(vtkDataSet* output)

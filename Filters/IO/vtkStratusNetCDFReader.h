@@ -74,7 +74,8 @@ public:
    * Set/Get whether heights on the plane are multiplied, if the file is of the Earth (all coordinates are in metres). The factor is
    * HeightFactor, or if that is 0 stratus_look_height_factor(): data lower than a tenth of their width become a fifth as high as wide. It
    * stays as it is at the first time step. The output then has the
-   * field array HeightFactor. Default 0: heights are true.
+   * field array HeightFactor. Default 0: heights are true. On the plane ChangeOfBasisMatrix, BoundingBoxInModelCoordinates and
+   * AxisTitleForX, Y and Z tell ParaView's plugin NonOrthogonalSource the file's own numbers and names.
    */
   vtkSetMacro(ExaggerateHeights, vtkTypeBool);
   vtkGetMacro(ExaggerateHeights, vtkTypeBool);
@@ -138,6 +139,7 @@ protected:
 
 private:
   void Exaggerate(vtkDataSet* output);
+  void NameAxes(vtkDataSet* output);
 
   std::vector<int> Ranks; // of Variables
 #ifndef __VTK_WRAP__

@@ -46,6 +46,17 @@ for name, heights in (("image", [0, 500, 1000]), ("rectilinear", [-900, -100, 0]
         fields = high.data.GetFieldData()
         check(fields.GetArray("HeightFactor").GetValue(0) == factor, f"{name}: the output says by how much")
         check(not plain.data.GetFieldData().GetArray("HeightFactor"), "true heights have no factor")
+        # ParaView's axes: coordinates are the matrix times the file's own numbers.
+        for got, times in (plain, 1), (high, factor):
+            own = got.data.GetFieldData()
+            matrix = vtk_to_numpy(own.GetArray("ChangeOfBasisMatrix")).reshape(4, 4)
+            numbers = vtk_to_numpy(own.GetArray("BoundingBoxInModelCoordinates")).reshape(3, 2)
+            check(near(numpy.repeat(numpy.diag(matrix)[:3], 2) * numbers.ravel(), bounds(got)), f"{name} in {units}: {matrix} makes places of {numbers}")
+            check(near(matrix, numpy.diag(numpy.diag(matrix))) and matrix[2, 2] == times, f"{name} in {units}: heights are multiplied by {matrix[2, 2]}")
+            first = [0, 0] if units == "m" else [-20, 50]
+            check(near(numbers[:2, 0], first) and near(numbers[2], [min(heights), max(heights)]), f"{name} in {units}: the file's numbers are {numbers}")
+            titles = [own.GetAbstractArray(f"AxisTitleFor{axis}").GetComponentName(0) for axis in "XYZ"]
+            check(titles == (["x (m)", "y (m)", "height (m)"] if units == "m" else ["longitude (\u00b0)", "latitude (\u00b0)", "height (m)"]), f"titles {titles}")
         high.reader.ExaggerateHeightsOff()
         high.reader.Update()
         check(near(bounds(high), box) and not high.data.GetFieldData().GetArray("HeightFactor"), f"{name}: off again")
