@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the tutorials as a reader would type them: test_tutorials.py BUILD FOLDER [PAGE...]. The blocks of a page run in their order, in a folder
 of the page's own: sh by bash, with the build's programs on the path, python in one process a page, with the build's packages, and c is
-kept under the name in its first line. A page fails with its first block that fails. Blocks of ParaView run by pvbatch, where STRATUS_PVBATCH
-names it; STRATUS_PLUGIN names the plugin."""
+kept under the name in its first line. A page fails with its first block that fails, or that draws an image of nothing. Blocks of ParaView
+run by pvbatch, where STRATUS_PVBATCH names it; STRATUS_PLUGIN names the plugin."""
 import os
 import re
 import shutil
@@ -12,7 +12,7 @@ import sys
 
 build, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 pvbatch = os.environ.get("STRATUS_PVBATCH")
-pages = sys.argv[3:] or ["image", "numpy", "tetrahedra", "c"]
+pages = sys.argv[3:] or ["meteorologist", "oceanographer", "image", "numpy", "tetrahedra", "c"]
 environment = dict(os.environ, PATH=os.path.join(build, "bin") + os.pathsep + os.environ["PATH"],
                    PYTHONPATH=os.path.join(build, "lib", "python3", "dist-packages"), OMP_WAIT_POLICY="passive")
 
@@ -64,6 +64,8 @@ def run(page):
                 return [f"{code}\n{output}"]
         elif kind == "sh":
             done = subprocess.run(["bash", "-e", "-o", "pipefail", "-c", code], cwd=place, env=own, capture_output=True, text=True)
+            if re.search(r"^  samples +0 taken", done.stdout, re.M):
+                return [f"{code}\n{done.stdout}an image shows nothing"]
             if done.returncode:
                 return [f"{code}\n{done.stdout}{done.stderr}"]
         elif kind == "c":
