@@ -75,7 +75,7 @@ public:
    * HeightFactor, or if that is 0 stratus_look_height_factor(): data lower than a tenth of their width become a fifth as high as wide. It
    * stays as it is at the first time step. The output then has the
    * field array HeightFactor. Default 0: heights are true. On the plane ChangeOfBasisMatrix, BoundingBoxInModelCoordinates and
-   * AxisTitleForX, Y and Z tell ParaView's plugin NonOrthogonalSource the file's own numbers and names.
+   * AxisTitleForX, Y and Z are the file's own numbers and names, which axes follow where ParaView's plugin NonOrthogonalSource is loaded.
    */
   vtkSetMacro(ExaggerateHeights, vtkTypeBool);
   vtkGetMacro(ExaggerateHeights, vtkTypeBool);
