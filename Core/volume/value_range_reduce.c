@@ -316,6 +316,7 @@ stratus_status stratus_value_range_reduce(
   };
   of.count = of.parts ? of.parts->count : ranges->blocks[1] * ranges->blocks[2];
   const int threads = (int64_t)context->threads < of.count ? context->threads : (int)of.count;
+  const int64_t at_once = of.parts || threads < 1 ? 1 : (of.count + threads - 1) / threads; /* rows in one run for each thread */
   const size_t room = room_bytes(ranges, volume->dimensions[0]);
   void* memory = NULL;
   TRY(stratus_allocate(context, (size_t)threads, room, &memory));
@@ -328,16 +329,9 @@ stratus_status stratus_value_range_reduce(
     span s = { .bias = ranges->bias, .size = ranges->block_size };
     stratus_part part = stratus_volume_whole(volume);
     give_room(&s, ranges, volume->dimensions[0], (uint8_t*)memory + (size_t)thread * room);
-    if (of.parts) {
-#pragma omp for schedule(monotonic : dynamic)
-      for (int64_t n = 0; n < of.count; ++n) {
-        do_one(&of, thread, &s, &part, n);
-      }
-    } else {
-#pragma omp for schedule(static)
-      for (int64_t n = 0; n < of.count; ++n) {
-        do_one(&of, thread, &s, &part, n);
-      }
+#pragma omp for schedule(monotonic : dynamic, at_once)
+    for (int64_t n = 0; n < of.count; ++n) {
+      do_one(&of, thread, &s, &part, n);
     }
     free(part.room);
   }
