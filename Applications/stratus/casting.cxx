@@ -4,8 +4,30 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace cli {
+
+void set_planes(options& o, const options& given)
+{
+  o.crop = given.crop;
+  o.slice = given.slice;
+  for (size_t a = 0; a < 3 && !o.globe; ++a) {
+    const double scale = o.about.axes[a].scale; // the file's numbers in a unit of the grid's
+    if (!o.crop.empty()) {
+      double* const planes = &o.crop[2 * a];
+      planes[0] /= scale;
+      planes[1] /= scale;
+      if (scale < 0.0) { // such as depths
+        std::swap(planes[0], planes[1]);
+      }
+    }
+    if (!o.slice.empty()) {
+      o.slice[a] /= scale;
+      o.slice[3 + a] *= scale;
+    }
+  }
+}
 
 stratus_slice slice_of(const options& o, int up)
 {

@@ -11,6 +11,8 @@
 
 namespace cli {
 
+// Sets the planes of --crop and --slice, which are given in the numbers of the file's axes, in the grid's coordinates.
+void set_planes(options& o, const options& given);
 // The plane of --slice; no surface where there is none.
 stratus_slice slice_of(const options& o, int up);
 // Sets the lights of --sun and --sun-at, and returns their number. `up` is the axis of heights, 0 to 2.

@@ -81,7 +81,7 @@ Data and appearance
   --color NAME|LIST       a colour map, stretched over the values shown; NAME_r reverses it; or "value:r:g:b,..." with r, g, b in 0..1.
                           --color list prints the names: )" +
     wrapped(color_names(", "), 26, 140 - 26 - 31) + R"(
-  --crop X,X,Y,Y,Z,Z      draw only the box between these planes across the grid's axes, in the file's coordinates
+  --crop X,X,Y,Y,Z,Z      draw only the box between these planes across the grid's axes, in the numbers that --axes shows
   --crop-regions N        regions to draw of the 27 that the planes of --crop make: the sum of bits x + 3 y + 9 z, 0..134217727
                           (default 8192: the box between all planes)
   --mask FILE             an image of one byte a value; a value is hidden if its byte is 0
@@ -130,7 +130,7 @@ Rendering
                           largest or smallest value on a ray; average, additive: of opacity times value, in grey; isosurface; slice;
                           path: light that is scattered any number of times, see below (default composite)
   --contours V,V,...      isosurfaces' values, 1 to 16, each in its colour and opacity by the transfer functions
-  --slice X,Y,Z,NX,NY,NZ  the slice's plane: a point and the normal, in the file's coordinates
+  --slice X,Y,Z,NX,NY,NZ  the slice's plane: a point and the normal, in the numbers that --axes shows
   --average-range A,B     range of the values that --mode average uses (default: all)
   --method M              for grids of cells: march rays through faces, or project sorted cells; the image is the same. auto, march,
                           project (default auto: the one that should cost less)

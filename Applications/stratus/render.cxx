@@ -2,6 +2,7 @@
 // `stratus render`: opens a file, chooses how its data are drawn, and draws one step or all. The next step is read while one is drawn.
 #include "render.h"
 
+#include "casting.h"
 #include "cloud.h"
 #include "drawing.h"
 #include "frame.h"
@@ -43,6 +44,7 @@ std::string set_by_data(
     water->set_function(o, grid);
   }
   cli::set_heights(o, in, grid);
+  cli::set_planes(o, given);
   const bool is_map = o.about.axes[0].kind == STRATUS_AXIS_LONGITUDE && o.about.axes[1].kind == STRATUS_AXIS_LATITUDE;
   if (o.coast && !o.globe && !is_map && !o.about.place) {
     throw cli::usage("--coast: " +

@@ -200,6 +200,19 @@ check(side[0] < 250 and side[1] > 262, "the coast is at the bottom of the air an
 refused = run("render", "flat.nc", "-o", "out.png", "--coast")
 check(refused.returncode == 2 and "'flat.nc' has no longitudes and latitudes" in refused.stdout, "--coast without degrees: " + refused.stdout)
 
+# Planes of --crop and --slice are in the numbers of the axes: degrees and depths.
+above = "--opacity", "0:.9,1:.9", "--unit-distance", "500", "--parallel", "--elevation", "90", "--azimuth", "-90"
+whole = drawn(sea, *above)
+check((whole > 20).sum() > 10000, "the sea shows from above")
+for planes, part in (("-20,40,30,65,0,6000", slice(0, 512)), ("10,40,30,65,0,6000", slice(256, 512)), ("10,40,30,65,3000,5700", slice(256, 512))):
+    seen = numpy.nonzero((drawn(sea, "--crop=" + planes, *above) > 20).any(axis=0))[0]
+    shown = numpy.nonzero((whole > 20).any(axis=0))[0]
+    least, most = max(shown.min(), part.start), min(shown.max(), part.stop - 1)
+    check(seen.size and abs(seen.min() - least) <= 2 and abs(seen.max() - most) <= 2, f"--crop {planes}: columns {seen.min()} to {seen.max()}, not {least} to {most}")
+for place, shows in (("10,0,0,1,0,0", True), ("200,0,0,1,0,0", False), ("0,0,2000,0,0,1", True), ("0,0,-2000,0,0,1", False)):
+    cut = drawn(sea, "--mode", "slice", "--slice=" + place, "--opacity", "0:1", "--azimuth", "20")
+    check((cut > 20).any() == shows, f"--slice {place} {'shows' if shows else 'is beyond'} the sea")
+
 # Scans have no name for their values: the colour bar has the file's. A name in the file stays.
 for name in "smoke", "water":
     with open(name + ".nrrd", "wb") as file:
