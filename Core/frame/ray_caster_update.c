@@ -36,6 +36,17 @@ static stratus_status update_field(
   return STRATUS_OK;
 }
 
+stratus_status stratus_ray_caster_find_ranges(stratus_ray_caster* caster, const stratus_volume* volume)
+{
+  const stratus_ray_cast_options options = stratus_ray_cast_options_default();
+  double ms = 0.0;
+  if (!caster) {
+    return STRATUS_INVALID_ARGUMENT;
+  }
+  TRY(stratus_volume_check(caster->context, volume));
+  return update_field(caster, volume, &options, 0, &ms);
+}
+
 stratus_status stratus_ray_update_transfer_2d(
   stratus_ray_caster* caster, const stratus_volume* volume, const stratus_ray_cast_options* options)
 {

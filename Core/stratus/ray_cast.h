@@ -378,6 +378,11 @@ STRATUS_API stratus_status stratus_ray_caster_render(stratus_ray_caster* caster,
   const stratus_transfer* transfer, const stratus_camera* camera, const stratus_ray_cast_options* options, const stratus_image* image,
   stratus_ray_cast_report* report);
 
+/* Find the value ranges of a volume's blocks before its first picture, which then has them. For callers that choose functions by values
+ * that a source of bricks sees go by: all values are read once. Values of more than 24 bits are read once more, to find the value from
+ * which they count. */
+STRATUS_API stratus_status stratus_ray_caster_find_ranges(stratus_ray_caster* caster, const stratus_volume* volume);
+
 #define STRATUS_SEVERAL_MAX 8
 
 struct stratus_mesh;          /* mesh.h */

@@ -325,6 +325,9 @@ static void ray_casters(const small_scene* scene)
   ACCEPTS(stratus_ray_caster_create(context, &c));
   TAKES(stratus_ray_caster_destroy(NULL));
   TAKES(stratus_ray_caster_release(NULL));
+  IS_SILENT(stratus_ray_caster_find_ranges(NULL, v));
+  REFUSES(stratus_ray_caster_find_ranges(c, NULL));
+  ACCEPTS(stratus_ray_caster_find_ranges(c, v));
   IS_SILENT(stratus_ray_caster_render(NULL, v, t, &scene->camera, NULL, &image, NULL));
   REFUSES(stratus_ray_caster_render(c, NULL, t, &scene->camera, NULL, &image, NULL));
   REFUSES(stratus_ray_caster_render(c, v, NULL, &scene->camera, NULL, &image, NULL));

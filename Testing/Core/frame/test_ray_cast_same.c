@@ -255,6 +255,26 @@ static void a_caster_that_was_used_before_draws_the_same(void** state)
   stratus_context_destroy(context);
 }
 
+static void ranges_found_before_change_no_bit(void** state)
+{
+  (void)state;
+  stratus_context* context = case_context("host", 2);
+  for (uint32_t seed = 500; seed < 530; seed += few_run() ? 3 : 1) {
+    picture_case c;
+    stratus_ray_caster* early = NULL;
+    case_create_random(context, seed, &c);
+    case_render(context, &c, &first);
+    assert_int_equal(stratus_ray_caster_create(context, &early), STRATUS_OK);
+    assert_int_equal(stratus_ray_caster_find_ranges(early, &c.volume), STRATUS_OK);
+    case_render_with(context, early, &c, &second);
+    expect_same("ranges found before", &first, &second);
+    assert_true(c.volume.components > 1 || c.volume.cell_centered || c.options.skipping.block_size != 0 || second.report.range_builds == 1);
+    stratus_ray_caster_destroy(early);
+    case_destroy(&c);
+  }
+  stratus_context_destroy(context);
+}
+
 int test_ray_cast_same(void)
 {
   const struct CMUnitTest tests[] = {
@@ -265,6 +285,7 @@ int test_ray_cast_same(void)
     cmocka_unit_test(values_in_tiles_change_no_bit),
     cmocka_unit_test(rules_that_take_turns_keep_their_tables),
     cmocka_unit_test(a_caster_that_was_used_before_draws_the_same),
+    cmocka_unit_test(ranges_found_before_change_no_bit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
