@@ -19,6 +19,7 @@ _Quantity = Literal["integral", "length", "mean", "maximum", "maximum_depth", "c
 _Quantities = Union[_Quantity, Sequence[_Quantity], None]
 _Mode = Literal["composite", "first-hit", "maximum", "minimum", "average", "additive", "isosurface", "slice"]
 _Matrix = Union[ArrayLike, Any, None]
+_Memory = Union[float, str, None]  # bytes, or a text such as "2G"
 _Component = Union[int, Literal["all"], None]
 _Shade = Union[bool, dict[str, float], Sequence[Union[bool, dict[str, float]]]]
 _Structure = Literal["auto", "none", "block", "distance", "octant", "hybrid"]
@@ -64,7 +65,7 @@ class Volume:
     def __init__(
         self, data: Any, spacing: Sequence[float] | None = ..., origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ...,
         scalars: str | None = ..., component: _Component = ..., device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ...,
-        exaggerate: float | None = ...) -> None: ...
+        exaggerate: float | None = ..., memory: _Memory = ...) -> None: ...
     exaggeration: float
     @property
     def bounds(self) -> tuple[float, float, float, float, float, float]: ...
@@ -183,7 +184,7 @@ def render(
     data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: _Camera = ..., spacing: Sequence[float] | None = ...,
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
     device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., exaggerate: float | None = ...,
-    globe: bool = ..., **options: Any) -> Rendering: ...
+    globe: bool = ..., memory: _Memory = ..., **options: Any) -> Rendering: ...
 def show(
     data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: _Camera = ..., background: _Background = ...,
     **options: Any) -> Picture: ...
@@ -192,7 +193,7 @@ def turn(
     background: _Background = ..., seconds: float = ..., progress: _Progress = ..., spacing: Sequence[float] | None = ...,
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
     device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., exaggerate: float | None = ...,
-    globe: bool = ..., **options: Any) -> Film: ...
+    globe: bool = ..., memory: _Memory = ..., **options: Any) -> Film: ...
 def cloud(
     data: Any, radius: float | None = ..., ice: bool | None = ..., units: str | None = ..., metres: float | None = ...,
     density: ArrayLike | None = ..., variable: str | None = ..., step: int = ..., sun: Sequence[float] | None = ..., time: Any = ...,
@@ -204,7 +205,7 @@ def view(
     data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: dict[str, float] | None = ...,
     background: _Background = ..., draft: float = ..., draft_tolerance: float = ..., spacing: Sequence[float] | None = ...,
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
-    device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., **options: Any) -> View: ...
+    device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., memory: _Memory = ..., **options: Any) -> View: ...
 def render_several(
     items: Sequence[Any], size: Sequence[int] = ..., camera: _Camera = ..., opaque_depth: ArrayLike | None = ..., device: _Device = ...,
     threads: int | None = ..., progress: _Progress = ..., quantities: _Quantities = ..., threshold: float = ...) -> Rendering: ...

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The core's library, loaded by ctypes, and the contexts that its calls take."""
+import collections
 import ctypes
 import glob
 import os
@@ -74,6 +75,33 @@ library, without_opencl = _load()
 version = library.stratus_version().decode()
 
 
+_of_thread = threading.local()
+_PATIENCE = 10  # seconds
+_SAME_DEVICE = "a progress function, or an array that is read for a picture, called what uses the same device; it may use another Context"
+
+
+class _Lock:
+    """A lock of a context, as RLock. A thread that reads values for a picture does not wait for that picture forever."""
+
+    def __init__(self):
+        self._lock = threading.RLock()
+
+    def __enter__(self):
+        if not self._lock.acquire(timeout=_PATIENCE if getattr(_of_thread, "reads", False) else -1):
+            raise RuntimeError(_SAME_DEVICE)
+
+    def __exit__(self, *_):
+        self._lock.release()
+
+    def try_enter(self):
+        return self._lock.acquire(blocking=False)
+
+
+def reading(reads):
+    """Says whether this thread reads values for a picture, which may have the lock of a context."""
+    _of_thread.reads = reads
+
+
 class Context:
     """A device, its threads and its programs. One call at a time uses it: others wait for its lock.
 
@@ -85,7 +113,7 @@ class Context:
 
     def __init__(self, device="auto", threads=0):
         self._pointer, self._users, self._left, self._process = None, 0, False, os.getpid()
-        self.lock = threading.RLock()
+        self.lock, self._late = _Lock(), collections.deque()
         self._progress, self._raised, self._inside = None, None, False
         options = library.stratus_context_options_default()
         options.device = _text(device, "device")
@@ -115,7 +143,14 @@ class Context:
             return 1
 
     def _destroy_unused(self):
-        if self._left and self._users == 0 and self._pointer and self._process == os.getpid():
+        if self._process != os.getpid():
+            return
+        while self._late:
+            destroy, pointer, _ = self._late.popleft()
+            if pointer:
+                destroy(pointer)
+            self._users -= 1
+        if self._left and self._users == 0 and self._pointer:
             library.stratus_context_destroy(self._pointer)
             self._pointer = None
 
@@ -129,12 +164,13 @@ class Context:
         if self._process != os.getpid():
             raise RuntimeError("this object was made before the process was forked; make it anew in the child process")
         if self._inside:
-            raise RuntimeError("a progress function called what uses the same device; it may use another Context")
+            raise RuntimeError(_SAME_DEVICE)
         self._progress, self._raised, self._inside = Progress.of(progress), None, True
         try:
             status = function(*arguments)
         finally:
             self._progress, self._inside = None, False
+            self._destroy_unused()
         if self._raised:
             raised, self._raised = self._raised, None
             raise raised
@@ -241,21 +277,23 @@ def devices():
 
 
 class Owned:
-    """An object of the core with the function that frees it; it keeps its context alive."""
+    """An object of the core with the function that frees it; it keeps its context alive, and `keep` as long as the object."""
 
-    def __init__(self, owner, destroy):
-        self.owner, self.pointer, self._destroy = owner, ctypes.c_void_p(), destroy
+    def __init__(self, owner, destroy, keep=None):
+        self.owner, self.pointer, self._destroy, self._keep = owner, ctypes.c_void_p(), destroy, keep
         with owner.lock:
             owner._users += 1
 
     def __del__(self):
         if self.owner._process != os.getpid():
             return  # it belongs to the process that this one was forked off
-        with self.owner.lock:
-            if self.pointer:
-                self._destroy(self.pointer)
-            self.owner._users -= 1
-            self.owner._destroy_unused()
+        # The garbage collector may call this in a thread that reads values for a picture, which has the lock: the picture's call frees it then.
+        self.owner._late.append((self._destroy, self.pointer, self._keep))
+        if self.owner.lock.try_enter():
+            try:
+                self.owner._destroy_unused()
+            finally:
+                self.owner.lock.__exit__()
 
 
 def _text(value, name):

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Dimensions of an xarray.DataArray: which axis of space each one is, by the attributes of CF's conventions or by its name, and its coordinate.
-Lazy values are computed once."""
-import ctypes
-
+"""Dimensions of an xarray.DataArray: which axis of space each one is, by the attributes of CF's conventions or by its name, and its coordinate;
+and its values, which may be lazy."""
 import numpy
 
-from . import _declarations as c
-from ._core import context as context_of, library
-from ._values import type_in_core
+from ._lazy import Lazy, computed_whole
+from ._pages import opened
 
 _NAMES = {"z": ("z", "lev", "level", "plev", "height", "altitude", "alt", "depth", "elevation", "bottom_top", "k"),
           "y": ("y", "lat", "latitude", "north", "northing", "south_north", "j"),
@@ -77,39 +74,40 @@ def space_axes_of(data):
     return [axis or next(left) for axis in axes]
 
 
-def _free_memory():
-    """Bytes that the machine or the process's control group has free, by the core, which gives half of them to a pool of bricks."""
-    pool, report, context = ctypes.c_void_p(), c.stratus_brick_pool_report(), context_of("host", 1)
-    with context.lock:
-        context.call(library.stratus_brick_pool_create, context.pointer, None, ctypes.byref(pool))
-    library.stratus_brick_pool_get_report(pool, ctypes.byref(report))
-    library.stratus_brick_pool_destroy(pool)
-    return 2 * report.memory
-
-
-def _size(count):
-    return f"{count / 2**30:.1f} GiB" if count >= 2**30 else f"{count / 2**20:.1f} MiB"
-
-
-def computed(data):
-    """The values of a DataArray. Lazy values are computed once, in the type that the core reads, if they fit in memory."""
+def lazy_of_data_array(data):
+    """The Lazy of a DataArray, or None if its values are in memory. Its fill values are NaN."""
     chunked = getattr(data, "chunks", None) is not None
     if not chunked and getattr(getattr(data, "variable", None), "_in_memory", True):
-        return data.values
-    needed = type_in_core(data.dtype)
-    count, free = int(data.size) * needed.itemsize, _free_memory()
-    if count > free:
-        raise MemoryError(f"the DataArray {data.name!r} is lazy, and its {' x '.join(map(str, data.shape))} values of type {needed} need {_size(count)}, "
-                          f"but {_size(free)} of memory are free; choose a part by .isel() or .sel(), or a coarser one by .coarsen()")
-    if not chunked:
-        return data.values
-    return (data.data if data.dtype == needed else data.data.astype(needed)).compute()
+        return None
+
+    def read(box):
+        part = data.variable[box]
+        return part.data.compute() if chunked else part.values
+    encoding = getattr(data, "encoding", None) or {}
+    preferred = encoding.get("preferred_chunks") or {}
+    chunks = data.chunks if chunked else [preferred.get(name) for name in data.dims]
+    masked = chunked and isinstance(getattr(data.data, "_meta", None), numpy.ma.MaskedArray)
+    return Lazy(data.shape, data.dtype, read, (lambda: computed_whole(data.data)) if chunked else (lambda: data.values), None if None in chunks else chunks,
+                masked, _fills(data), f"the DataArray {data.name!r}", "choose a part by .isel() or .sel(), or a coarser one by .coarsen()")
 
 
-def values_of(data):
-    """The values of a DataArray, with its fill values masked."""
-    values = numpy.ma.asarray(computed(data))
-    for name in "_FillValue", "missing_value":
-        if name in data.attrs:  # values in the encoding were replaced as the file was read
-            values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | numpy.isin(values.data, data.attrs[name]), values.data)
-    return values
+def _fills(data):
+    """The fill values of a DataArray. Those of its encoding were replaced as the file was read."""
+    return [value for name in ("_FillValue", "missing_value") if name in data.attrs for value in numpy.ravel(data.attrs[name])]
+
+
+def computed(data, memory=None, paged=False):
+    """The values of a DataArray, or a Lazy. Of a lazy one all values are computed once, in the type that the core reads, if they fit in memory;
+    memory and paged: as of `opened`."""
+    lazy = lazy_of_data_array(data)
+    return data.values if lazy is None else opened(lazy, memory, paged)
+
+
+def values_of(data, memory=None, paged=False):
+    """The values of a DataArray, with its fill values masked, or a Lazy: as `computed`."""
+    values = computed(data, memory, paged)
+    if isinstance(values, Lazy):
+        return values
+    values = numpy.ma.asarray(values)
+    fills = _fills(data)
+    return numpy.ma.masked_where(numpy.ma.getmaskarray(values) | numpy.isin(values.data, fills), values.data) if fills else values

@@ -9,39 +9,42 @@ from ._values import background_color, number, positive
 from ._volume import Volume
 
 
-_OF_DATA = ("spacing", "origin", "axes", "scalars", "component", "device", "threads", "matrix", "exaggerate", "globe")
+_OF_DATA = ("spacing", "origin", "axes", "scalars", "component", "device", "threads", "matrix", "exaggerate", "globe", "memory")
 
 
 def drawn_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, exaggerate=None,
-             globe=False):
+             globe=False, memory=None):
     """What draws the data: a Volume or Tetrahedra."""
     if flag(globe, "globe"):
         for name, value in dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, matrix=matrix).items():
             if value is not None:
                 raise ValueError(f"{name} is {value!r}, but on a globe places are those of longitudes, latitudes and heights: leave it out")
+        if memory is not None:
+            raise ValueError(f"memory is {memory!r}, but on a globe all values are read at once: leave it out")
         return Globe(data, exaggerate, device, threads)
     if isinstance(data, (Volume, Tetrahedra)):
         given = dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, device=device, threads=threads, matrix=matrix,
-                     exaggerate=exaggerate)
+                     exaggerate=exaggerate, memory=memory)
         for name, value in given.items():
             if value is not None:
                 raise ValueError(f"{name} is {value!r}, but a {type(data).__name__} has its own")
         return data
     if hasattr(data, "IsA") and (data.IsA("vtkUnstructuredGrid") or data.IsA("vtkStructuredGrid")):
-        for name, value in dict(spacing=spacing, origin=origin, axes=axes, exaggerate=exaggerate).items():
+        for name, value in dict(spacing=spacing, origin=origin, axes=axes, exaggerate=exaggerate, memory=memory).items():
             if value is not None:
                 raise ValueError(f"{name} is {value!r}, but a {data.GetClassName()} has none")
         return Tetrahedra(data, scalars=scalars, device=device, threads=threads, matrix=matrix, component=component)
-    return Volume(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate)
+    return Volume(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, memory)
 
 
 def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing=None, origin=None, axes=None, scalars=None, component=None,
-           device=None, threads=None, matrix=None, exaggerate=None, globe=False, **options):
+           device=None, threads=None, matrix=None, exaggerate=None, globe=False, memory=None, **options):
     """Draws a volume and returns a Rendering: rgba, depth, counters.
 
-    data           a NumPy array, an xarray.DataArray, a vtkImageData or vtkRectilinearGrid, a vtkUnstructuredGrid or vtkStructuredGrid,
-                   pyvista's too; or a Volume or Tetrahedra, which are drawn again without building anew. See `Volume` and `Tetrahedra`
-                   for the accepted data, and for spacing, origin, axes, scalars, component, device, threads, matrix and exaggerate
+    data           a NumPy array, an xarray.DataArray, a lazy array such as zarr's, a vtkImageData or vtkRectilinearGrid, a vtkUnstructuredGrid or
+                   vtkStructuredGrid, pyvista's too; or a Volume or Tetrahedra, which are drawn again without building anew. See `Volume` and
+                   `Tetrahedra` for the accepted data, and for spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate
+                   and memory
     globe          True: an xarray.DataArray with longitudes and latitudes, of one or two dimensions, on a sphere of 6371 km, which hides what is
                    behind it. Heights are times `exaggerate`, by default as much as makes them reach over a tenth of the radius. Lattices that go
                    all the way round are closed, at poles and at the seam between two poles, too. Cells are drawn, as of structured grids
@@ -108,7 +111,7 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
     Cells of unstructured and structured grids have no interpolation, structure, sampling, sample_distance, jitter, audit, labels, looks,
     and function_2d, but a method: auto, march or project. A picture that shows nothing gives one warning, NothingShown, that names the reason.
     """
-    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, globe)
+    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, globe, memory)
     return drawn.render(opacity, color, size, camera, **options)
 
 
@@ -145,7 +148,7 @@ def render_tetrahedra(points, tetrahedra, values, opacity=None, color=None, size
 
 def turn(data, frames=36, opacity=None, color=None, size=(320, 240), elevation=25.0, zoom=1.15, background=(0.08, 0.1, 0.14), seconds=4.0,
          progress=None, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None,
-         exaggerate=None, globe=False, **options):
+         exaggerate=None, globe=False, memory=None, **options):
     """Returns a Film of the data as it turns once about the z axis: a list of Pictures, which notebooks show as a film.
 
     frames     number of pictures, 1..1000
@@ -157,7 +160,7 @@ def turn(data, frames=36, opacity=None, color=None, size=(320, 240), elevation=2
     whole(frames, "frames", 1, 1000)
     background, seconds = background_color(background), positive(seconds, "seconds")
     view = dict(elevation=number(elevation, "elevation"), zoom=number(zoom, "zoom"))
-    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, globe)
+    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, globe, memory)
     film, report = Film(seconds=seconds), Progress.of(progress)
     for n in range(frames):
         part = None if report is None else lambda stage, fraction, n=n: report(stage, (n + fraction) / frames)

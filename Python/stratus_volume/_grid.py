@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Volumes from NumPy, xarray, VTK and pyvista, as views of their own memory where type and order allow."""
+"""Volumes from NumPy, xarray, VTK and pyvista, as views of their own memory where type and order allow, and from lazy arrays."""
+import contextlib
 import ctypes
 import importlib
 
@@ -8,8 +9,10 @@ import numpy
 from . import _declarations as c
 from . import _earth
 from ._core import address, context as context_of, library, type_of
-from ._dimensions import space_axes_of, coordinate_of, values_of
-from ._values import Spread, mask_of, native, none_visible, numbers, scaled, visible
+from ._dimensions import coordinate_of, space_axes_of, values_of
+from ._lazy import Lazy, bytes_of, lazy_of
+from ._pages import Pages, Seen, opened
+from ._values import Spread, mask_of, native, none_visible, numbers, power_of, scaled, visible
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 _POINT_HIDDEN = c.CONSTANTS["STRATUS_GHOST_HIDDEN_POINT"]
@@ -22,15 +25,10 @@ class Grid:
 
     def __init__(self, values, mask, spacing, origin, world=(0, 1, 2), direction=None, coordinates=(None, None, None), cell_centered=False,
                  flags=None, own=(2, 1, 0)):
-        self.own, self.matrix = own, None
-        # Of an xarray.DataArray: what it says of its variable, whether its places are on the Earth, and the metres of their unit.
-        self.about, self.earth, self.metres = None, False, None
-        self.axes = None  # three Axis; None: places are the numbers
+        self._place(spacing, origin, world, direction, coordinates, cell_centered, own)
+        self.waits = False
         self.components = values.shape[3] if values.ndim == 4 else 1
-        self.mask, self.flags, self.world, self.cell_centered = mask, flags, world, cell_centered
-        self.spacing, self.origin, self.coordinates = spacing, origin, coordinates
-        self.direction = direction or [1.0 if world[own] == axis else 0.0 for axis in range(3) for own in range(3)]
-        self.ghosts = None
+        self.mask, self.flags, self.ghosts = mask, flags, None
         hidden = mask
         if flags is not None:
             self.ghosts = flags
@@ -48,6 +46,15 @@ class Grid:
         self.values = values if mask is None or self.nothing else self._without_hidden(values)
         self._scaled = (0, self.values)
         self.revision = 0
+
+    def _place(self, spacing, origin, world, direction, coordinates, cell_centered, own):
+        self.own, self.matrix = own, None
+        # Of an xarray.DataArray: what it says of its variable, whether its places are on the Earth, and the metres of their unit.
+        self.about, self.earth, self.metres = None, False, None
+        self.axes = None  # three Axis; None: places are the numbers
+        self.world, self.cell_centered = world, cell_centered
+        self.spacing, self.origin, self.coordinates = spacing, origin, coordinates
+        self.direction = direction or [1.0 if world[own] == axis else 0.0 for axis in range(3) for own in range(3)]
 
     def _without_hidden(self, values):
         """What is masked has no say in ranges and tables: floats become NaN; integers a value of the others, hidden by a flag."""
@@ -76,20 +83,40 @@ class Grid:
         values, stride = _strided(self._scaled[1])
         if values is not self._scaled[1]:
             self._scaled = (power, values)
-        volume = library.stratus_volume_default()
-        volume.values, volume.type, volume.value_stride = address(values), type_of(values), stride
-        volume.dimensions[:], volume.components = values.shape[2::-1], self.components
-        volume.origin[:], volume.direction[:] = self.origin, self.direction
-        volume.cell_centered = int(self.cell_centered)
-        volume.revision = self.revision
-        if self.matrix is not None:
-            volume.matrix[:] = self.matrix
+        volume = self._view_of(values.shape, type_of(values))
+        volume.values, volume.value_stride, volume.components = address(values), stride, self.components
         if self.ghosts is not None:
             setattr(volume, "cell_ghosts" if self.cell_centered else "point_ghosts", address(self.ghosts))
+        return volume
+
+    def _view_of(self, shape, number):
+        """A view without values, of a shape and the core's number of a type."""
+        volume = library.stratus_volume_default()
+        volume.type, volume.dimensions[:], volume.revision = number, shape[2::-1], self.revision
+        volume.origin[:], volume.direction[:], volume.spacing[:] = self.origin, self.direction, self.spacing
+        volume.cell_centered = int(self.cell_centered)
+        if self.matrix is not None:
+            volume.matrix[:] = self.matrix
         for own in range(3):
-            volume.spacing[own] = self.spacing[own]
             volume.coordinates[own] = address(self.coordinates[own])
         return volume
+
+    def sampled(self):
+        """A view of all values, or of some of them, for guesses. It is valid until the next call."""
+        return self.view(0)
+
+    def coarse(self):
+        return None
+
+    def modified(self):
+        self.revision += 1
+
+    def settle(self, context, caster, progress=None):
+        """Sees that spreads are known, before the caster's picture."""
+
+    def reading(self):
+        """A context for calls of the core that read values: an exception of a lazy array is raised as it ends."""
+        return contextlib.nullcontext()
 
     def bounds(self, context):
         result, volume = (ctypes.c_double * 6)(), self.view(self._scaled[0])
@@ -115,6 +142,100 @@ class Grid:
         return result
 
 
+class LazyGrid(Grid):
+    """A grid of a lazy array's values, whose parts are read when the core reads them. `values` has their shape and type, and is no memory of them.
+    Spreads are known once it is settled."""
+
+    def __init__(self, lazy, spacing, origin, world, coordinates):
+        self._place(spacing, origin, world, None, coordinates, False, (2, 1, 0))
+        self.lazy, self.components, self.mask, self.flags, self.ghosts = lazy, 1, None, None, None
+        self.values = numpy.broadcast_to(numpy.zeros((), lazy.dtype), lazy.shape)
+        self.nothing, self.spreads, self.spread, self.revision = None, [], None, 0
+        self.pages, self._seen, self._scaled, self._sample, self._coarse = None, None, (0, None), None, None
+        self.waits, self._forgets = True, False  # whether the last call had to read values; whether nothing is kept of them
+
+    def view(self, power):
+        if self.pages is None or self._scaled[0] != power:
+            self.pages, self._scaled = Pages(self.lazy, power, self._forgets), (power, None)
+            self.revision += 1  # memory may come back at the same address
+        volume = self._view_of(self.lazy.shape, self.pages.type)
+        self.pages.set(volume)
+        return volume
+
+    def sampled(self):
+        volume, seen = self.view(0), self._seen
+        volume.values, volume.parts, volume.missing = address(seen.coarse), None, None
+        volume.tiles.values = None
+        volume.dimensions[:] = seen.coarse.shape[::-1]
+        volume.spacing[:], self._sample = self._coarse_places()
+        for own in range(3):
+            volume.coordinates[own] = address(self._sample[own])
+        return volume
+
+    def _coarse_places(self):
+        """Spacing and coordinates of the coarse copy."""
+        steps = self._seen.step[::-1]
+        places = [None if places is None else numpy.ascontiguousarray(places[::step]) for places, step in zip(self.coordinates, steps)]
+        return [step * space for step, space in zip(steps, self.spacing)], places
+
+    def coarse(self):
+        """The Grid of the coarse copy, or None if it is not known yet or shows nothing."""
+        if self._coarse is None and self.spread is not None:
+            spacing, places = self._coarse_places()
+            made = Grid(self._seen.coarse, None, spacing, self.origin, self.world, self.direction, places)
+            made.about, made.earth, made.metres, made.axes = self.about, self.earth, self.metres, self.axes
+            self._coarse = made
+        if self._coarse is not None:
+            self._coarse.matrix, self._coarse.spread, self._coarse.spreads, self._coarse.nothing = self.matrix, self.spread, self.spreads, None
+        return self._coarse
+
+    def modified(self):
+        self.pages = None
+
+    def settle(self, context, caster, progress=None):
+        if self._seen is not None:
+            return
+        try:
+            with self.reading():
+                seen = self._read_all(context, caster, progress)
+        except BaseException:
+            self.pages = self._seen = None
+            raise
+        self.nothing = seen.nothing
+        if not self.nothing:
+            self.spread = seen.spread
+            self.spreads = [self.spread]
+
+    def _read_all(self, context, caster, progress):
+        """Lets the core read all values once, and notes what pictures need to know of them. The core may know their ranges from another process."""
+        seen = self._seen = Seen(self.lazy)
+        volume = self.view(0)
+        self.pages.reader.seen = seen
+        try:
+            context.call(library.stratus_ray_caster_find_ranges, caster, ctypes.byref(volume), progress=progress)
+        except ValueError:  # the core refuses values whose floats are all the same, but values of such magnitudes are scaled later
+            if self.pages.reader.failure is not None or not (seen.low <= seen.high and power_of(max(abs(seen.low), abs(seen.high)))):
+                raise
+        self.pages.reader.seen = None
+        if self.pages.identity and not seen.recall(context, volume) and not self.pages.reads:
+            self._forgets, self.pages = True, None
+            return self._read_all(context, caster, progress)
+        return seen
+
+    @contextlib.contextmanager
+    def reading(self):
+        before = self.pages and self.pages.reads
+        try:
+            yield
+            self.waits = not before or self.pages.reads != before
+        except Exception as error:
+            failure = self.pages and self.pages.reader.failure
+            if not failure:
+                raise
+            self.pages = None  # the next picture tries again
+            raise OSError(f"{self.lazy.what} could not be read: {type(failure).__name__}: {failure}") from failure
+
+
 def _strided(values):
     """Returns values and the distance of two along the fastest axis, in values, of a copy where rows do not follow each other evenly."""
     step, count, size = values.strides[2], values.shape, values.itemsize
@@ -132,8 +253,10 @@ def _axes(axes):
 
 
 def _of_array(array, spacing, origin, axes, coordinates=None):
-    mask = mask_of(array)
-    values = native(array)
+    """The Grid of an array, or of a Lazy one."""
+    lazy = isinstance(array, Lazy)
+    mask = None if lazy else mask_of(array)
+    values = numpy.broadcast_to(numpy.zeros((), array.dtype), array.shape) if lazy else native(array)
     most = c.CONSTANTS["STRATUS_COMPONENTS_MAX"]
     if values.ndim not in (3, 4) or min(values.shape[:3]) < 2 or values.ndim == 4 and not 1 <= values.shape[3] <= most:
         raise ValueError(f"the array's shape is {values.shape}, it must have three axes of at least 2 values, and may have a last one of 1 to {most} "
@@ -146,6 +269,10 @@ def _of_array(array, spacing, origin, axes, coordinates=None):
     origin = numbers((0, 0, 0) if origin is None else origin, 3, "origin")
     if min(spacing) <= 0:
         raise ValueError(f"spacing is {spacing}, each must be above 0")
+    if lazy:
+        places = (None, None, None) if coordinates is None else tuple(coordinates[::-1])
+        world = tuple(worlds[::-1])
+        return LazyGrid(array, [spacing[axis] for axis in world], origin, world, places)
     # The axis along which memory runs fastest is the core's first, whatever the array calls it.
     order = sorted(range(3), key=lambda axis: -values.strides[axis]) if min(values.strides[:3]) > 0 else [0, 1, 2]
     values = values.transpose([*order, 3][:values.ndim])
@@ -156,12 +283,12 @@ def _of_array(array, spacing, origin, axes, coordinates=None):
     return Grid(values, mask, [spacing[axis] for axis in world], origin, world, coordinates=places, own=own)
 
 
-def _of_xarray(data, spacing, origin, axes):
+def _of_xarray(data, spacing, origin, axes, memory, paged):
     """Returns the Grid of a DataArray: attributes and names of its dimensions give the axes, its coordinates the places, and its fill values are
     masked."""
     if axes is None or len(data.dims) != 3:
         axes = space_axes_of(data)
-    values = values_of(data)
+    values = values_of(data, memory, paged)
     coordinates, earth, labels = None, None, None
     own = [coordinate_of(data, name) for name in data.dims]
     if spacing is None and origin is None and all(each is not None for each in own):
@@ -259,7 +386,9 @@ def affine(matrix):
     return own.reshape(-1)
 
 
-def grid_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None):
+def grid_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None, memory=None, paged=False):
+    """The Grid of data. paged: it may be a LazyGrid, whose parts take `memory` bytes."""
+    memory = bytes_of(memory)
     if isinstance(data, Grid):
         return data
     if hasattr(data, "IsA") and hasattr(data, "GetPointData"):
@@ -271,5 +400,7 @@ def grid_of(data, spacing=None, origin=None, axes=None, scalars=None, component=
     if scalars is not None or component is not None:
         raise ValueError("scalars and component choose among the arrays of a VTK data set; an array has none")
     if hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs"):
-        return _of_xarray(data, spacing, origin, axes)
+        return _of_xarray(data, spacing, origin, axes, memory, paged)
+    lazy = lazy_of(data)
+    data = data if lazy is None else opened(lazy, memory, paged)
     return _of_array(data, spacing, origin, "zyx" if axes is None else axes)

@@ -8,6 +8,7 @@ from ._draw import drawn_of
 from ._picture import paint
 from ._values import background_color, number, pixels, positive
 from ._view import _AROUND
+from ._volume import Volume
 
 _REST = 0.3  # seconds without a move after which the full picture is drawn
 _LATE = 150  # milliseconds; older events of the mouse are not drawn: if pictures need more time than events, the last events count
@@ -48,7 +49,12 @@ class View:
         self._listen()
         for slider in self.azimuth, self.elevation, self.zoom:
             slider.observe(lambda change: self._moved(), names="value")
-        self.draw()
+        # Of an array that has to be read, a coarse picture comes first, and the full one as if the view had come to rest.
+        loop = _running_loop()
+        waits = loop is not None and self._waits()
+        self.draw(draft=waits)
+        if waits:
+            self._rest = loop.call_later(_REST, self._rested)
 
     @property
     def camera(self):
@@ -69,9 +75,17 @@ class View:
         if draft:
             size = self._draft_size
             look = dict(look, tolerance=max(self._draft_tolerance, look.get("tolerance") or 0))
-        rendering = self.drawn.render(size=size, camera=self.camera, **look)
+        drawn = self.drawn.draft(look.get("labels")) if draft and isinstance(self.drawn, Volume) else self.drawn
+        rendering = drawn.render(size=size, camera=self.camera, **look)
         self.image.value = paint(rendering.rgba, self.background)._repr_png_()
         self.rendering, self.is_draft, self.message.value = rendering, draft, ""
+
+    def _waits(self):
+        """Whether a full picture would have to read a lazy array, of which a coarse copy is known."""
+        if not isinstance(self.drawn, Volume):
+            return False
+        self.drawn.settle()
+        return self.drawn.draft(self.look.get("labels")) is not self.drawn
 
     def _ipython_display_(self):
         from IPython.display import display
@@ -87,10 +101,7 @@ class View:
         if self._rest is not None:
             self._rest.cancel()
             self._rest = None
-        try:
-            loop = asyncio.get_running_loop()
-        except RuntimeError:
-            loop = None
+        loop = _running_loop()
         if not late or loop is None:
             self._try_to_draw(draft=loop is not None)
         if loop is not None:
@@ -155,6 +166,14 @@ class View:
             self._place(self.azimuth.value, self.elevation.value, self.zoom.value * math.exp(-event.get("deltaY", 0) / 500), late)
 
 
+def _running_loop():
+    """The event loop of a notebook, or None outside of one."""
+    try:
+        return asyncio.get_running_loop()
+    except RuntimeError:
+        return None
+
+
 def _turn(degrees):
     """The same azimuth within -180..180."""
     return (degrees + 180) % 360 - 180
@@ -165,13 +184,13 @@ def _escaped(text):
 
 
 def view(data, opacity=None, color=None, size=(480, 360), camera=None, background=(0.08, 0.1, 0.14), draft=0.5, draft_tolerance=0.02, spacing=None,
-         origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, **options):
+         origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, memory=None, **options):
     """Returns a View: a picture in a notebook that the mouse turns (where ipyevents is installed) and sliders turn. Needs ipywidgets.
 
     camera           dict of azimuth and elevation, in degrees, and zoom, where the view begins
     draft            while the view moves, pictures have this part of the width and height, above 0 and at most 1
     draft_tolerance  while the view moves, pictures have this tolerance, or the look's if it is larger. 0.3 seconds after the last move the
-                     full picture follows
+                     full picture follows. Of a lazy array whose last picture had to read, they show a coarse copy, and so does the first picture
     Everything else is as in `render` and `show`. Structures are built once. A drag turns by half a degree a pixel, the wheel zooms.
 
     The pictures are drawn in the notebook's own process and sent as PNG: no server runs. `show` accepts `view(data).camera`.
@@ -186,7 +205,7 @@ def view(data, opacity=None, color=None, size=(480, 360), camera=None, backgroun
     begins = dict(_AROUND, **{name: number(value, f"camera's {name}") for name, value in (camera or {}).items()})
     if not 0.1 <= begins["zoom"] <= 10**1.5:
         raise ValueError(f"camera's zoom is {begins['zoom']}, a view's must be in 0.1..31.6")
-    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix)
+    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, memory=memory)
     for name in "opaque_depth", "audit":
         if name in options:
             raise TypeError(f"a view has no {name}")

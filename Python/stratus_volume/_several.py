@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Several volumes, and meshes among them, in one picture."""
+import contextlib
 import ctypes
 
 from . import _declarations as c
@@ -9,9 +10,9 @@ from ._draw import drawn_of
 from ._look import Image, Quantities
 from ._tetrahedra import AskedOfCells, Tetrahedra
 from ._values import pixels
-from ._volume import Asked
+from ._volume import Asked, Volume
 
-_DATA = ("spacing", "origin", "axes", "scalars", "component", "matrix")
+_DATA = ("spacing", "origin", "axes", "scalars", "component", "matrix", "memory")
 
 
 def _parted(item, n, device, threads):
@@ -71,7 +72,11 @@ def render_several(items, size=(640, 480), camera=None, opaque_depth=None, devic
         if any(drawn is other for other, _ in parts[:n]):
             raise ValueError(f"item {n} is the same {type(drawn).__name__} as an item before it: make another of the same data")
     numbers = Quantities(quantities, threshold, image)
-    with context.lock:
+    with context.lock, contextlib.ExitStack() as readings:
+        for drawn, _ in parts:
+            if isinstance(drawn, Volume):
+                drawn.settle(progress)
+                readings.enter_context(drawn.grid.reading())
         asked = [_asked(drawn, look, n) for n, (drawn, look) in enumerate(parts)]
         shown = [(drawn, each) for (drawn, _), each in zip(parts, asked) if not _nothing(drawn)]
         reports = (c.stratus_ray_cast_report * len(shown))()

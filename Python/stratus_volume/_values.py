@@ -157,8 +157,9 @@ class Spread:
     it do so by less than that fraction of the range.
     """
 
-    def __init__(self, values):
-        self.low, self.high = float(values.min()), float(values.max())
+    def __init__(self, values, low=None, high=None):
+        """low, high: the range, of which `values` are a sample; by default the range of `values`."""
+        self.low, self.high = float(values.min() if low is None else low), float(values.max() if high is None else high)
         self.common, self.center, self.far = self.low, self.low, 1.0
         if self.low < self.high:
             # Differences of the largest doubles overflow, and differences of the smallest have no digits.

@@ -21,7 +21,10 @@ class Volume:
                   not; an xarray.DataArray of three dimensions; a vtkImageData or vtkRectilinearGrid, pyvista's too. Memory is copied only
                   for float16, the other byte order, masked floats, integers whose masked values are beyond all others, magnitudes outside
                   1e-30..1e37, and arrays whose rows do not follow each other evenly. Masked, NaN and infinite values are transparent.
-                  A fourth axis, the array's last, has 2 to 4 components of each value; a masked or not finite component hides all of them
+                  A fourth axis, the array's last, has 2 to 4 components of each value; a masked or not finite component hides all of them.
+                  Or a lazy array: zarr's, h5py's, netCDF4's, dask's, an xarray.DataArray of any, or what else has a shape, a dtype and slices.
+                  If `memory` is given, or if its three axes need more than half of the memory that is free, then each chunk is read when
+                  a ray first meets it. Otherwise it is read as a whole, or refused by a MemoryError. An exception of the array is an OSError
     spacing       world length between two values along x, y and z, each > 0; default 1, 1, 1
     origin        position of the first value: x, y, z; default 0, 0, 0
     axes          order of the array's first three axes: "zyx" (default) is array[z, y, x], "xyz" array[x, y, z]
@@ -31,6 +34,8 @@ class Volume:
     threads       number of threads on the host, 1..1024; default: as many as OpenMP offers
     matrix        (4, 4) affine, row by row, which may turn, stretch, mirror, shear and move the volume in the world, after spacing and
                   origin; default: none
+    memory        bytes of memory, 16e6 to 1e15, or a text such as "512M" or "2G" (K, M, G, T of 1024), that the values of lazy arrays take at most,
+                  with what is built of them: of all in the process together, as the last one given says. Default: half of what is free
     exaggerate    factor of heights z of an xarray.DataArray on the Earth (see below), above 0. Default: if there is no matrix, and the data are
                   lower than a tenth of their width, the factor that makes them a fifth as high as wide, otherwise 1
 
@@ -40,8 +45,8 @@ class Volume:
     """
 
     def __init__(self, data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None,
-                 exaggerate=None):
-        self.grid = grid_of(data, spacing, origin, axes, scalars, component)
+                 exaggerate=None, memory=None):
+        self.grid = grid_of(data, spacing, origin, axes, scalars, component, memory, True)
         of_xarray = hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs")
         self._named = (getattr(data, "name", None), data.attrs.get("units")) if of_xarray else None
         dims = None
@@ -49,6 +54,7 @@ class Volume:
             dims = [data.dims[own] for _, own in sorted(zip(self.grid.world, self.grid.own))]
         self._place(matrix)
         self._turned = matrix is not None  # by the caller
+        self._draft = None
         self.context = context_of(device, threads)
         self.exaggeration = self._exaggerate(exaggerate)
         if self.exaggeration != 1.0:
@@ -80,7 +86,24 @@ class Volume:
 
     def modified(self):
         """Call it after values changed in place: the next picture reads them again. Values of a copy stay as they were copied."""
-        self.grid.revision += 1
+        self.grid.modified()
+
+    def draft(self, labels=None):
+        """A Volume that may be drawn while a view moves: of a lazy array whose last picture had to read values, its coarse copy; otherwise this
+        one. Labels have as many values as the array, so that the copy cannot have them."""
+        coarse = self.grid.coarse() if labels is None and self.grid.waits else None
+        if coarse is None:
+            return self
+        if self._draft is None:
+            self._draft = Volume(coarse, device=self.context)
+            self._draft._named, self._draft.exaggeration, self._draft._turned = self._named, self.exaggeration, self._turned
+        self.grid.coarse()  # which has this one's matrix
+        return self._draft
+
+    def settle(self, progress=None):
+        """Finds what pictures need to know of all values, of lazy arrays by reading them."""
+        with self.context.lock, self.grid.reading():
+            self.grid.settle(self.context, self._caster.pointer, progress)
 
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", interpolation="linear",
                structure="auto", sampling="auto", sample_distance=0, tolerance=None, shade=False, gradient_opacity=None, contours=None, crop=None,
@@ -92,7 +115,8 @@ class Volume:
         image, report = Image(size, opaque_depth), c.stratus_ray_cast_report()
         numbers = Quantities(quantities, threshold, image, self._units)
         around = Annotation(show_axes, color_bar, caption, coast, ink)
-        with self.context.lock:
+        with self.context.lock, self.grid.reading():
+            self.settle(progress)
             asked = Asked(self, opacity, color, unit_distance, mode, interpolation, structure, sampling, sample_distance, tolerance, shade,
                           gradient_opacity, contours, crop, clip_planes, average_range, jitter, audit, dependent, weights, mean_components, labels,
                           looks, function_2d, surface)
@@ -173,7 +197,7 @@ class Asked:
             return
         self._automatic = opacity is None or is_number(opacity)
         if opacity is None and self._is_guessed(mode, looks, function_2d):
-            opacity, colors, own_unit = _earth.functions(drawn.context, grid.about, grid.view(0), grid.world.index(2))
+            opacity, colors, own_unit = _earth.functions(drawn.context, grid.about, grid.sampled(), grid.world.index(2))
             color, unit_distance = colors if color is None else color, own_unit if unit_distance is None else unit_distance
         wanted = self._wanted = functions_of(grid, opacity, color, gradient_opacity, weights, dependent, looks)
         own = [point for each in wanted for point in own_points(each.opacity) or ()]

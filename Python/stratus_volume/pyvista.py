@@ -20,7 +20,8 @@ import pyvista.plotting.volume
 
 from . import _declarations as c
 from ._core import Unsupported
-from ._grid import of_package
+from ._grid import LazyGrid, of_package
+from ._lazy import lazy_of
 from ._picture import paint
 from ._several import render_several
 from ._tetrahedra import Tetrahedra
@@ -38,6 +39,7 @@ _COMPONENTS = hasattr(pyvista, "register_plotter_component")
 _BLENDINGS = ("composite", "maximum", "minimum", "average", "additive", "isosurface", "slice")
 _MAPPERS = ("fixed_point", "gpu", "open_gl", "smart", "ugrid")
 _BLOCKS = ("Reds", "Greens", "Blues", "Greys", "Oranges", "Purples")
+_MOVES = 1.0  # frames in a second; a window that wants more is in the midst of an interaction
 _SHADING = ("ambient", "diffuse", "specular", "specular_power")
 
 
@@ -172,8 +174,10 @@ class _Layer:
         renderer.GetRenderWindow().GetZbufferData(x, y, x + size[0] - 1, y + size[1] - 1, depths)
         opaque = numpy.clip(numpy_support.vtk_to_numpy(depths).reshape(size[1], size[0]), 0, 1)[::-1]
         view = core_camera(renderer.GetActiveCamera(), renderer.GetTiledAspectRatio())
+        moves = renderer.GetRenderWindow().GetDesiredUpdateRate() >= _MOVES
         for volume in shown:
             volume.place()
+            volume.shown = volume.drawn.draft(volume.look.get("labels")) if moves and isinstance(volume.drawn, Volume) else volume.drawn
         with warnings.catch_warnings():
             if self._warned:  # once is enough: frames follow each other
                 warnings.simplefilter("ignore")
@@ -188,7 +192,7 @@ class _Layer:
         if len(shown) > c.CONSTANTS["STRATUS_SEVERAL_MAX"] or any(volume.asked()["mode"] != "composite" for volume in shown):
             return None
         try:
-            rendering = render_several([(volume.drawn, volume.asked()) for volume in shown], size=size, camera=view, opaque_depth=opaque)
+            rendering = render_several([(volume.shown, volume.asked()) for volume in shown], size=size, camera=view, opaque_depth=opaque)
         except (Unsupported, ValueError, TypeError):  # a volume's fault is reported when it is drawn by itself
             return None
         for volume, counters in zip(shown, rendering.counters["items"]):
@@ -205,7 +209,7 @@ class _Layer:
             return away @ numpy.array(view.forward) if view.parallel else numpy.linalg.norm(away)
         result = None
         for volume in sorted(shown, key=distance):
-            rendering = volume.drawn.render(size=size, camera=view, opaque_depth=opaque, **volume.asked())
+            rendering = volume.shown.render(size=size, camera=view, opaque_depth=opaque, **volume.asked())
             volume.counters = rendering.counters
             result = rendering.rgba if result is None else result + (1 - result[..., 3:]) * rendering.rgba
         return result
@@ -217,8 +221,9 @@ class StratusVolume(pyvista.plotting.volume.Volume):
     take precedence. `remove` removes it, `visibility` hides it, `counters` are the last frame's.
     """
 
-    # pyvista's classes refuse attributes that they do not know. title: of the scalar bar; called: the name that was given
-    drawn, look, counters, plotter, renderer, title, called, _layer, _box, _base, _known, _words, _kept = (None,) * 13
+    # pyvista's classes refuse attributes that they do not know. title: of the scalar bar; called: the name that was given; shown: what the frame
+    # draws, a coarse copy of a lazy array while the camera moves
+    drawn, shown, look, counters, plotter, renderer, title, called, _layer, _box, _base, _known, _words, _kept = (None,) * 14
 
     def __init__(self, plotter, drawn, mapper, prop, look, user_matrix=None):
         super().__init__()
@@ -408,13 +413,14 @@ def _grid(volume, scalars, preference, place):
 def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacity="linear", n_colors=256, cmap=None, flip_scalars=False,
                reset_camera=None, name=None, ambient=None, categories=False, culling=False, multi_colors=False, blending="composite", mapper=None,
                scalar_bar_args=None, show_scalar_bar=None, annotations=None, pickable=True, preference="point", opacity_unit_distance=None, shade=False,
-               diffuse=0.7, specular=0.2, specular_power=10.0, render=True, user_matrix=None, log_scale=False, device=None, threads=None, **options):
+               diffuse=0.7, specular=0.2, specular_power=10.0, render=True, user_matrix=None, log_scale=False, device=None, threads=None, memory=None,
+               **options):
     """Adds a volume to a plotter's scene and returns a StratusVolume, or for a MultiBlock a list with one for each block. The arguments have the
     names of pyvista's own add_volume. Values between others are interpolated linearly by default, for which pyvista's own volumes need
     `prop.interpolation_type = "linear"`; values of cells are drawn as such. Several volumes of a renderer mix along its rays.
 
-    volume    array (nx, ny, nz), as pyvista's own add_volume accepts it; or ImageData, RectilinearGrid, UnstructuredGrid, StructuredGrid, or a
-              MultiBlock of these; or a Volume or Tetrahedra
+    volume    array (nx, ny, nz), as pyvista's own add_volume accepts it, or a lazy one; an xarray.DataArray; ImageData, RectilinearGrid,
+              UnstructuredGrid, StructuredGrid, or a MultiBlock of these; or a Volume or Tetrahedra
     scalars   name of the array of a grid, or an array with one for each point or cell, or (n, 4) bytes: red, green, blue and opacity; default: the
               active one. preference: "point" or "cell", where a name or a length fits both
     clim      least and greatest value of opacity and colours; one number c means (-c, c); default: the values' own
@@ -429,6 +435,7 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
     user_matrix  (4, 4), the last transformation into the world
     reset_camera, render, show_scalar_bar, scalar_bar_args  as pyvista's
     mapper, culling, pickable  are accepted and change nothing: the mapper is Stratus, it has no faces, and picking does not see it
+    memory    of lazy arrays, as in `stratus_volume.Volume`
     device, threads, and all other options of `stratus_volume.render`: tolerance, crop, clip_planes, contours, progress and so on
     """
     clim, cmap = options.pop("rng", clim), options.pop("colormap", cmap)
@@ -456,6 +463,12 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
     elif isinstance(volume, numpy.ndarray) and scalars is None:
         spacing = None if resolution is None else numbers(resolution, 3, "resolution")
         drawn, values = Volume(volume, axes="xyz", spacing=spacing, **place), volume
+    elif scalars is None and lazy_of(volume) is not None:
+        spacing = None if resolution is None else numbers(resolution, 3, "resolution")
+        labelled = hasattr(volume, "dims") and hasattr(volume, "coords")
+        drawn = Volume(volume, axes=None if labelled else "xyz", spacing=spacing, memory=memory, **place)
+        drawn.settle(options.get("progress"))
+        values, title = None if isinstance(drawn.grid, LazyGrid) else drawn.grid.values, getattr(volume, "name", None) if labelled else None
     else:
         if isinstance(volume, numpy.ndarray):  # its scalars are distinguished from it
             volume = pyvista.wrap(volume)

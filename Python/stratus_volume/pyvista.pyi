@@ -4,7 +4,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from . import Tetrahedra, Volume, _Device
+from . import Tetrahedra, Volume, _Device, _Memory
 
 class StratusVolume:  # and a pyvista.plotting.volume.Volume
     drawn: Volume | Tetrahedra
@@ -31,4 +31,4 @@ def add_volume(
     show_scalar_bar: bool | None = ..., annotations: dict[float, str] | None = ..., pickable: bool = ..., preference: str = ...,
     opacity_unit_distance: float | None = ..., shade: bool = ..., diffuse: float = ..., specular: float = ..., specular_power: float = ...,
     render: bool = ..., user_matrix: Any = ..., log_scale: bool = ..., device: _Device = ..., threads: int | None = ...,
-    **options: Any) -> Any: ...
+    memory: _Memory = ..., **options: Any) -> Any: ...

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What tests of the Python packages check by. Imported first, it skips a script where NumPy is missing. A script ends by done(), with status 1
 if anything did not hold."""
+import itertools
 import sys
+import threading
 
 try:
     import numpy
@@ -35,6 +37,31 @@ def ball(shape, center, radius, dtype=numpy.float32):
     z, y, x = numpy.ogrid[tuple(slice(0, n) for n in shape)]
     square = (z - center[0]) ** 2 + (y - center[1]) ** 2 + (x - center[2]) ** 2
     return numpy.maximum(0, 1 - square / radius**2).astype(dtype)
+
+
+class Chunks:
+    """A lazy array, which counts the chunks that its slices touch."""
+
+    def __init__(self, values, chunks=None):
+        self.values, self.shape, self.dtype = values, values.shape, values.dtype
+        if chunks is not None:
+            self.chunks = chunks
+        self.boxes, self.counts, self.lock = [], {}, threading.Lock()
+
+    def __getitem__(self, box):
+        if box is Ellipsis:
+            box = tuple(slice(0, n) for n in self.shape)
+        chunks = getattr(self, "chunks", None)
+        with self.lock:
+            self.boxes.append(box)
+            if chunks:
+                touched = [range(each.start // chunk, (each.stop - 1) // chunk + 1) for each, chunk in zip(box, chunks)]
+                for key in itertools.product(*touched):
+                    self.counts[key] = self.counts.get(key, 0) + 1
+        return self.part(box)
+
+    def part(self, box):
+        return self.values[box]
 
 
 def errors_of(thing):

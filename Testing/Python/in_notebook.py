@@ -4,7 +4,7 @@ runs it where ipywidgets and ipyevents are installed."""
 import asyncio
 import sys
 
-from checking import ball, check, done, refuse
+from checking import Chunks, ball, check, done, refuse
 
 from stratus_volume import Volume, show, view
 from stratus_volume._notebook import View
@@ -83,6 +83,14 @@ async def while_it_moves():
     check(not own.is_draft and same(own, own.camera), "and the full picture is the last one's")
 
 
+async def lazily():
+    own = view(Chunks(field, (8, 8, 8)), memory="16M", **host)
+    check(own.is_draft, "a coarse picture comes before the values are read")
+    await asyncio.sleep(0.5)
+    check(not own.is_draft and same(own, own.camera), "and the full one follows by itself")
+    check(not view(Chunks(field, (8, 8, 8)), **host).is_draft, "values in memory have a full picture at once")
+
+
 def refusals():
     for words, options in [("draft", dict(draft=0)), ("draft_tolerance", dict(draft_tolerance=-1)), ("camera", dict(camera=dict(position=(1, 2, 3)))),
                            ("zoom", dict(camera=dict(zoom=100))), ("size", dict(size=(0, 1))), ("mode", dict(mode="glow")),
@@ -99,5 +107,6 @@ def refusals():
 
 by_sliders()
 asyncio.run(while_it_moves())
+asyncio.run(lazily())
 refusals()
 done()

@@ -4,7 +4,7 @@ import gc
 import warnings
 import weakref
 
-from checking import check, done, refuse
+from checking import Chunks, check, done, refuse
 
 import numpy
 import pyvista
@@ -231,6 +231,25 @@ def data():
         plotter.close()
 
 
+def lazily():
+    """A lazy array, which moves as a coarse copy, and an xarray.DataArray's kind of array as the array in memory."""
+    values, pictures = numpy.ascontiguousarray(field), []
+    for data, more in (values, {}), (Chunks(values, (8, 9, 10)), dict(memory="16M")):
+        plotter = pyvista.Plotter(off_screen=True, window_size=(120, 90))
+        volume = plotter.stratus.add_volume(data, show_scalar_bar=False, opacity="sigmoid_5", **more)
+        pictures.append(plotter.screenshot(return_img=True))
+        check(volume.shown is volume.drawn, "a still picture is exact")
+        volume.drawn.grid.waits = bool(more)
+        plotter.render_window.SetDesiredUpdateRate(15)
+        plotter.render()
+        check((volume.shown is not volume.drawn) == bool(more), "a moving one is of a coarse copy if values would have to be read")
+        plotter.render_window.SetDesiredUpdateRate(0.0001)
+        plotter.render()
+        check(volume.shown is volume.drawn, "which is exact once it rests")
+        plotter.close()
+    check(numpy.array_equal(*pictures), "a lazy array")
+
+
 beside_vtk()
 composited()
 lives()
@@ -240,4 +259,5 @@ reacts()
 several()
 named_colors()
 data()
+lazily()
 done()
