@@ -108,7 +108,7 @@ static void measure(stratus_context* context, const char* name, picture* p)
     ms[frame] = draw(p, frame);
   }
   qsort(ms, (size_t)frames, sizeof *ms, ascending);
-  const bool host = strcmp(stratus_context_device(context), "host") == 0;
+  const bool host = strncmp(stratus_context_device(context), "host", 4) == 0; /* "host (AVX2, 8 threads)" */
   if (host) {
     memcpy(of_host, rgba, 4 * (size_t)size * (size_t)size * sizeof *rgba);
   }
@@ -118,8 +118,8 @@ static void measure(stratus_context* context, const char* name, picture* p)
       largest = fmax(largest, fabs((double)rgba[4 * i + c] - (double)of_host[4 * i + c]));
     }
   }
-  printf("%s,%s,%s,%s,%.2f,%.3f,%lld,%.3g\n", name, looks[p->look].name, stratus_context_device(context), p->where, first, ms[frames / 2],
-    (long long)differing, largest);
+  printf("%s,%s,\"%s\",\"%s\",%.2f,%.3f,%lld,%.3g\n", name, looks[p->look].name, stratus_context_device(context), p->where, first,
+    ms[frames / 2], (long long)differing, largest);
   fflush(stdout);
   stratus_ray_caster_destroy(p->caster);
   stratus_tetra_caster_destroy(p->tetra_caster);
