@@ -90,9 +90,9 @@ public:
 
   //@{
   /**
-   * Get what the last picture took on this rank: numbers of all blocks together, and how the first block was drawn. Held cells are those of
-   * the data in this rank's memory, with cells around its part. Milliseconds are for casting rays. The sample distance is 0 where rays
-   * go from cell to cell, which takes no step.
+   * Get what the last picture took on this rank: numbers of all blocks together, and how the first block was drawn. Held cells are
+   * the data's cells in this rank's memory, with cells around its part. Milliseconds are for casting rays. The sample distance is 0 where
+   * rays go from cell to cell, which takes no step.
    */
   double GetHeldCells();
   double GetSamplesTaken();

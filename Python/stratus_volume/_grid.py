@@ -49,7 +49,7 @@ class Grid:
 
     def _place(self, spacing, origin, world, direction, coordinates, cell_centered, own):
         self.own, self.matrix = own, None
-        # Of an xarray.DataArray: what it says of its variable, whether its places are on the Earth, and the metres of their unit.
+        # Of an xarray.DataArray: the attributes of its variable, whether its places are on the Earth, and the metres of their unit.
         self.about, self.earth, self.metres = None, False, None
         self.axes = None  # three Axis; None: places are the numbers
         self.world, self.cell_centered = world, cell_centered

@@ -33,7 +33,7 @@ def escaped(text):
 def listed(lines, entry):
     """Return Markdown of a text whose entries have a name and, from a column on, what it means. entry: matches an entry's first line.
     Lines that are indented further than names continue the entry; other lines are paragraphs."""
-    result, open_entry = [], ""  # open_entry: what continues the entry, a fence of Markdown or an indentation
+    result, open_entry = [], ""  # open_entry: a fence of Markdown or an indentation, which continues the entry
     for line in lines:
         found = entry.match(line)
         if found:
