@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "camera.h"
 
+#include "vtkBoundingBox.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -97,7 +99,8 @@ stratus_camera place_camera(const context& core, const options& o, const stratus
 stratus_camera place_camera(const context& core, const options& o, const std::vector<shown_volume>& shown, int up, const double* room)
 {
   const double degree = std::acos(-1.0) / 180.0;
-  double bounds[6] = { HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL };
+  vtkBoundingBox box;
+  double bounds[6];
   double focal[3];
   double half[3];
   double eye[3];
@@ -108,10 +111,9 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
     } else {
       shown_bounds(core, *one.volume, one.transfer, own);
     }
-    for (int side = 0; side < 6; ++side) {
-      bounds[side] = side % 2 ? std::max(bounds[side], own[side]) : std::min(bounds[side], own[side]);
-    }
+    box.AddBounds(own);
   }
+  box.GetBounds(bounds);
   for (int a = 0; a < 3; ++a) {
     focal[a] = 0.5 * (bounds[2 * a] + bounds[2 * a + 1]);
     half[a] = 0.5 * (bounds[2 * a + 1] - bounds[2 * a]);

@@ -16,13 +16,13 @@
 #include "transfer.h"
 #include "tree.h"
 
+#include <vtkBoundingBox.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkLogger.h>
 #include <vtkPointData.h>
 #include <vtkVersion.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -54,16 +54,16 @@ void print_volume(
 {
   cli::look_input all;
   all.volumes.push_back(in.volume);
-  double bounds[6];
-  core.check(stratus_volume_bounds(core, &in.volume, bounds), "bounds");
   for (const auto& block : blocks) {
-    double own[6];
-    core.check(stratus_volume_bounds(core, &block->volume, own), "bounds");
-    for (int side = 0; side < 6; ++side) {
-      bounds[side] = side % 2 ? std::max(bounds[side], own[side]) : std::min(bounds[side], own[side]);
-    }
     all.volumes.push_back(block->volume);
   }
+  vtkBoundingBox box;
+  double bounds[6];
+  for (const stratus_volume& volume : all.volumes) {
+    core.check(stratus_volume_bounds(core, &volume, bounds), "bounds");
+    box.AddBounds(bounds);
+  }
+  box.GetBounds(bounds);
   const stratus_look_values h = cli::count_values(core, all);
   row("volume", (blocks.empty() ? "" : "the first block of ") + cli::describe(in.volume));
   row("origin", cli::format("%.10g %.10g %.10g", in.volume.origin[0], in.volume.origin[1], in.volume.origin[2]),

@@ -6,6 +6,8 @@
 #include "input.h"
 #include "mesh.h"
 
+#include "vtkBoundingBox.h"
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -163,14 +165,13 @@ cli::scene_frame several_drawing::place() const
 {
   cli::scene_frame frame;
   frame.camera = this->Camera;
+  vtkBoundingBox box;
   for (const member& one : this->Members) {
     double own[6];
     this->Core.check(stratus_volume_bounds(this->Core, &one.shape(), own), "bounds");
-    for (int side = 0; side < 6; ++side) {
-      const bool nearer = side % 2 ? own[side] > frame.bounds[side] : own[side] < frame.bounds[side];
-      frame.bounds[side] = &one == &this->Members[0] || nearer ? own[side] : frame.bounds[side];
-    }
+    box.AddBounds(own);
   }
+  box.GetBounds(frame.bounds);
   frame.scale[this->Up] = this->Options.exaggeration;
   frame.title = this->Members[0].array_name();
   return frame;

@@ -8,6 +8,8 @@
 
 #include "vtkStratusAMR.h"
 
+#include "vtkBoundingBox.h"
+
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -139,14 +141,13 @@ cli::scene_frame volume_drawing::place() const
 {
   cli::scene_frame frame;
   frame.camera = this->Camera;
-  this->Core.check(stratus_volume_bounds(this->Core, &this->Input->volume, frame.bounds), "bounds");
+  vtkBoundingBox box;
   for (const stratus_volume* volume : this->all()) {
     double own[6];
     this->Core.check(stratus_volume_bounds(this->Core, volume, own), "bounds");
-    for (int side = 0; side < 6; ++side) {
-      frame.bounds[side] = side % 2 ? std::max(frame.bounds[side], own[side]) : std::min(frame.bounds[side], own[side]);
-    }
+    box.AddBounds(own);
   }
+  box.GetBounds(frame.bounds);
   frame.scale[this->Up] = this->Options.exaggeration;
   frame.title = this->Input->array_name;
   return frame;
