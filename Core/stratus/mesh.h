@@ -29,6 +29,9 @@ typedef struct stratus_mesh {
   const uint8_t* labels;
   double matrix[16]; /* row-major affine: world = matrix * local; default identity; mirror and shear allowed */
   uint64_t revision; /* the caller raises it when anything changes under the same pointers. Default 0. */
+  /* The caller's number of the points, vertices and lattice. A caster takes them for the same in all meshes with the same number, under any
+   * pointers, and need not compare them. Default 0: not known, so that the caster reads all of them when another mesh comes. */
+  uint64_t geometry;
   /* A lattice. lattice: number of points along i, j and k, each at least 2, points[(k*nj + j)*ni + i]. Default 0, 0, 0: cells are listed in
    * `vertices`. In a lattice vertices is NULL, and cells, their values and flags are hexahedra, cell[(k*(nj-1) + j)*(ni-1) + i]. Each
    * hexahedron consists of six tetrahedra, one for each path along three edges from its first corner to its last. Neighbours divide their
@@ -40,7 +43,7 @@ typedef struct stratus_mesh {
   /* Several lattices as one mesh. Rays pass from one to the next where a face of both has the same corners and the same diagonal. Each
    * block is a view of a lattice, with values of the mesh's type, components and cell_values; its matrix and revision are not read. The
    * mesh's point_count and cell_count are the sums over its blocks. Its points, float_points, vertices, values, hidden and labels are NULL,
-   * its lattice is 0, and its value_stride is not read. Default NULL, 0. Only casters accept blocks. */
+   * its lattice is 0, and its value_stride and geometry are not read. Default NULL, 0. Only casters accept blocks. */
   const struct stratus_mesh* blocks;
   int block_count;
 } stratus_mesh;

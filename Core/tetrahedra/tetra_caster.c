@@ -53,6 +53,7 @@ static void drop_mesh(stratus_tetra_caster* caster)
   caster->device = NULL;
   stratus_tetra_projector_destroy(caster->projector);
   caster->projector = NULL;
+  caster->buffers.placed = caster->buffers.binned = false;
   stratus_tetra_mesh_destroy(caster->mesh);
   caster->mesh = NULL;
 }

@@ -42,7 +42,7 @@ struct stratus_tetra_mesh {
   double bias;
   int64_t cell_count, point_count; /* of lattices also the numbers of no point */
   int64_t shown_cells, blanked, repeated, flat, inverted, broken, folded;
-  uint64_t geometry; /* hash of points and vertices */
+  uint64_t geometry, identity; /* hash of points and vertices; stratus_tetra_identity() */
   size_t bytes;
 };
 
@@ -155,12 +155,14 @@ stratus_status stratus_tetra_caster_enter(stratus_tetra_caster* caster, stratus_
 /* tetra_mesh.c. The mesh passed stratus_mesh_check() and has values. The hash covers the data from which neighbours, planes and orders
  * follow. */
 uint64_t stratus_tetra_hash(const stratus_context* context, const stratus_mesh* mesh);
+/* The caller's numbers of these data, of all blocks. 0: not known. */
+uint64_t stratus_tetra_identity(const stratus_mesh* mesh);
 stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus_mesh* mesh, stratus_tetra_mesh** out);
 void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
 /* Gives the local bounds of all finite coordinates of a mesh, or of its blocks. Returns false if an axis has none. */
 bool stratus_tetra_box(const stratus_mesh* mesh, double lo[3], double hi[3]);
 /* Whether the mesh has the content in points and vertices, not merely the pointers, that `tetra` was made from. */
-bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh);
+bool stratus_tetra_mesh_fits(stratus_tetra_mesh* tetra, const stratus_mesh* mesh);
 /* Takes other values of a mesh that fits. *taken false: other cells show by them, so that the borders differ; then nothing has changed. */
 stratus_status stratus_tetra_mesh_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken);
 /* Whether a cell is drawn: it is not hidden, names four different points, and its values are finite. range: their least and greatest.

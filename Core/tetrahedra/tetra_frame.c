@@ -51,6 +51,7 @@ void stratus_tetra_buffers_release(stratus_context* context, stratus_tetra_buffe
     stratus_release(context, all[i]->memory);
     *all[i] = (stratus_tetra_buffer){ 0 };
   }
+  buffers->placed = buffers->binned = false;
 }
 
 /* Returns the component of a parallel camera's right or up along forward, in units of forward. Rounding errors of a right angle give 0. */
@@ -170,6 +171,11 @@ static stratus_status find_scale(frame_build* build)
   return STRATUS_OK;
 }
 
+static inline float shown_value(float value)
+{
+  return isfinite(value) ? value : 0.0f;
+}
+
 static void place_point(const frame_build* build, const double at[3], float value, float point[4])
 {
   const double scale = build->scale, lateral = build->frame->camera.parallel ? 1.0 : scale;
@@ -178,7 +184,27 @@ static void place_point(const frame_build* build, const double at[3], float valu
   point[0] = (float)(p[0] * lateral);
   point[1] = (float)(p[1] * lateral);
   point[2] = (float)((p[2] - build->frame->middle) * scale);
-  point[3] = isfinite(value) ? value : 0.0f;
+  point[3] = shown_value(value);
+}
+
+/* Stores other values of points that stay where they are. */
+static void store_values(const frame_build* build, stratus_tetra_buffers* buffers)
+{
+  const stratus_tetra_mesh* tetra = build->tetra;
+  float *points = buffers->points.memory, *places = buffers->places.memory;
+  const int parts = tetra->names ? 1 : tetra->lattices;
+  for (int part = 0; part < parts; ++part) { /* not the numbers of no point, between lattices */
+    const int64_t first = tetra->names ? 0 : tetra->first[part];
+    const int64_t beyond = tetra->names ? tetra->point_count : first + stratus_mesh_part(build->mesh, part)->point_count;
+#pragma omp parallel for num_threads(build->context->threads)
+    for (int64_t i = first; i < beyond; ++i) {
+      const float value = tetra->values ? shown_value(tetra->values[i]) : 0.0f;
+      if (tetra->names) {
+        points[4 * i + 3] = value;
+      }
+      places[4 * (tetra->names ? (int64_t)tetra->names[i] : i) + 3] = value;
+    }
+  }
 }
 
 /* The points of lattices keep their order. No cell that shows has a point beyond the bounds, but floats cannot hold all of those. */
@@ -201,16 +227,12 @@ static stratus_status place_lattices(frame_build* build, stratus_tetra_buffers* 
     }
     memset(places + 4 * beyond, 0, (size_t)(tetra->first[part + 1] - beyond) * 4 * sizeof *places); /* numbers of no point */
   }
-  build->frame->places = places;
   return STRATUS_OK;
 }
 
-static stratus_status place_points(frame_build* build, stratus_tetra_buffers* buffers)
+static stratus_status place_listed(frame_build* build, stratus_tetra_buffers* buffers)
 {
   const stratus_mesh* mesh = build->mesh;
-  if (!build->tetra->names) {
-    return place_lattices(build, buffers);
-  }
   TRY(stratus_tetra_reserve(build->context, &buffers->points, (size_t)mesh->point_count, 4 * sizeof(float)));
   TRY(stratus_tetra_reserve(build->context, &buffers->places, (size_t)mesh->point_count, 4 * sizeof(float)));
   float *points = buffers->points.memory, *places = buffers->places.memory;
@@ -220,8 +242,36 @@ static stratus_status place_points(frame_build* build, stratus_tetra_buffers* bu
     place_point(build, mesh->points + 3 * i, values ? values[i] : 0.0f, points + 4 * i);
     memcpy(places + 4 * (size_t)build->tetra->names[i], points + 4 * i, 4 * sizeof *points);
   }
-  build->frame->points = points;
-  build->frame->places = places;
+  return STRATUS_OK;
+}
+
+/* Whether points stay where the frame before has them, whose mesh is the same; faces then do as well. */
+static bool stays_placed(const frame_build* build, stratus_tetra_buffers* buffers)
+{
+  const stratus_image* image = &build->frame->image;
+  stratus_tetra_placement now = { .scale = build->scale, .middle = build->frame->middle, .parallel = build->frame->camera.parallel };
+  stratus_tetra_placement* before = &buffers->placement;
+  memcpy(now.matrix, build->matrix, sizeof now.matrix);
+  now.width = image->width;
+  now.height = image->height;
+  const bool stays = buffers->placed && memcmp(before->matrix, now.matrix, sizeof now.matrix) == 0 && before->scale == now.scale &&
+    before->middle == now.middle && before->parallel == now.parallel;
+  buffers->placed = stays;
+  buffers->binned = stays && buffers->binned && before->width == now.width && before->height == now.height;
+  *before = now;
+  return stays;
+}
+
+static stratus_status place_points(frame_build* build, stratus_tetra_buffers* buffers)
+{
+  if (stays_placed(build, buffers)) {
+    store_values(build, buffers);
+  } else {
+    TRY((build->tetra->names ? place_listed : place_lattices)(build, buffers));
+    buffers->placed = true;
+  }
+  build->frame->points = build->tetra->names ? buffers->points.memory : NULL;
+  build->frame->places = buffers->places.memory;
   return STRATUS_OK;
 }
 
@@ -387,17 +437,15 @@ static uint64_t deal_face(const frame_build* build, size_t i, uint32_t* begin, i
   return count;
 }
 
-static stratus_status bin_faces(frame_build* build, stratus_tetra_buffers* buffers)
+static stratus_status find_bins(frame_build* build, stratus_tetra_buffers* buffers)
 {
-  stratus_tetra_frame* frame = build->frame;
+  const stratus_tetra_frame* frame = build->frame;
   const size_t count = build->tetra->face_count, tiles = (size_t)frame->columns * (size_t)frame->rows;
   TRY(stratus_tetra_reserve(build->context, &buffers->faces, count, sizeof(stratus_tetra_border_face)));
   TRY(stratus_tetra_reserve(build->context, &buffers->bin_begin, tiles + 1, sizeof(uint32_t)));
   stratus_tetra_border_face* faces = buffers->faces.memory;
   uint32_t* begin = buffers->bin_begin.memory;
   build->faces = faces;
-  frame->faces = faces;
-  frame->face_count = count;
 #pragma omp parallel for num_threads(build->context->threads)
   for (size_t i = 0; i < count; ++i) {
     const stratus_tetra_face* face = build->tetra->faces + i;
@@ -430,8 +478,19 @@ static stratus_status bin_faces(frame_build* build, stratus_tetra_buffers* buffe
   }
   memmove(begin + 1, begin, tiles * sizeof *begin); /* each begin has advanced to its bin's end, the next bin's begin */
   begin[0] = 0;
-  frame->bin_begin = begin;
-  frame->bins = buffers->bins.memory;
+  buffers->binned = true;
+  return STRATUS_OK;
+}
+
+static stratus_status bin_faces(frame_build* build, stratus_tetra_buffers* buffers)
+{
+  if (!buffers->binned) {
+    TRY(find_bins(build, buffers));
+  }
+  build->frame->faces = buffers->faces.memory;
+  build->frame->face_count = build->tetra->face_count;
+  build->frame->bin_begin = buffers->bin_begin.memory;
+  build->frame->bins = buffers->bins.memory;
   return STRATUS_OK;
 }
 

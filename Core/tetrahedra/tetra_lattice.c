@@ -112,8 +112,9 @@ bool stratus_lattice_shows(const stratus_mesh* mesh, const int64_t corner[8], in
   return shows;
 }
 
-/* Whether the hexahedron shows, by flags and coordinates and by its values. range: their least and greatest. */
-static bool shows(const lattice_build* b, int64_t first, int64_t cell, float range[2])
+/* Whether the hexahedron shows, by its values and by flags and coordinates. before: it showed with other values, and so by its coordinates.
+ * range: least and greatest of its values. */
+static bool shows(const lattice_build* b, int64_t first, int64_t cell, bool before, float range[2])
 {
   range[0] = INFINITY;
   range[1] = -INFINITY;
@@ -122,10 +123,10 @@ static bool shows(const lattice_build* b, int64_t first, int64_t cell, float ran
     if (!isfinite(value)) {
       return false;
     }
-    range[0] = fminf(range[0], value);
-    range[1] = fmaxf(range[1], value);
+    range[0] = value < range[0] ? value : range[0];
+    range[1] = value > range[1] ? value : range[1];
   }
-  return stratus_lattice_shows(b->mesh, b->corner, first, cell);
+  return before ? !(b->mesh->hidden && b->mesh->hidden[cell]) : stratus_lattice_shows(b->mesh, b->corner, first, cell);
 }
 
 /* Fetch a value for each point. Values of cells are stored at their first corners. */
@@ -159,19 +160,20 @@ static void find_shown(lattice_build* b, const uint32_t* before, lattice_counts*
 #pragma omp parallel for num_threads(threads) reduction(+ : shown, hidden, changed) reduction(min : low) reduction(max : high)
   for (int64_t word = 0; word < b->words; ++word) {
     lattice_place at = place_of(mesh, WORD * word);
+    const uint32_t known = before ? before[b->first / WORD + word] : 0;
     uint32_t bits = 0;
     for (int bit = 0; bit < WORD && at.point < mesh->point_count; ++bit, next_place(mesh, &at)) {
       const int64_t cell = hexahedron_at(mesh, &at);
       float range[2];
       hidden += cell >= 0 && mesh->hidden && mesh->hidden[cell];
-      if (cell >= 0 && shows(b, at.point, cell, range)) {
+      if (cell >= 0 && shows(b, at.point, cell, known >> bit & 1, range)) {
         bits |= 1u << bit;
         ++shown;
-        low = fminf(low, range[0]);
-        high = fmaxf(high, range[1]);
+        low = range[0] < low ? range[0] : low;
+        high = range[1] > high ? range[1] : high;
       }
     }
-    changed += before && before[b->first / WORD + word] != bits;
+    changed += before && known != bits;
     b->bits[word] = bits;
   }
   *counts = (lattice_counts){ counts->shown + shown, counts->hidden + hidden, counts->changed + changed, low, high };
@@ -429,6 +431,7 @@ stratus_status stratus_tetra_lattice_create(stratus_context* context, const stra
   TRY_CLEANUP(number_points(tetra, mesh));
   TRY_CLEANUP(stratus_allocate_zero(context, (size_t)tetra->lattices, sizeof(lattice_build), &builds));
   tetra->geometry = stratus_tetra_hash(context, mesh);
+  tetra->identity = stratus_tetra_identity(mesh);
   TRY_CLEANUP(build(tetra, mesh, builds));
   stratus_stage_end(context, &stage, "bits and border", tetra->bytes);
   *out = tetra;

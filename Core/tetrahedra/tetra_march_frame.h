@@ -27,9 +27,18 @@ typedef struct stratus_tetra_buffer {
   size_t bytes;
 } stratus_tetra_buffer;
 
-/* Memory of a frame, reused by the next one. */
+/* What the points and the faces in buffers were placed for. */
+typedef struct stratus_tetra_placement {
+  double matrix[16], scale, middle;
+  int parallel, width, height;
+} stratus_tetra_placement;
+
+/* Memory of a frame, reused by the next one. If the next frame has the same mesh, camera and image, its points and faces stay where they
+ * are, and only values are stored anew. */
 typedef struct stratus_tetra_buffers {
   stratus_tetra_buffer points, places, faces, lines, ends, bin_begin, bins, first, entries;
+  bool placed, binned; /* points and faces are those of `placement`; whoever changes the mesh sets both false */
+  stratus_tetra_placement placement;
 } stratus_tetra_buffers;
 
 typedef struct stratus_tetra_counts {

@@ -273,6 +273,19 @@ uint64_t stratus_tetra_hash(const stratus_context* context, const stratus_mesh* 
   return sum;
 }
 
+uint64_t stratus_tetra_identity(const stratus_mesh* mesh)
+{
+  uint64_t identity = 0;
+  for (int part = 0; part < stratus_mesh_part_count(mesh); ++part) {
+    const stratus_mesh* of = stratus_mesh_part(mesh, part);
+    if (of->geometry == 0) {
+      return 0;
+    }
+    identity = stratus_hash(&of->geometry, sizeof of->geometry, identity);
+  }
+  return identity;
+}
+
 static stratus_status build(
   stratus_tetra_mesh* tetra, const stratus_mesh* mesh, const stratus_adjacency* adjacency, const stratus_tetra_places* places)
 {
@@ -326,12 +339,17 @@ bool stratus_tetra_box(const stratus_mesh* mesh, double lo[3], double hi[3])
   return lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2];
 }
 
-bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
+bool stratus_tetra_mesh_fits(stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
 {
   const bool lattice = stratus_mesh_is_lattice(mesh);
-  return tetra->cell_count == (lattice ? 6 : 1) * mesh->cell_count && tetra->lattices == (lattice ? stratus_mesh_part_count(mesh) : 0) &&
+  const uint64_t identity = stratus_tetra_identity(mesh);
+  const bool fits = tetra->cell_count == (lattice ? 6 : 1) * mesh->cell_count &&
+    tetra->lattices == (lattice ? stratus_mesh_part_count(mesh) : 0) &&
     (lattice || (tetra->point_count == mesh->point_count && (tetra->at || !mesh->labels))) &&
-    (tetra->values == NULL) == (mesh->cell_values != 0) && tetra->geometry == stratus_tetra_hash(tetra->context, mesh);
+    (tetra->values == NULL) == (mesh->cell_values != 0) &&
+    ((identity && identity == tetra->identity) || tetra->geometry == stratus_tetra_hash(tetra->context, mesh));
+  tetra->identity = fits ? identity : tetra->identity;
+  return fits;
 }
 
 stratus_status stratus_tetra_mesh_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken)
@@ -371,6 +389,7 @@ stratus_status stratus_tetra_mesh_create(stratus_context* context, const stratus
   tetra->cell_count = mesh->cell_count;
   tetra->point_count = mesh->point_count;
   tetra->geometry = stratus_tetra_hash(context, mesh);
+  tetra->identity = stratus_tetra_identity(mesh);
   TRY_CLEANUP(stratus_adjacency_create(context, mesh, &adjacency));
   tetra->flat = adjacency->flat;
   tetra->inverted = adjacency->inverted;

@@ -56,6 +56,7 @@ bool vtkStratusLattice::Set(vtkStructuredGrid* grid, std::string& error)
   }
   this->FindBounds();
   this->From = from;
+  this->Geometry.Modified();
   return true;
 }
 
@@ -148,6 +149,7 @@ stratus_mesh vtkStratusLattice::GetMesh() const
   std::copy(this->Points, this->Points + 3, mesh.lattice);
   mesh.points = this->Doubles;
   mesh.float_points = this->Floats;
+  mesh.geometry = this->Geometry.GetMTime();
   mesh.point_count = Product(this->Points);
   mesh.cell_count = static_cast<int64_t>(this->Points[0] - 1) * (this->Points[1] - 1) * (this->Points[2] - 1);
   return mesh;

@@ -10,6 +10,7 @@
 
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
+#include "vtkTimeStamp.h"
 
 #include <cstdint>
 #include <array>
@@ -46,6 +47,7 @@ private:
   bool IsFrom(const Origin& origin) const;
 
   Origin From;
+  vtkTimeStamp Geometry; // when that was
   int Points[3] = { 0, 0, 0 };
   const double* Doubles = nullptr;
   const float* Floats = nullptr;

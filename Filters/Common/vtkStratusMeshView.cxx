@@ -97,6 +97,7 @@ void vtkStratusMeshView::Divide(vtkUnstructuredGrid* grid, vtkMTimeType time)
   this->Divided = nullptr;
   this->Refusal.clear();
   this->Accepted = this->Tetrahedra.Set(grid, this->Refusal) && this->SetHidden(grid, this->Refusal);
+  this->Geometry.Modified();
   if (this->Accepted && this->Tetrahedra.Vertices.empty()) {
     this->Refusal = this->Tetrahedra.DescribeLeftOut();
     this->Accepted = false;
@@ -120,6 +121,7 @@ bool vtkStratusMeshView::Set(
   const bool whole = this->IsLattice || this->Tetrahedra.CellByCell;
   vtkDataArray* values_of = whole ? array : this->Spread(array, cells);
   this->Mesh = this->IsLattice ? this->Lattice.GetMesh() : this->Tetrahedra.GetMesh();
+  this->Mesh.geometry = this->IsLattice ? this->Mesh.geometry : this->Geometry.GetMTime();
   const int64_t count = cells ? this->Mesh.cell_count : this->Mesh.point_count;
   if (this->Carrier->GetNumberOfPoints() != count) {
     this->Carrier->SetDimensions(static_cast<int>(count), 1, 1);

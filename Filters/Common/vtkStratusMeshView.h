@@ -63,6 +63,7 @@ private:
   // Of points, cells, hidden flags and partition: the cells are divided anew only where it changes, not with every step of a simulation.
   uint64_t Content = 0;
   vtkMTimeType ContentTime = 0; // 0: no grid has been divided
+  vtkTimeStamp Geometry;        // when cells were divided
   bool Accepted = false;
   std::string Refusal;
   vtkStratusTetrahedra Tetrahedra;

@@ -102,6 +102,71 @@ static void geometry_survives_other_values(void** state)
   }
 }
 
+/* Points and cells with the caller's number are not read again: here they would not be the same. Another number has them read. */
+static void numbered_geometry_is_not_compared(void** state)
+{
+  for (int variant = 0; variant < 2; ++variant) {
+    steps s = { .caster = NULL };
+    begin(&s, *state, STRATUS_TETRA_METHOD_MARCH, variant);
+    s.c.mesh.geometry = 5;
+    step(&s);
+    const int32_t corner = s.c.vertices[0];
+    const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = kept.rgba };
+    s.c.vertices[0] = s.c.vertices[1];
+    s.c.vertices[1] = corner;
+    s.c.values[9] = 1.5f;
+    for (uint64_t number = 5; number < 7; ++number) {
+      ++s.c.mesh.revision;
+      s.c.mesh.geometry = number;
+      assert_int_equal(
+        stratus_tetra_caster_render(s.caster, &s.c.mesh, &s.c.transfer, &s.c.camera, &s.c.options, &image, &kept.report), STRATUS_OK);
+      assert_int_equal(kept.report.mesh_builds, number - 4);
+    }
+    move_arrays(&s.c);
+    s.c.mesh.geometry = 7; /* read, found to be the same, and known from then on */
+    step(&s);
+    built(&s, 2, 4, 3);
+    stratus_tetra_caster_destroy(s.caster);
+    tetra_destroy(&s.c);
+  }
+}
+
+/* Points and faces of the frame before are used again only if mesh, camera and image are the same. */
+static void frames_differ_by_mesh_camera_and_image(void** state)
+{
+  for (int variant = 0; variant < 4; ++variant) {
+    steps s = { .caster = NULL };
+    begin(&s, *state, variant & 1 ? STRATUS_TETRA_METHOD_PROJECT : STRATUS_TETRA_METHOD_MARCH, variant / 2);
+    step(&s);
+    const stratus_tetra_buffers* buffers = &s.caster->buffers;
+    float* const first = buffers->places.memory;
+    first[0] += 1.0f; /* a picture with this point is wrong: it shows that it was used again */
+    const stratus_image image = { .width = TETRA_WIDTH, .height = TETRA_HEIGHT, .rgba = kept.rgba };
+    ++s.c.mesh.revision;
+    const float moved_to = first[0];
+    assert_int_equal(stratus_tetra_caster_render(s.caster, &s.c.mesh, &s.c.transfer, &s.c.camera, &s.c.options, &image, NULL), STRATUS_OK);
+    assert_true(first[0] == moved_to);
+    s.caster->buffers.placed = s.caster->buffers.binned = false;
+    step(&s);
+    assert_true(first[0] != moved_to);
+    for (int turn = 0; turn < 3; ++turn) { /* there and back */
+      tetra_camera(*state, &s.c, 4, turn & 1 ? 2 : 1, 0);
+      step(&s);
+      s.c.values[7] += 0.01f;
+      step(&s);
+    }
+    stratus_image narrow = { .width = TETRA_WIDTH / 2, .height = TETRA_HEIGHT, .rgba = kept.rgba };
+    assert_int_equal(stratus_tetra_caster_render(s.caster, &s.c.mesh, &s.c.transfer, &s.c.camera, &s.c.options, &narrow, NULL), STRATUS_OK);
+    step(&s);
+    s.c.mesh.matrix[3] += 0.1;
+    step(&s);
+    s.c.points[3 * 62] += 0.01;
+    step(&s);
+    stratus_tetra_caster_destroy(s.caster);
+    tetra_destroy(&s.c);
+  }
+}
+
 /* Changes of the visible cells' borders, or of the geometry, rebuild the mesh. */
 static void other_geometry_is_built(void** state)
 {
@@ -230,6 +295,8 @@ int test_tetra_values(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(geometry_survives_other_values),
+    cmocka_unit_test(numbered_geometry_is_not_compared),
+    cmocka_unit_test(frames_differ_by_mesh_camera_and_image),
     cmocka_unit_test(other_geometry_is_built),
     cmocka_unit_test(leaves_are_compared_by_content),
     cmocka_unit_test(memory_refused_in_a_step),
