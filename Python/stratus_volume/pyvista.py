@@ -135,6 +135,7 @@ class _Layer:
         anew = weakref.ref(self._algorithm)
         # VTK's commands are beyond Python's garbage collector: they hold nothing that holds the renderer.
         self._observer = renderer.AddObserver("StartEvent", lambda caller, event: anew() and anew().Modified())
+        self._follows, self._timed = False, None  # the picture that follows a coarse one; the interactor that asks for it, and its observer
 
     @classmethod
     def of(cls, plotter):
@@ -155,6 +156,9 @@ class _Layer:
 
     def close(self):
         """Parts what VTK holds from what Python holds, so that both are freed."""
+        if self._timed:
+            self._timed[0].RemoveObserver(self._timed[1])
+            self._timed = None
         self.renderer.RemoveObserver(self._observer)
         self.renderer.RemoveViewProp(self._actor)
         self._actor.GetTexture().RemoveAllInputConnections(0)
@@ -174,10 +178,11 @@ class _Layer:
         renderer.GetRenderWindow().GetZbufferData(x, y, x + size[0] - 1, y + size[1] - 1, depths)
         opaque = numpy.clip(numpy_support.vtk_to_numpy(depths).reshape(size[1], size[0]), 0, 1)[::-1]
         view = core_camera(renderer.GetActiveCamera(), renderer.GetTiledAspectRatio())
-        moves = renderer.GetRenderWindow().GetDesiredUpdateRate() >= _MOVES
         for volume in shown:
             volume.place()
-            volume.shown = volume.drawn.draft(volume.look.get("labels")) if moves and isinstance(volume.drawn, Volume) else volume.drawn
+        coarse = self._shows_coarse(shown, renderer.GetRenderWindow())
+        for volume in shown:
+            volume.shown = volume.drawn.draft(volume.look.get("labels")) if coarse and isinstance(volume.drawn, Volume) else volume.drawn
         with warnings.catch_warnings():
             if self._warned:  # once is enough: frames follow each other
                 warnings.simplefilter("ignore")
@@ -185,6 +190,29 @@ class _Layer:
             rgba = self._one_by_one(shown, size, view, opaque) if rgba is None else rgba
         self._warned = True
         return numpy.ascontiguousarray(paint(rgba, None)[::-1])
+
+    def _shows_coarse(self, shown, window):
+        """Whether lazy arrays show their coarse copies: while the camera moves, and in a volume's first picture if the window has events, one of
+        which then asks for the exact picture."""
+        if window.GetDesiredUpdateRate() >= _MOVES:
+            return True
+        interactor, self._follows = window.GetInteractor(), False
+        first = [volume for volume in shown if volume.comes_first]
+        for volume in first:
+            volume.comes_first = False
+        waits = any(isinstance(volume.drawn, Volume) and volume.drawn.grid.waits for volume in first)
+        if not waits or window.GetOffScreenRendering() or not interactor or not interactor.GetInitialized():
+            return False
+        if not self._timed:
+            layer = weakref.ref(self)
+            self._timed = interactor, interactor.AddObserver("TimerEvent", lambda caller, event: layer() and layer()._draw_what_follows())
+        self._follows = True
+        interactor.CreateOneShotTimer(1)
+        return True
+
+    def _draw_what_follows(self):
+        if self._follows:
+            self.renderer.GetRenderWindow().Render()
 
     @staticmethod
     def _together(shown, size, view, opaque):
@@ -222,8 +250,8 @@ class StratusVolume(pyvista.plotting.volume.Volume):
     """
 
     # pyvista's classes refuse attributes that they do not know. title: of the scalar bar; called: the name that was given; shown: what the frame
-    # draws, a coarse copy of a lazy array while the camera moves
-    drawn, shown, look, counters, plotter, renderer, title, called, _layer, _box, _base, _known, _words, _kept = (None,) * 14
+    # draws, a coarse copy of a lazy array while the camera moves; comes_first: the next picture is the first one, which may be coarse
+    drawn, shown, look, counters, plotter, renderer, title, called, comes_first, _layer, _box, _base, _known, _words, _kept = (None,) * 15
 
     def __init__(self, plotter, drawn, mapper, prop, look, user_matrix=None):
         super().__init__()
@@ -238,6 +266,7 @@ class StratusVolume(pyvista.plotting.volume.Volume):
         """Adds the volume to its plotter's scene."""
         self._layer = _Layer.of(self.plotter)
         self._layer.volumes.append(self)
+        self.comes_first = bool(render)  # without a frame of its own the first may be a screenshot
         # Its bounds count for the camera and its clipping range; it shows nothing.
         self._box = self.plotter.add_mesh(pyvista.Box(self.bounds), opacity=0.0, pickable=False, show_scalar_bar=False, reset_camera=reset_camera,
                                           render=render, name=name)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """stratus_volume in scenes of pyvista, compared with the volumes that VTK's own mapper draws there. `wheel` runs it where pyvista is installed."""
 import gc
+import time
 import warnings
 import weakref
 
@@ -250,6 +251,31 @@ def lazily():
     check(numpy.array_equal(*pictures), "a lazy array")
 
 
+def refines():
+    """In a window that takes events a still picture that has to read is coarse first, and exact as soon as the window has time."""
+    plotter = pyvista.Plotter(off_screen=False, window_size=(120, 90))
+    volume = plotter.stratus.add_volume(Chunks(numpy.ascontiguousarray(field), (8, 9, 10)), show_scalar_bar=False, opacity="sigmoid_5", memory="16M")
+    drawn = []
+    plotter.renderer.AddObserver("EndEvent", lambda *_: drawn.append(volume.shown is volume.drawn))
+    plotter.show(interactive_update=True, auto_close=False)
+    for _ in range(100):
+        if drawn[-1]:
+            break
+        time.sleep(0.02)
+        plotter.update(1)
+    check(drawn[-1] and not all(drawn), f"a coarse picture, and the exact one: {drawn}")
+    exact = plotter.screenshot(return_img=True)
+    volume.drawn.grid.waits = True
+    check(numpy.array_equal(plotter.screenshot(return_img=True), exact) and drawn[-1], "later pictures, as of a screenshot, are exact")
+    volume.remove()
+    volume = plotter.stratus.add_volume(volume.drawn, show_scalar_bar=False, opacity="sigmoid_5", render=False)
+    drawn.clear()
+    plotter.reset_camera()
+    check(all(drawn), "the first one is if it may be a screenshot")
+    plotter.close()
+    gc.collect()
+
+
 beside_vtk()
 composited()
 lives()
@@ -260,4 +286,5 @@ several()
 named_colors()
 data()
 lazily()
+refines()
 done()
