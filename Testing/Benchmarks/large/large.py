@@ -4,6 +4,7 @@
 
 large.py make FOLDER KIND SIZE     writes FOLDER/KIND-SIZE.raw, .nc or .zarr, layer by layer: clouds of which most blocks are empty
 large.py measure FILE OPTION...    draws it by `stratus render`, and prints rows scene,method,metric,value,unit
+large.py film FILE OPTION...       draws all its time steps, and prints what a step takes, and what reading and drawing one take alone
   --stratus PROGRAM   default: stratus of the path
   --memory SIZE       as of `stratus render`; default: none
   --repeats N         default 3
@@ -208,10 +209,32 @@ def measure(path, options):
     print("\n".join(rows))
 
 
+def film(path, options):
+    """Medians over the steps. Reading: of one step by netCDF4 of Python. Drawing: the last frame, beside which nothing is read."""
+    scene = os.path.splitext(os.path.basename(path))[0]
+    pattern = os.path.join(options.folder, "film-%04d.png")
+    command = [options.stratus, "render", path, "--frames", pattern, "-v", *VIEW] + (["--memory", options.memory] if options.memory else [])
+    _, processor, resident, said = run(command, dict(os.environ, STRATUS_CACHE_DIR=options.cache))
+    frames = sorted(name for name in os.listdir(options.folder) if name.startswith("film-"))
+    written = [os.stat(os.path.join(options.folder, name)).st_mtime_ns / 1e9 for name in frames]
+    read = f"""import netCDF4, time
+with netCDF4.Dataset({path!r}) as file:
+    values = max(file.variables.values(), key=lambda variable: variable.size)
+    for step in range(len(values)):
+        start = time.perf_counter()
+        values[step]
+        print(time.perf_counter() - start)"""
+    reading = numpy.median([float(line) for line in run([sys.executable, "-c", read], os.environ)[3].split()])
+    drawing = float(re.search(r"frame\s+([0-9,.]+) ms", said)[1].replace(",", "")) / 1e3
+    for name, value, unit in (("step_seconds", numpy.median(numpy.diff(written)), "s"), ("reading_seconds", reading, "s"), ("drawing_seconds", drawing, "s"),
+            ("processor_seconds", processor / len(frames), "s"), ("resident_most", resident, "bytes")):
+        print(f"{scene},film,{name},{value:.6g},{unit}")
+
+
 if __name__ == "__main__":
     if len(sys.argv) == 5 and sys.argv[1] == "make":
         print(make(sys.argv[2], sys.argv[3], [int(word) for word in sys.argv[4].split(",")]))
-    elif len(sys.argv) > 2 and sys.argv[1] == "measure":
+    elif len(sys.argv) > 2 and sys.argv[1] in ("measure", "film"):
         parser = argparse.ArgumentParser()
         parser.add_argument("--stratus", default="stratus")
         parser.add_argument("--memory", default="")
@@ -221,7 +244,7 @@ if __name__ == "__main__":
         options.folder = tempfile.mkdtemp()
         options.cache = os.path.join(options.folder, "cache")
         try:
-            measure(sys.argv[2], options)
+            (film if sys.argv[1] == "film" else measure)(sys.argv[2], options)
         finally:
             shutil.rmtree(options.folder, ignore_errors=True)
     else:
