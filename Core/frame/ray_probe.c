@@ -54,6 +54,11 @@
 #define LIT_SHARE 0.7
 /* Where the tolerance is missed by light, so many times the finest setting's error is allowed. */
 #define NEARLY 1.1
+/* A function hardly bends if one sample a voxel errs by no more than this, at whatever tolerance. A limit that rose with the tolerance
+ * would replace long pre-integrated steps by shorter ones at a looser tolerance. */
+#define FLAT (SHARE * 1e-3)
+/* The least cost of pre-integrated steps shorter than a voxel, over the cost of cells. */
+#define DENSE 1.01
 #define PATCH (STRATUS_PROBE_WIDTH * STRATUS_PROBE_HEIGHT)
 
 /* Reads of memory: a sample fetches a cell and reads an entry, or two of running sums, which are neighbours in rule local; a cell takes
@@ -93,6 +98,7 @@ typedef struct probe {
   stratus_probe_classes classes;
   stratus_distance_map* rough[STRATUS_PROBE_CLASSES]; /* number c: of the blocks of classes below c; NULL: not made */
   bool lit;                                           /* rays by cells are lit */
+  bool by_cells;                                      /* rule cells is a candidate */
   double voxel;
   float *fine, *coarse; /* pictures of all patches: of the finer setting, and of the candidate */
   uint64_t samples;     /* of all settings together */
@@ -287,13 +293,15 @@ static stratus_status measure(probe* p, family* f, int rung)
 }
 
 /* The cost of a voxel's length. It is computed, not measured, because measured samples depend on the structure. Cells cost the same at
- * every rung, but for their pieces. */
+ * every rung, but for their pieces. Pre-integrated steps shorter than a voxel cost more than cells, because some rays take more of these
+ * steps than they meet cells. A looser tolerance then never reads more than a tighter one. */
 static double cost_of(const probe* p, const family* f, int rung)
 {
   const setting s = setting_of(p, f, rung);
   stratus_ray_choice c;
   take(p, &s, &c);
-  const double lattice = f->cost * p->voxel / c.sample_distance;
+  const bool dense = p->by_cells && f->sampling == STRATUS_SAMPLING_PREINTEGRATED && rung > ONE_VOXEL;
+  const double lattice = fmax(f->cost * p->voxel / c.sample_distance, dense ? DENSE * costs[STRATUS_SAMPLING_CELLS] : 0.0);
   return f->sampling == STRATUS_SAMPLING_CELLS ? f->cost
     : f->sampling == STRATUS_SAMPLING_LOCAL    ? f->rough * costs[STRATUS_SAMPLING_CELLS] + (1.0 - f->rough) * lattice
                                                : lattice;
@@ -429,7 +437,7 @@ static stratus_status compare(probe* p, candidates* k, double most, int* best, f
     const bool cells = f->sampling == STRATUS_SAMPLING_CELLS;
     int start = cells ? k->fine.rung - FINER_BY : ONE_VOXEL, rung;
     forget(f);
-    if (cells ? cells_cost > least : least < INFINITY && k->of[0].error[ONE_VOXEL] <= most && k->of[0].rungs > 1) {
+    if (cells ? cells_cost > least : least < INFINITY && k->of[0].error[ONE_VOXEL] <= fmin(most, FLAT) && k->of[0].rungs > 1) {
       continue; /* where one sample a voxel is enough, the function hardly bends, and two reads a sample gain nothing */
     }
     const int rungs = f->rungs;
@@ -549,6 +557,7 @@ static stratus_status choose(probe* p, stratus_ray_choice* choice, int* beyond)
   for (stratus_sampling rule = STRATUS_SAMPLING_MIDPOINT; rule <= STRATUS_SAMPLING_CELLS; ++rule) {
     add_family(&k, p, rule);
   }
+  p->by_cells = k.count > 1 && k.of[k.count - 1].sampling == STRATUS_SAMPLING_CELLS;
   k.fine.sampling = cells ? STRATUS_SAMPLING_CELLS : preintegrates ? STRATUS_SAMPLING_PREINTEGRATED : STRATUS_SAMPLING_MIDPOINT;
   if (!(options->sampling.tolerance > 0.0)) {
     const bool open = options->sampling.rule == STRATUS_SAMPLING_AUTO;

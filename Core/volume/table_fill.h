@@ -39,7 +39,10 @@ static inline stratus_table_arguments stratus_table_arguments_of(const stratus_t
     .cut = table->cut,
     .color_slope = table->color_slope,
     .color_most = table->color_most,
-    .has_opaque = table->has_opaque };
+    .has_opaque = table->has_opaque,
+    .stretches = table->stretches,
+    .stretches_at = (int)stratus_table_stretches_at(table),
+    .stretch_steps = table->stretch_steps };
 }
 
 #endif

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * The transfer function as traversal samples it: a table over the data's values. An entry holds the function at the entry's middle
  * (midpoint sampling), or running sums of it (pre-integration; Engel, Kraus & Ertl 2001, in the cumulative form). */
+#include "table_arguments.h"
 #include "table_entries.h"
+#include "table_stretches.h"
 
 #include <string.h>
 
@@ -21,9 +23,6 @@
 #define OPAQUE_TAU 16.0
 /* Bound on the optical depth per length, which keeps sums finite if the unit of length is tiny. */
 #define TAU_MOST 1e290
-/* Inverse of the colour change allowed within a piece of a segment; longer pieces are cut. Averaging a piece's colours is wrong by about
- * 1/12 of that change, half of 1/255. */
-#define COLOR_ERROR_INVERSE 48.0
 /* Entries that a thread fills at a time. */
 #define ENTRIES_A_THREAD 2048
 /* Largest running sum: differences of sums are positive ints. */
@@ -256,8 +255,8 @@ static void fill_sums(stratus_table* table, const stratus_transfer* transfer, co
     sums[i] += sums[i - 4];
   }
   const double change = fmax(fmax(whole.most[0] - whole.least[0], whole.most[1] - whole.least[1]), whole.most[2] - whole.least[2]);
-  table->color_slope = (float)(COLOR_ERROR_INVERSE * whole.steepest);
-  table->color_most = (float)(COLOR_ERROR_INVERSE * fmax(change, 0.0));
+  table->color_slope = (float)((double)TABLE_COLOR_ERROR_INVERSE * whole.steepest);
+  table->color_most = (float)((double)TABLE_COLOR_ERROR_INVERSE * fmax(change, 0.0));
 }
 
 /* True if the function is 1 not only at `value`, where it is known to be 1, but over an interval. *at: a point below the value, kept
@@ -301,6 +300,17 @@ static void fill_opaque(stratus_table* table, const stratus_transfer* transfer, 
   for (int e = size - 1, next = size; e >= 0; --e) {
     next = up[e] == e ? e : next;
     up[e] = down[e] == e ? e : next;
+  }
+}
+
+/* Copies the stretches behind all other words, with optical depths in units of the running sums. */
+static void fill_stretches(stratus_table* table, const stratus_transfer* transfer, const stratus_table_stretch* stretches)
+{
+  for (int s = 0; table->stretches > 0 && s <= table->stretches; ++s) {
+    const double tau = tau_of(transfer, (double)stretches[s].opacity);
+    stratus_table_stretch stretch = stretches[s];
+    stretch.opacity = table->tau_per_sum > 0.0 ? (float)(tau / table->tau_per_sum) : 0.0f;
+    memcpy(table->sums + stratus_table_stretches_at(table) + ((size_t)s << TABLE_STRETCH_LOG2), &stretch, sizeof stretch);
   }
 }
 
@@ -445,6 +455,7 @@ stratus_status stratus_table_create_fine(stratus_context* context, const stratus
   stratus_pieces* pieces = NULL;
   stratus_transfer* settled = NULL;
   stratus_table_entries entries = { .cells = 0 };
+  stratus_table_stretch* stretches = NULL;
   void* memory = NULL;
 
   values.sums = sampling == STRATUS_SAMPLING_PREINTEGRATED;
@@ -465,9 +476,16 @@ stratus_status stratus_table_create_fine(stratus_context* context, const stratus
   table->jumps = entries.steps > 0 || has_jumps(transfer->opacity, transfer->opacity_count, 2, entries.width) ||
     has_jumps(transfer->color, transfer->color_count, 4, entries.width);
   table->cut = entries.cut;
+  if (table->jumps && sampling == STRATUS_SAMPLING_PREINTEGRATED) {
+    TRY_CLEANUP(stratus_table_stretches_create(context, pieces, &values, &stretches, &table->stretches));
+    while (table->stretches > 1 << table->stretch_steps) {
+      ++table->stretch_steps;
+    }
+  }
   TRY_CLEANUP(allocate_table(table, &entries, sampling == STRATUS_SAMPLING_PREINTEGRATED));
   if (table->sums) {
     TRY_CLEANUP(fill_preintegrated(table, transfer, &entries, sample_distance));
+    fill_stretches(table, transfer, stretches);
   } else {
     fill_midpoint(table, transfer, &entries, sample_distance);
   }
@@ -477,6 +495,7 @@ stratus_status stratus_table_create_fine(stratus_context* context, const stratus
 
 cleanup:
   stratus_table_entries_release(context, &entries);
+  stratus_release(context, stretches);
   stratus_pieces_destroy(pieces);
   stratus_release(context, settled);
   stratus_table_destroy(table);
@@ -498,9 +517,15 @@ size_t stratus_table_bound_at(const stratus_table* table)
   return stratus_table_first_at(table) + (size_t)table->cells + 1;
 }
 
-size_t stratus_table_words(const stratus_table* table)
+size_t stratus_table_stretches_at(const stratus_table* table)
 {
   return table->search_steps ? stratus_table_bound_at(table) + (size_t)table->size : stratus_table_widths_at(table);
+}
+
+size_t stratus_table_words(const stratus_table* table)
+{
+  const size_t stretches = table->stretches > 0 ? (size_t)table->stretches + 1 : 0;
+  return stratus_table_stretches_at(table) + (stretches << TABLE_STRETCH_LOG2);
 }
 
 void stratus_table_destroy(stratus_table* table)

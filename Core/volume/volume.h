@@ -189,6 +189,8 @@ typedef struct stratus_table {
   float sum_scale;    /* the same per sample distance */
   bool cut;           /* pre-integrated: values lie beyond the table, and are transparent there */
   int has_opaque;     /* pre-integrated: 1 if any entry has opacity 1 */
+  /* pre-integrated: the number of stretches, see table_stretches.h, and of bisections that find one; 0: the function has none */
+  int stretches, stretch_steps;
   /* Pre-integrated: the largest change of colour between neighbouring entries with opacity, per entry (or width), and that over all entries
    * with opacity, divided by the error allowed. */
   float color_slope, color_most;
@@ -225,6 +227,8 @@ int stratus_table_unit(const stratus_table* table);
 size_t stratus_table_widths_at(const stratus_table* table);
 size_t stratus_table_first_at(const stratus_table* table);
 size_t stratus_table_bound_at(const stratus_table* table);
+/* Returns where in these words the stretches begin. */
+size_t stratus_table_stretches_at(const stratus_table* table);
 /* Gives the function at one value: colour, not multiplied by opacity, and opacity. */
 void stratus_transfer_at(const stratus_transfer* transfer, double value, double rgba[4]);
 

@@ -130,27 +130,71 @@ INLINE void cell_integrate(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const 
   }
 }
 
+/* Composites a piece in one stretch of the function, whose opacity is constant and whose colours are linear. `length`: of the whole path.
+ * The piece's light is exact if the field in the piece is straight: colours at the front then count more, by a share that follows from the
+ * depth. Where the field bends too much, the piece is ended early and only its first part is composited. Returns the part of the whole path
+ * that is composited. */
+INLINE vfloat cell_integrate_stretch(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, stratus_packet* k, vmask mask,
+  const cell_way* way, cell_piece* piece, vfloat length, vfloat s)
+{
+  const vfloat zero = v_set(0.0f), one = v_set(1.0f);
+  table_shown shown;
+  vfloat layer[4];
+  table_stretch_at(&a->table, sums, way->stretch, cell_within(way, cell_way_mean(way, way->from, piece->to)), mask, &shown);
+  mask = mask & v_lt(zero, shown.tau);
+  vfloat depth = v_select(mask, packet_length(a, k, length * (piece->to - way->from)) * v_set(a->table.tau_scale) * shown.tau, zero);
+  const vfloat steepest = v_max(v_max(v_abs(shown.slope[0]), v_abs(shown.slope[1])), v_abs(shown.slope[2]));
+  const vfloat error = depth * steepest * cell_way_departs(way, way->from, piece->to) * v_set(TABLE_COLOR_ERROR_INVERSE);
+  const vmask cut = mask & v_lt(one, error);
+  if (m_any(cut)) {
+    const vfloat share = v_select(cut, v_reciprocal(pieces_for(error)), one), mean = cell_way_mean(way, way->from, piece->to);
+    piece->to = v_select(cut, v_fma(piece->to - way->from, share, way->from), piece->to);
+    piece->value = v_select(cut, cell_way_at(way, piece->to), piece->value);
+    piece->next = vi_select(cut, way->stretch, piece->next);
+    depth = depth * share;
+    const vfloat moved = cell_way_mean(way, way->from, piece->to) - mean;
+    for (int c = 0; c < 3; ++c) {
+      shown.color[c] = v_select(cut, v_fma(shown.slope[c], moved, shown.color[c]), shown.color[c]);
+    }
+  }
+  if (m_any(mask)) {
+    const vfloat share = cell_absorbed_share(depth, mask), rise = piece->value - way->front;
+    layer[3] = v_min(v_select(mask, share * depth, zero), one);
+    const vfloat before = v_fma(v_set(0.5f), layer[3], share - one);
+    for (int c = 0; c < 3; ++c) {
+      layer[c] = v_select(mask, v_fma(shown.slope[c] * rise, before, shown.color[c] * layer[3]), zero);
+      layer[c] = v_min(v_max(layer[c], zero), layer[3]);
+    }
+    composite(a, k, mask, layer, s);
+  }
+  return piece->to - way->from;
+}
+
 #endif
 
 /* Composite the next piece of the cell paths of the lanes in `mask`. Returns the lanes that have pieces left. */
 INLINE vmask RAY_NAME(cell_composite)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
   GLOBAL const int* sums, stratus_packet* k, const cell_walk* w, cell_way* way, vmask mask)
 {
-  const vfloat length = w->leave - w->s, begin = v_fma(way->from, length, w->s), part = length * way->share;
+  const vfloat length = w->leave - w->s, begin = v_fma(way->from, length, w->s);
   cell_piece piece;
-  cell_next_piece(way, &piece);
+  vfloat share = cell_next(a, sums, way, mask, &piece);
 #if RAY_LIT
   const lit_before before = lit_before_stretch(k);
 #endif
-  cell_integrate(a, sums, k, mask, piece.front, piece.back, packet_length(a, k, part), begin);
+  if (CELL_BY_STRETCHES(a)) {
+    share = cell_integrate_stretch(a, sums, k, mask, way, &piece, length, begin);
+  } else {
+    cell_integrate(a, sums, k, mask, piece.front, piece.back, packet_length(a, k, length * share), begin);
+  }
 #if RAY_LIT
   vfloat parts;
-  const lit_stretch stretch = lit_stretch_of(&before, k, begin, part);
-  const vmask again = lit_take_back(k, &before, mask & v_lt(v_set(LIGHT_PIECE_LEAST), way->share), &stretch, &parts);
-  way->share = v_select(again, way->share * v_reciprocal(parts), way->share);
+  const lit_stretch lit = lit_stretch_of(&before, k, begin, length * share);
+  const vmask again = lit_take_back(k, &before, mask & v_lt(v_set(LIGHT_PIECE_LEAST), share), &lit, &parts);
+  way->share = v_select(again, share * v_reciprocal(parts), way->share);
   way->left = v_select(again, way->left * parts, way->left);
   mask = m_andnot(mask, again);
-  RAY_NAME(lit_pass)(a, values, hidden, sums, k, &before, mask, &stretch);
+  RAY_NAME(lit_pass)(a, values, hidden, sums, k, &before, mask, &lit);
 #else
   (void)values;
   (void)hidden;
@@ -163,7 +207,7 @@ INLINE vmask RAY_NAME(cell_composite)(CONSTANT stratus_ray_cast_arguments* a, va
 
 /* Visits the cells of the lanes in `mask`. Returns the lanes whose path shows something, and writes their paths to `ways`. */
 INLINE vmask RAY_NAME(cell_visit)(CONSTANT stratus_ray_cast_arguments* a, value_source values, GLOBAL const uchar* hidden,
-  stratus_packet* k, const cell_walk* w, vmask mask, cell_way* ways)
+  GLOBAL const int* sums, stratus_packet* k, const cell_walk* w, vmask mask, cell_way* ways)
 {
   vint inside[3];
   vfloat v[8];
@@ -172,7 +216,7 @@ INLINE vmask RAY_NAME(cell_visit)(CONSTANT stratus_ray_cast_arguments* a, value_
   }
   RAY_NAME(fetch_cell)(a, values, inside[0], inside[1], inside[2], mask, v);
   k->samples -= mask_int(mask);
-  return cell_look(a, hidden, k, w, inside, v, mask, ways);
+  return cell_look(a, hidden, sums, k, w, inside, v, mask, ways);
 }
 
 /* Visits the box about a value, or the part of it that is in one cell, of every live ray. */
@@ -204,7 +248,9 @@ INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, value_s
   if (!m_any(k->live) || !cell_begin(k, halves, nearest && !halves, &w)) {
     return;
   }
-  ways.k[0] = ways.k[1] = ways.k[2] = ways.k[3] = ways.lo = ways.hi = ways.from = ways.front = ways.share = ways.left = v_set(0.0f);
+  ways.k[0] = ways.k[1] = ways.k[2] = ways.k[3] = ways.lo = ways.hi = ways.from = ways.front = ways.share = ways.left = ways.to =
+    v_set(0.0f);
+  ways.stretch = vi_set(0);
   cell_enter(a, k, &w);
   do {
     vmask done = waiting;
@@ -217,7 +263,7 @@ INLINE void RAY_NAME(cell_march)(CONSTANT stratus_ray_cast_arguments* a, value_s
       if (nearest) {
         RAY_NAME(cell_visit_nearest)(a, values, hidden, sums, k, &w);
       } else {
-        waiting = waiting | RAY_NAME(cell_visit)(a, values, hidden, k, &w, done, &ways);
+        waiting = waiting | RAY_NAME(cell_visit)(a, values, hidden, sums, k, &w, done, &ways);
       }
     } else {
       waiting = RAY_NAME(cell_composite)(a, values, hidden, sums, k, &w, &ways, waiting);

@@ -91,7 +91,7 @@ INLINE void several_cells_visit(const several_source* from, several_volume* v, v
       at[axis] = cell_inside(a, w, axis);
     }
     several_corners_at(from, at, mask, corners);
-    c->waiting = c->waiting | cell_look(a, from->hidden, &v->k, w, at, corners, mask, way);
+    c->waiting = c->waiting | cell_look(a, from->hidden, (GLOBAL const int*)from->table, &v->k, w, at, corners, mask, way);
   }
   several_cells_leave(from, v, m_andnot(mask, c->waiting));
 }
@@ -107,15 +107,15 @@ OUTLINE void several_cells_cut(const several_source* from, several_volume* v, vm
   const vfloat limit = v_set(a->lattice.light_spread) * v_reciprocal(v_max(v_dot3(k->d, k->d), v_set(1e-30f)));
   do {
     cell_piece piece;
-    cell_next_piece(way, &piece);
+    const vfloat share = cell_next(a, sums, way, mask, &piece);
     const vint first = table_entry(&a->table, sums, piece.front), last = table_entry(&a->table, sums, piece.back);
     const vint low = vi_min(first, last), beyond = vi_max(first, last) + vi_set(1);
-    const vfloat width = v_max(width_between(&a->table, sums, low, beyond, mask), v_set(1.0f)), length = (w->leave - w->s) * way->share;
+    const vfloat width = v_max(width_between(&a->table, sums, low, beyond, mask), v_set(1.0f)), length = (w->leave - w->s) * share;
     const vfloat depth = tau_between(sums, low, beyond, mask) * (length * v_set(a->table.tau_scale)) * v_reciprocal(width);
     const vfloat opacity = v_absorbed(v_select(mask, depth, v_set(0.0f))), spread = opacity * light_variance(opacity) * (length * length);
-    mask = mask & v_lt(limit, spread) & v_lt(v_set(LIGHT_PIECE_LEAST), way->share);
+    mask = mask & v_lt(limit, spread) & v_lt(v_set(LIGHT_PIECE_LEAST), share);
     const vfloat parts = light_parts(limit, spread);
-    way->share = v_select(mask, way->share * v_reciprocal(parts), way->share);
+    way->share = v_select(mask, share * v_reciprocal(parts), way->share);
     way->left = v_select(mask, way->left * parts, way->left);
   } while (m_any(mask));
 }
@@ -127,9 +127,9 @@ INLINE vmask several_cells_piece(const several_source* from, several_volume* v, 
   const cell_walk* w = &c->walk;
   const vfloat length = w->leave - w->s, lo = v_fma(c->way.from, length, w->s);
   cell_piece piece;
-  cell_next_piece(&c->way, &piece);
+  cell_next(from->a, (GLOBAL const int*)from->table, &c->way, mask, &piece);
   /* a cell's last piece ends where the next cell begins */
-  const vmask whole = v_lt(c->way.left, v_set(1.5f)) & v_lt(v_set(0.99999f), piece.to);
+  const vmask whole = piece.last & v_lt(v_set(0.99999f), piece.to);
   const vfloat hi = v_select(whole, w->leave, v_fma(piece.to, length, w->s));
   next->lo = v_select(mask, lo, next->lo);
   next->hi = v_select(mask, hi, next->hi);
@@ -271,6 +271,8 @@ INLINE void several_cells_load(const several_source* from, several_volume* v)
   cell_begin(k, halves, nearest & !halves, &c->walk);
   c->way.k[0] = c->way.k[1] = c->way.k[2] = c->way.k[3] = c->way.lo = c->way.hi = zero;
   c->way.from = c->way.front = c->way.share = c->way.left = zero;
+  c->way.to = v_set(2.0f);
+  c->way.stretch = vi_set(0);
   c->waiting = m_none();
   c->rough = v_le(zero, zero);
   c->began = zero;

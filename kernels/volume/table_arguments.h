@@ -3,6 +3,12 @@
 #ifndef STRATUS_TABLE_ARGUMENTS_H
 #define STRATUS_TABLE_ARGUMENTS_H
 
+/* Inverse of the colour change allowed within a piece of a segment; longer pieces are cut. Averaging a piece's colours is wrong by about
+ * 1/12 of that change, half of 1/255. */
+#define TABLE_COLOR_ERROR_INVERSE 48.0f
+/* Words of a stretch. */
+#define TABLE_STRETCH_LOG2 3
+
 typedef struct stratus_table_arguments {
   float scale, offset, last; /* a value's cell in the grid is value * scale + offset, within 0..last */
   int entries;
@@ -16,6 +22,9 @@ typedef struct stratus_table_arguments {
   float color_slope, color_most;   /* the most that a colour changes per entry (or width), and in all, over the error allowed */
   int cut;                         /* 1: values lie beyond the table, and are transparent there */
   int has_opaque;                  /* 1: an entry has opacity 1, and rows behind the sums say where: opaque_on_the_way() */
+  /* Number of stretches (table_stretch in transfer_table.h) of a function of constant opacities between vertical steps; 0: the function has
+   * other opacities. They begin at word stretches_at, and so many bisections find one. */
+  int stretches, stretches_at, stretch_steps;
 } stratus_table_arguments;
 
 #endif

@@ -121,6 +121,50 @@ INLINE vfloat sums_from_to(CONSTANT stratus_table_arguments* t, const table_end*
   return v_max(v_select(own, to->width, width), v_set(0x1p-6f));
 }
 
+/* The values at which a stretch begins: of stretches whose numbers are `stretch`, and the last one plus 1. */
+INLINE vfloat table_stretch_begin(CONSTANT stratus_table_arguments* t, GLOBAL const int* sums, vint stretch, vmask mask)
+{
+  return v_from_bits(v_gather_ints(sums + t->stretches_at, stretch << vi_set(TABLE_STRETCH_LOG2), mask));
+}
+
+/* The stretches of values. guess: where to look first, because a ray mostly stays in a stretch. */
+INLINE vint table_stretch(CONSTANT stratus_table_arguments* t, GLOBAL const int* sums, vint guess, vfloat value, vmask mask)
+{
+  vint stretch = guess;
+  const vmask low = v_le(table_stretch_begin(t, sums, guess, mask), value),
+              high = v_lt(value, table_stretch_begin(t, sums, guess + vi_set(1), mask));
+  if (m_any(m_andnot(mask, low & high))) {
+    stretch = vi_set(0);
+    for (int ahead = (1 << t->stretch_steps) >> 1; ahead > 0; ahead >>= 1) {
+      const vint next = stretch + vi_set(ahead);
+      const vmask inside = mask & vi_lt(next, vi_set(t->stretches));
+      stretch = vi_select(inside & v_le(table_stretch_begin(t, sums, next, inside), value), next, stretch);
+    }
+  }
+  return stretch;
+}
+
+/* A stretch at one value: the colour, the colour's change per value, and the optical depth in the unit of the running sums. */
+typedef struct table_shown {
+  vfloat color[3], slope[3], tau;
+} table_shown;
+
+INLINE void table_stretch_at(
+  CONSTANT stratus_table_arguments* t, GLOBAL const int* sums, vint stretch, vfloat value, vmask mask, table_shown* shown)
+{
+  GLOBAL const float* words = (GLOBAL const float*)(sums + t->stretches_at);
+  const vint first = stretch << vi_set(TABLE_STRETCH_LOG2 - 2);
+  vfloat low[4], high[4];
+  gather_four(words, first, mask, low);
+  gather_four(words, first + vi_set(1), mask, high);
+  const vfloat beyond = value - low[0], color[3] = { low[2], low[3], high[0] };
+  for (int c = 0; c < 3; ++c) {
+    shown->slope[c] = high[c + 1];
+    shown->color[c] = v_fma(high[c + 1], beyond, color[c]);
+  }
+  shown->tau = low[1];
+}
+
 /* Lanes whose way from one entry to another meets an entry of opacity 1; *first is the first such entry of each. rows: the two rows of
  * entries behind the sums, for rising and for falling ways. */
 INLINE vmask opaque_on_the_way(CONSTANT stratus_table_arguments* t, GLOBAL const int* rows, vint from, vint to, vmask mask, vint* first)

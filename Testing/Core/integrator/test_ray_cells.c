@@ -72,6 +72,44 @@ static void the_error_falls_with_the_option(void** state)
   }
 }
 
+/* Where opacity is constant between steps, paths are cut at the steps, and the coarsest cell error is as good as the finest. Colours may
+ * change between the steps, and in smooth and in rough fields a path may cross several steps. */
+static void functions_by_steps_are_exact_at_every_cell_error(void** state)
+{
+  static const double opacity[2][12] = { { -1, 0, 0.05, 0, 0.05, 0.9, 0.2, 0.9, 0.2, 0, 1, 0 },
+    { -1, 0.1, -0.2, 0.1, -0.2, 0.6, 0.1, 0.6, 0.1, 0.3, 1, 0.3 } };
+  static const double color[2][24] = { { -1, 1, 0.8, 0.6, 0.05, 1, 0.8, 0.6, 0.2, 0.1, 0.3, 0.2, 0.3, 0, 0, 0, 0.5, 0, 0, 0, 1, 0, 0, 0 },
+    { -1, 1, 0, 0, -0.1, 1, 0, 0, -0.1, 0, 1, 0, 0.15, 0, 1, 0, 0.15, 0, 0.2, 1, 1, 0, 1, 1 } };
+  static float reference[4 * CASE_PIXELS_MOST];
+  for (int n = 0; n < 4; ++n) {
+    const double base = case_type_values[STRATUS_FLOAT32].base, scale = case_type_values[STRATUS_FLOAT32].scale;
+    double db[2], opacities[12], colors[24];
+    picture_case c;
+    case_create(*state, &c, STRATUS_FLOAT32, 24, 22, 26, 310u + (uint32_t)n);
+    c.options.sampling.rule = STRATUS_SAMPLING_CELLS;
+    for (int p = 0; p < 6; ++p) {
+      opacities[2 * p] = base + scale * opacity[n % 2][2 * p];
+      opacities[2 * p + 1] = opacity[n % 2][2 * p + 1];
+      memcpy(colors + 4 * p, color[n % 2] + 4 * p, 4 * sizeof *colors);
+      colors[4 * p] = base + scale * color[n % 2][4 * p];
+    }
+    c.transfer.opacity = opacities;
+    c.transfer.color = colors;
+    c.transfer.opacity_count = c.transfer.color_count = 6;
+    roughen(&c, n < 2 ? 0.0 : 0.7, 29u + (uint32_t)n);
+    const reference_scene scene = case_scene(&c);
+    assert_int_equal(reference_render(&scene, CASE_WIDTH, CASE_HEIGHT, PIECE, reference, NULL), 0);
+    for (int i = 0; i < 2; ++i) {
+      c.options.sampling.cell_error = i ? 1.0 / 16384 : 0.5;
+      db[i] = psnr_of(*state, &c, reference);
+    }
+    print_message("             %s, %s: %.1f %.1f dB\n", n < 2 ? "smooth" : "rough", n % 2 ? "steps" : "window", db[0], db[1]);
+    assert_true(case_lit(&drawn) > CASE_PIXELS / 20);
+    assert_true(db[0] >= 76.0 && db[0] == db[1]);
+    case_destroy(&c);
+  }
+}
+
 /* The optical depth from box to box, in double. A ray along an axis passes through a row of values. */
 static void nearest_is_exact(void** state)
 {
@@ -275,6 +313,7 @@ int test_ray_cells(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_error_falls_with_the_option),
+    cmocka_unit_test(functions_by_steps_are_exact_at_every_cell_error),
     cmocka_unit_test(nearest_is_exact),
     cmocka_unit_test(a_linear_field_has_the_integral_of_its_function),
     cmocka_unit_test(step_and_jitter_change_no_bit),
