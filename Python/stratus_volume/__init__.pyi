@@ -79,7 +79,7 @@ class Volume:
         progress: _Progress = ..., dependent: bool = ..., weights: float | Sequence[float] | None = ..., mean_components: bool = ...,
         labels: ArrayLike | None = ..., looks: dict[int, dict[str, Any]] | None = ..., function_2d: dict[str, Any] | None = ...,
         surface: dict[str, Any] | None = ..., quantities: _Quantities = ..., threshold: float = ..., show_axes: bool = ...,
-        color_bar: bool = ..., caption: str | None = ..., coast: bool = ..., ink: float = ...) -> Rendering: ...
+        color_bar: bool = ..., caption: str | None = ..., coast: bool = ..., ink: float = ..., extinction: float = ...) -> Rendering: ...
 
 class Tetrahedra:
     context: Context
@@ -95,7 +95,7 @@ class Tetrahedra:
         average_range: Sequence[float] | None = ..., opaque_depth: ArrayLike | None = ..., progress: _Progress = ..., dependent: bool = ...,
         weights: float | Sequence[float] | None = ..., mean_components: bool = ...,
         surface: dict[str, Any] | None = ..., quantities: _Quantities = ..., threshold: float = ..., show_axes: bool = ...,
-        color_bar: bool = ..., caption: str | None = ..., coast: bool = ..., ink: float = ...) -> Rendering: ...
+        color_bar: bool = ..., caption: str | None = ..., coast: bool = ..., ink: float = ..., extinction: float = ...) -> Rendering: ...
 
 class Tree:
     context: Context
@@ -119,6 +119,8 @@ class View:
     azimuth: Any
     elevation: Any
     zoom: Any
+    extinction: Any
+    step: Any
     message: Any
     @property
     def camera(self) -> dict[str, float]: ...

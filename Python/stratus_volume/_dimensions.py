@@ -74,6 +74,37 @@ def space_axes_of(data):
     return [axis or next(left) for axis in axes]
 
 
+class Steps:
+    """What a slider chooses from: the steps along the time of an xarray.DataArray, or a list of data.
+
+    name     of the dimension, or "step"
+    labels   a text for each step
+    """
+
+    def __init__(self, name, labels, choose):
+        self.name, self.labels, self._choose = name, labels, choose
+
+    def __getitem__(self, n):
+        return self._choose(n)
+
+    @classmethod
+    def of(cls, data):
+        """The steps of data, or None if the data have none. A DataArray has steps if it has a dimension besides three of space, which is time or of
+        which nothing is known."""
+        if isinstance(data, (list, tuple)) and data and all(getattr(each, "ndim", 3) == 3 and not isinstance(each, (list, tuple)) for each in data):
+            return cls("step", [str(n) for n in range(len(data))], lambda n: data[n])
+        if not (hasattr(data, "dims") and hasattr(data, "coords")) or len(data.dims) != 4:
+            return None
+        axes = {name: axis_of(name, coordinate_of(data, name)) for name in data.dims}
+        found = [name for name in data.dims if axes[name] == "t"] or [name for name in data.dims if axes[name] == ""]
+        if len(found) != 1:
+            return None
+        name, = found
+        values = numpy.asarray(data.coords[name].values) if name in data.coords else numpy.arange(data.shape[data.dims.index(name)])
+        labels = numpy.datetime_as_string(values, unit="auto") if values.dtype.kind == "M" else values
+        return cls(name, [str(label) for label in labels], lambda n: data.isel({name: n}))
+
+
 def lazy_of_data_array(data):
     """The Lazy of a DataArray, or None if its values are in memory. Its fill values are NaN."""
     chunked = getattr(data, "chunks", None) is not None

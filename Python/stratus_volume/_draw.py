@@ -58,6 +58,8 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
     camera         dict of azimuth, elevation (degrees) and zoom; or dict of position, focal_point, view_up (x, y, z), view_angle (degrees) and,
                    for parallel rays, parallel_scale (half the window's height); or (position, focal point, view up); or a vtkCamera
     unit_distance  world length to which opacities refer; default: a fiftieth of the volume's diagonal
+    extinction     factor of all optical depths, above 0 (default 1): 2 doubles them, whatever defines the opacities. It has no effect in
+                   modes other than composite and additive
     mode           composite, first-hit, maximum, minimum, average, additive, isosurface or slice
     interpolation  linear or nearest
     structure      the structure by which rays skip empty space: auto, none, block, distance, octant or hybrid

@@ -4,6 +4,7 @@ import asyncio
 import math
 import time
 
+from ._dimensions import Steps
 from ._draw import drawn_of
 from ._picture import paint
 from ._values import background_color, number, pixels, positive
@@ -28,12 +29,15 @@ class View:
     camera     dict of azimuth, elevation and zoom, which `show` and `render` accept
     rendering  the Rendering of the picture that shows
     look       dict of the picture's other settings; `set` changes it
-    widget     the ipywidgets.VBox of picture, sliders and message; `image`, `azimuth`, `elevation`, `zoom` and `message` are its parts
+    widget     the ipywidgets.VBox of picture, sliders and message; `image`, `azimuth`, `elevation`, `zoom`, `extinction`, `step` (None where the
+               data have no steps) and `message` are its parts
     """
 
-    def __init__(self, drawn, look, size, camera, background, draft_size, draft_tolerance):
+    def __init__(self, steps, make, look, extinction, size, camera, background, draft_size, draft_tolerance):
+        """steps: the Steps of the data, or None. make: a function that returns a Volume or Tetrahedra of a step, or for None of the data."""
         widgets = _widgets()
-        self.drawn, self.look, self.size, self.background = drawn, look, size, background
+        self._steps, self._make, self._shown = steps, make, None if steps is None else 0
+        self.drawn, self.look, self.size, self.background = make(self._shown), look, size, background
         self.rendering, self.is_draft = None, False
         self._draft_size, self._draft_tolerance = draft_size, draft_tolerance
         self._rest, self._dragged, self._held, self._events, self._clock = None, None, False, None, None
@@ -44,10 +48,15 @@ class View:
         self.elevation = widgets.FloatSlider(value=min(89, max(-89, camera["elevation"])), min=-89, max=89, step=1, description="elevation", **wide)
         self.zoom = widgets.FloatLogSlider(value=camera["zoom"], base=10, min=-1, max=1.5, step=0.01, description="zoom",
                                            **dict(wide, readout_format=".2f"))
+        self.extinction = widgets.FloatLogSlider(value=extinction, base=10, min=-2, max=2, step=0.01, description="opacity x",
+                                                 **dict(wide, readout_format=".2f"))
+        self.step = None if steps is None else widgets.SelectionSlider(options=[(label, n) for n, label in enumerate(steps.labels)], value=0,
+                                                                       description=steps.name, layout=wide["layout"])
         self.message = widgets.HTML()
-        self.widget = widgets.VBox([self.image, self.azimuth, self.elevation, self.zoom, self.message])
+        sliders = [self.azimuth, self.elevation, self.zoom, self.extinction, *([] if steps is None else [self.step])]
+        self.widget = widgets.VBox([self.image, *sliders, self.message])
         self._listen()
-        for slider in self.azimuth, self.elevation, self.zoom:
+        for slider in sliders:
             slider.observe(lambda change: self._moved(), names="value")
         # Of an array that has to be read, a coarse picture comes first, and the full one as if the view had come to rest.
         loop = _running_loop()
@@ -72,11 +81,13 @@ class View:
     def draw(self, draft=False):
         """Draws the picture; draft: as while the mouse moves."""
         look, size = self.look, self.size
+        if self.step is not None and self.step.value != self._shown:
+            self.drawn, self._shown = self._make(self.step.value), self.step.value
         if draft:
             size = self._draft_size
             look = dict(look, tolerance=max(self._draft_tolerance, look.get("tolerance") or 0))
         drawn = self.drawn.draft(look.get("labels")) if draft and isinstance(self.drawn, Volume) else self.drawn
-        rendering = drawn.render(size=size, camera=self.camera, **look)
+        rendering = drawn.render(size=size, camera=self.camera, extinction=self.extinction.value, **look)
         self.image.value = paint(rendering.rgba, self.background)._repr_png_()
         self.rendering, self.is_draft, self.message.value = rendering, draft, ""
 
@@ -187,11 +198,14 @@ def view(data, opacity=None, color=None, size=(480, 360), camera=None, backgroun
          origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, memory=None, **options):
     """Returns a View: a picture in a notebook that the mouse turns (where ipyevents is installed) and sliders turn. Needs ipywidgets.
 
+    data             as in `render`; or an xarray.DataArray with a time besides three dimensions of space, or a list of data: a slider chooses
+                     the step. Functions that follow from values are each step's own: give points of opacity and color to compare steps
     camera           dict of azimuth and elevation, in degrees, and zoom, where the view begins
     draft            while the view moves, pictures have this part of the width and height, above 0 and at most 1
     draft_tolerance  while the view moves, pictures have this tolerance, or the look's if it is larger. 0.3 seconds after the last move the
                      full picture follows. Of a lazy array whose last picture had to read, they show a coarse copy, and so does the first picture
-    Everything else is as in `render` and `show`. Structures are built once. A drag turns by half a degree a pixel, the wheel zooms.
+    Everything else is as in `render` and `show`. Structures are built once for each step that shows. A drag turns by half a degree a pixel, the wheel zooms. The
+    slider "opacity x" is `extinction`, which 0.01..100 bound.
 
     The pictures are drawn in the notebook's own process and sent as PNG: no server runs. `show` accepts `view(data).camera`.
     """
@@ -205,9 +219,14 @@ def view(data, opacity=None, color=None, size=(480, 360), camera=None, backgroun
     begins = dict(_AROUND, **{name: number(value, f"camera's {name}") for name, value in (camera or {}).items()})
     if not 0.1 <= begins["zoom"] <= 10**1.5:
         raise ValueError(f"camera's zoom is {begins['zoom']}, a view's must be in 0.1..31.6")
-    drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, memory=memory)
     for name in "opaque_depth", "audit":
         if name in options:
             raise TypeError(f"a view has no {name}")
     small = tuple(max(1, round(side * draft)) for side in size)
-    return View(drawn, dict(options, opacity=opacity, color=color), size, begins, background, small, draft_tolerance)
+    steps, extinction = None if axes is not None else Steps.of(data), options.pop("extinction", 1.0)
+    if not 0.01 <= number(extinction, "extinction") <= 100:
+        raise ValueError(f"extinction is {extinction!r}, a view's must be in 0.01..100")
+
+    def make(step):
+        return drawn_of(data if step is None else steps[step], spacing, origin, axes, scalars, component, device, threads, matrix, memory=memory)
+    return View(steps, make, dict(options, opacity=opacity, color=color), extinction, size, begins, background, small, draft_tolerance)

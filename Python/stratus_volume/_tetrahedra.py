@@ -167,7 +167,7 @@ class Tetrahedra:
     def render(self, opacity=None, color=None, size=(640, 480), camera=None, unit_distance=None, mode="composite", method="auto", tolerance=None,
                shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, opaque_depth=None, progress=None,
                dependent=False, weights=None, mean_components=False, surface=None, quantities=None, threshold=0.5, show_axes=False, color_bar=False,
-               caption=None, coast=False, ink=0.9):
+               caption=None, coast=False, ink=0.9, extinction=1.0):
         """Draws a picture and returns a Rendering: rgba, depth, counters. See `render` for the parameters.
 
         method  march from cell to cell, project sorted cells, or auto: the method of the lower expected cost
@@ -180,7 +180,7 @@ class Tetrahedra:
         around = Annotation(show_axes, color_bar, caption, coast and not earth, ink)
         with self.context.lock:
             asked = AskedOfCells(self, opacity, color, unit_distance, mode, method, tolerance, shade, gradient_opacity, contours, crop, clip_planes,
-                                 average_range, dependent, weights, mean_components, surface)
+                                 average_range, dependent, weights, mean_components, surface, extinction)
             if not self.nothing:
                 around.set_box(self.bounds)
                 around.set_bar(asked.transfers[0], self.spread, self.power, *self.bar_title)
@@ -206,7 +206,7 @@ class AskedOfCells:
 
     def __init__(self, drawn, opacity=None, color=None, unit_distance=None, mode="composite", method="auto", tolerance=None, shade=False,
                  gradient_opacity=None, contours=None, crop=None, clip_planes=None, average_range=None, dependent=False, weights=None,
-                 mean_components=False, surface=None):
+                 mean_components=False, surface=None, extinction=1.0):
         self.drawn, self.mode, self.options = drawn, mode, library.stratus_tetra_options_default()
         options = self.options
         options.mode = choice(mode, "stratus_tetra_mode", "STRATUS_TETRA_", "mode", ("quantities",))
@@ -221,6 +221,7 @@ class AskedOfCells:
             options.crop, options.crop_bounds[:] = 1, crop_box(crop)
         if unit_distance is not None:
             positive(unit_distance, "unit_distance")
+        positive(extinction, "extinction")
         if drawn.nothing:
             if drawn.components == 1:
                 own_points(opacity)
@@ -236,7 +237,7 @@ class AskedOfCells:
         if average_range is not None:
             options.average_range[:] = value_interval(average_range, "average_range", drawn.power)
         self.bounds = drawn.bounds
-        self.unit = unit_length(unit_distance, length_of([self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3)]))
+        self.unit = unit_length(unit_distance, extinction, length_of([self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3)]))
         self.transfers = [each.transfer(drawn.power, self.unit) for each in self._wanted]
         self.functions = (c.stratus_transfer * len(self.transfers))(*(each.struct for each in self.transfers))
         self.mesh = drawn._mesh()

@@ -90,13 +90,13 @@ def length_of(vector):
     return math.sqrt(dot(scaled_down, scaled_down)) * 2.0 * math.ldexp(1.0, power - 1)
 
 
-def unit_length(unit_distance, length):
+def unit_length(unit_distance, extinction, length):
     """The world length that opacities refer to, by default a fiftieth of the data's, for which its optical depths are floats."""
-    if unit_distance is None:
-        return length / 50 or 1.0
-    if length and not 1e-30 <= unit_distance / length <= 1e30:
-        raise ValueError(f"unit_distance is {unit_distance!r}, it must be 1e-30 to 1e30 times the diagonal of the data, {length:.6g}")
-    return float(unit_distance)
+    result = ((length / 50 or 1.0) if unit_distance is None else float(unit_distance)) / extinction
+    if length and not 1e-30 <= result / length <= 1e30:
+        raise ValueError(f"unit_distance is {unit_distance!r} and extinction {extinction!r}, the first divided by the second must be 1e-30 to 1e30 times the "
+                         f"diagonal of the data, {length:.6g}")
+    return result
 
 
 # ---- arrays

@@ -109,7 +109,7 @@ class Volume:
                structure="auto", sampling="auto", sample_distance=0, tolerance=None, shade=False, gradient_opacity=None, contours=None, crop=None,
                clip_planes=None, average_range=None, jitter=False, audit=False, opaque_depth=None, progress=None, dependent=False, weights=None,
                mean_components=False, labels=None, looks=None, function_2d=None, surface=None, quantities=None, threshold=0.5,
-               show_axes=False, color_bar=False, caption=None, coast=False, ink=0.9):
+               show_axes=False, color_bar=False, caption=None, coast=False, ink=0.9, extinction=1.0):
         """Draws a picture and returns a Rendering: rgba, depth, counters. See `render` for the parameters."""
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_ray_cast_report()
@@ -119,7 +119,7 @@ class Volume:
             self.settle(progress)
             asked = Asked(self, opacity, color, unit_distance, mode, interpolation, structure, sampling, sample_distance, tolerance, shade,
                           gradient_opacity, contours, crop, clip_planes, average_range, jitter, audit, dependent, weights, mean_components, labels,
-                          looks, function_2d, surface)
+                          looks, function_2d, surface, extinction)
             if not self.grid.nothing:
                 around.set_box(asked.bounds, self._axes)
                 around.set_bar(asked.transfers[0], self.grid.spread, asked.power, *self._bar_title())
@@ -166,7 +166,7 @@ class Asked:
     def __init__(self, drawn, opacity=None, color=None, unit_distance=None, mode="composite", interpolation="linear", structure="auto",
                  sampling="auto", sample_distance=0, tolerance=None, shade=False, gradient_opacity=None, contours=None, crop=None, clip_planes=None,
                  average_range=None, jitter=False, audit=False, dependent=False, weights=None, mean_components=False, labels=None, looks=None,
-                 function_2d=None, surface=None):
+                 function_2d=None, surface=None, extinction=1.0):
         self.grid = grid = drawn.grid
         self.mode, self.options = mode, library.stratus_ray_cast_options_default()
         options = self.options
@@ -185,6 +185,7 @@ class Asked:
             options.clipping.crop, options.clipping.crop_bounds[:] = 1, grid.crop(crop_box(crop))
         if unit_distance is not None:
             positive(unit_distance, "unit_distance")
+        positive(extinction, "extinction")
         opacity = set_surface(options, mode, surface, opacity)
         looks = looks_of(labels, looks)
         self._labels = None if labels is None else Labels(labels, grid)
@@ -206,7 +207,7 @@ class Asked:
         if average_range is not None:
             options.optics.average_range[:] = value_interval(average_range, "average_range", power)
         self.bounds = grid.bounds(drawn.context)
-        self.unit = unit = unit_length(unit_distance, length_of([self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3)]))
+        self.unit = unit = unit_length(unit_distance, extinction, length_of([self.bounds[2 * axis + 1] - self.bounds[2 * axis] for axis in range(3)]))
         self.transfers = [each.transfer(power, unit) for each in wanted]
         self.functions = (c.stratus_transfer * len(wanted))(*(each.struct for each in self.transfers))
         self._function_2d = None if function_2d is None else Function2D(function_2d, power, unit)

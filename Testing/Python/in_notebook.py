@@ -6,6 +6,9 @@ import sys
 
 from checking import Chunks, ball, check, done, refuse
 
+import numpy
+import xarray
+
 from stratus_volume import Volume, show, view
 from stratus_volume._notebook import View
 
@@ -13,8 +16,8 @@ field = ball((20, 22, 24), (10, 8, 12), 7)
 host = dict(opacity=[(0, 0), (1, 0.8)], size=(120, 90), device="host")
 
 
-def same(own, camera):
-    return own.image.value == show(field, camera=camera, **host)._repr_png_()
+def same(own, camera, data=field, **more):
+    return own.image.value == show(data, camera=camera, **host, **more)._repr_png_()
 
 
 def by_sliders():
@@ -40,19 +43,49 @@ def by_sliders():
     own.look["mode"] = "composite"
     own.azimuth.value = 20
     check(own.message.value == "" and own.image.value != before, "and the next picture takes the message away")
-    check(len(own.widget.children) == 5 and "image" in str(own.widget.children[0]).lower(), "one box for the notebook")
+    own.extinction.value = 3
+    check(same(own, own.camera, extinction=3), "a slider makes it denser")
+    check(len(own.widget.children) == 6 and "image" in str(own.widget.children[0]).lower(), "one box for the notebook")
+
+
+def by_steps():
+    places = {name: numpy.arange(n, dtype=float) for name, n in zip("zyx", field.shape)}
+    days = numpy.array(["2026-07-01", "2026-07-02", "2026-07-03"], "datetime64[ns]")
+    series = xarray.DataArray(numpy.stack([field, field[::-1] ** 2, 0.5 * field]), dict(time=days, **places), ("time", *"zyx"))
+    own = view(series, **host)
+    check(own.step.description == "time" and own.step.options[1] == ("2026-07-02", 1), f"a slider of the days: {own.step.options}")
+    first = own.image.value
+    check(same(own, own.camera, series[0]), "the first step is drawn first")
+    own.step.value = 1
+    check(own.image.value != first and same(own, own.camera, series[1]), "the slider chooses another")
+    own.azimuth.value, own.step.value = 99, 2
+    check(same(own, own.camera, series[2]), "from all sides")
+    members = view(series.rename(time="member").drop_vars("member").transpose("z", "y", "member", "x"), **host)
+    check(members.step.description == "member" and members.image.value == first, "of a dimension of which nothing is known")
+    several = view([field, field[::-1]], **host)
+    several.step.value = 1
+    check(several.step.options == (("0", 0), ("1", 1)) and same(several, several.camera, field[::-1]), "a list has steps")
+    broken = view([field, "field"], **host)
+    before, broken.step.value = broken.image.value, 1
+    check(broken.image.value == before and "must be one of" in broken.message.value, f"a step that is no data is a message: {broken.message.value}")
+    broken.step.value = 0
+    check(broken.message.value == "" and broken.image.value == before, "which the next picture takes away")
+    check(view(field, **host).step is None, "one volume has none")
+    refuse(ValueError, "three", view, xarray.DataArray(numpy.zeros((2, 2, 2, 2, 2))), **host)
 
 
 async def while_it_moves():
     own = view(field, **host)
     full = own.rendering.counters["samples"]
     own.azimuth.value = 100
+    own.extinction.value = 0.5
     check(own.is_draft and own.rendering.rgba.shape == (45, 60, 4) and own.rendering.counters["samples"] < full, "a draft while it moves")
     await asyncio.sleep(0.1)
     own.azimuth.value = 101
     check(own.is_draft, "and as long as it moves")
     await asyncio.sleep(0.5)
-    check(not own.is_draft and same(own, own.camera), "the full picture when it rests")
+    check(not own.is_draft and same(own, own.camera, extinction=0.5), "the full picture when it rests")
+    own.extinction.value = 1
     send = own._events._dom_handlers.callbacks[0]
     send(dict(type="mousemove", relativeX=9, relativeY=9))
     check(own.camera["azimuth"] == 101, "a mouse that is not pressed turns nothing")
@@ -93,7 +126,7 @@ async def lazily():
 
 def refusals():
     for words, options in [("draft", dict(draft=0)), ("draft_tolerance", dict(draft_tolerance=-1)), ("camera", dict(camera=dict(position=(1, 2, 3)))),
-                           ("zoom", dict(camera=dict(zoom=100))), ("size", dict(size=(0, 1))), ("mode", dict(mode="glow")),
+                           ("zoom", dict(camera=dict(zoom=100))), ("extinction", dict(extinction=0)), ("size", dict(size=(0, 1))), ("mode", dict(mode="glow")),
                            ("spacing", dict(data=Volume(field), spacing=(1, 1, 1), device=None))]:
         refuse(ValueError, words, view, **{**dict(data=field), **host, **options})
     refuse(TypeError, "audit", view, field, audit=True)
@@ -106,6 +139,7 @@ def refusals():
 
 
 by_sliders()
+by_steps()
 asyncio.run(while_it_moves())
 asyncio.run(lazily())
 refusals()

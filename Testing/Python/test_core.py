@@ -62,6 +62,10 @@ def pictures():
             dict(jitter=True, sample_distance=2), dict(average_range=(0.5, 1), mode="average"), dict(opacity=0.9):
         changed = render(field, **{**host, **option})
         check(not numpy.array_equal(changed.rgba, render(field, **host).rgba), f"{option} changes the picture")
+    places = numpy.stack(numpy.meshgrid(*(numpy.arange(n, dtype=float) for n in field.shape), indexing="ij"), axis=3)
+    for drawn in stratus_volume.Volume(field, device="host"), stratus_volume.Tetrahedra(places, None, field, device="host"):
+        denser = drawn.render(size=host["size"], extinction=2.5, unit_distance=10).rgba
+        check(numpy.array_equal(denser, drawn.render(size=host["size"], unit_distance=4).rgba), "extinction multiplies optical depths")
     low, high = float(field.min()), float(field.max())
     ends, mapped = [(low, 0, 0.25, 1), (high, 1, 0.75, 0)], lambda place: (place, 0.25 + 0.5 * place, 1 - place, 1.0)  # as matplotlib's, with an alpha
     apart = numpy.abs(render(field, color=mapped, **host).rgba - render(field, color=ends, **host).rgba).max()
@@ -123,8 +127,8 @@ def refusals():
     for words, options in [("mode", dict(mode="glow")), ("structure", dict(structure="tree")), ("sampling", dict(sampling="local")),
                            ("interpolation", dict(interpolation="cubic")), ("crop", dict(crop=(5, 4, 0, 1, 0, 1))), ("crop", dict(crop=(0, 1))),
                            ("clip_planes", dict(clip_planes=[(1, 0, 0, 0)] * 7)), ("contours", dict(contours=range(17), mode="isosurface")),
-                           ("unit_distance", dict(unit_distance=0)), ("diagonal", dict(unit_distance=1e-300)), ("tolerance", dict(tolerance=-1)),
-                           ("size", dict(size=(0, 10))),
+                           ("unit_distance", dict(unit_distance=0)), ("extinction", dict(extinction=0)), ("diagonal", dict(unit_distance=1e-300)), ("tolerance", dict(tolerance=-1)),
+                           ("size", dict(size=(0, 10))), ("diagonal", dict(extinction=1e40)),
                            ("shade", dict(shade=dict(glow=1))), ("opaque_depth", dict(opaque_depth=numpy.zeros((3, 3)))),
                            ("gradient_opacity", dict(gradient_opacity=[(0, 2)])), ("average_range", dict(average_range=(2, 1), mode="average")),
                            ("ambient", dict(shade=dict(ambient=-1))), ("contour", dict(mode="isosurface")),
