@@ -27,6 +27,7 @@ class View:
     """A volume or cells in a notebook, turned by the mouse and by sliders, which `view` makes.
 
     camera     dict of azimuth, elevation and zoom, which `show` and `render` accept
+    state      dict of camera and extinction: `show(data, **view.state)` is the picture from here
     rendering  the Rendering of the picture that shows
     look       dict of the picture's other settings; `set` changes it
     widget     the ipywidgets.VBox of picture, sliders and message; `image`, `azimuth`, `elevation`, `zoom`, `extinction`, `step` (None where the
@@ -40,16 +41,15 @@ class View:
         self.drawn, self.look, self.size, self.background = make(self._shown), look, size, background
         self.rendering, self.is_draft = None, False
         self._draft_size, self._draft_tolerance = draft_size, draft_tolerance
-        self._rest, self._dragged, self._held, self._events, self._clock = None, None, False, None, None
+        self._rest, self._dragged, self._held, self._events, self._clock, self._now = None, None, False, None, None, None
         self.image = widgets.Image(format="png", width=size[0], height=size[1])
         self.image.layout.max_width = "none"  # as the drafts are smaller pictures in the same place
         wide = dict(continuous_update=True, readout_format=".0f", layout=widgets.Layout(width=f"{max(240, size[0])}px"))
-        self.azimuth = widgets.FloatSlider(value=_turn(camera["azimuth"]), min=-180, max=180, step=1, description="azimuth", **wide)
-        self.elevation = widgets.FloatSlider(value=min(89, max(-89, camera["elevation"])), min=-89, max=89, step=1, description="elevation", **wide)
-        self.zoom = widgets.FloatLogSlider(value=camera["zoom"], base=10, min=-1, max=1.5, step=0.01, description="zoom",
-                                           **dict(wide, readout_format=".2f"))
-        self.extinction = widgets.FloatLogSlider(value=extinction, base=10, min=-2, max=2, step=0.01, description="opacity x",
-                                                 **dict(wide, readout_format=".2f"))
+        self.azimuth = widgets.FloatSlider(value=_half_degrees(_turn(camera["azimuth"])), min=-180, max=180, step=0.5, description="azimuth", **wide)
+        self.elevation = widgets.FloatSlider(value=_half_degrees(camera["elevation"], 89), min=-89, max=89, step=0.5, description="elevation", **wide)
+        wide["readout_format"] = ".2f"
+        self.zoom = widgets.FloatLogSlider(value=_log_step(camera["zoom"]), base=10, min=-1, max=1.5, step=0.001, description="zoom", **wide)
+        self.extinction = widgets.FloatLogSlider(value=_log_step(extinction), base=10, min=-2, max=2, step=0.001, description="opacity x", **wide)
         self.step = None if steps is None else widgets.SelectionSlider(options=[(label, n) for n, label in enumerate(steps.labels)], value=0,
                                                                        description=steps.name, layout=wide["layout"])
         self.message = widgets.HTML()
@@ -61,13 +61,18 @@ class View:
         # Of an array that has to be read, a coarse picture comes first, and the full one as if the view had come to rest.
         loop = _running_loop()
         waits = loop is not None and self._waits()
+        self._now = self.state, self._shown
         self.draw(draft=waits)
         if waits:
             self._rest = loop.call_later(_REST, self._rested)
 
     @property
     def camera(self):
-        return dict(azimuth=self.azimuth.value, elevation=self.elevation.value, zoom=self.zoom.value)
+        return dict(azimuth=_half_degrees(self.azimuth.value), elevation=_half_degrees(self.elevation.value, 89), zoom=_log_step(self.zoom.value))
+
+    @property
+    def state(self):
+        return dict(camera=self.camera, extinction=_log_step(self.extinction.value))
 
     def set(self, **look):
         """Changes settings of the picture, such as opacity, color or mode, and draws it. A wrong setting raises an error and changes nothing."""
@@ -87,7 +92,7 @@ class View:
             size = self._draft_size
             look = dict(look, tolerance=max(self._draft_tolerance, look.get("tolerance") or 0))
         drawn = self.drawn.draft(look.get("labels")) if draft and isinstance(self.drawn, Volume) else self.drawn
-        rendering = drawn.render(size=size, camera=self.camera, extinction=self.extinction.value, **look)
+        rendering = drawn.render(size=size, **self.state, **look)
         self.image.value = paint(rendering.rgba, self.background)._repr_png_()
         self.rendering, self.is_draft, self.message.value = rendering, draft, ""
 
@@ -107,8 +112,10 @@ class View:
     def _moved(self, late=False):
         """A draft now, unless the move is late, and the full picture once nothing has moved for a while. Without an event loop, as outside of a
         notebook, that is now."""
-        if self._held:
-            return  # of several sliders that change at once
+        now = self.state, self.step and self.step.value
+        if self._held or now == self._now:
+            return  # of several sliders that change at once, or whose value the browser sends back, rounded in another way
+        self._now = now
         if self._rest is not None:
             self._rest.cancel()
             self._rest = None
@@ -132,8 +139,8 @@ class View:
     def _place(self, azimuth, elevation, zoom, late):
         self._held = True
         try:
-            self.azimuth.value, self.elevation.value = _turn(azimuth), min(89, max(-89, elevation))
-            self.zoom.value = min(10**1.5, max(0.1, zoom))
+            self.azimuth.value, self.elevation.value = _half_degrees(_turn(azimuth)), _half_degrees(elevation, 89)
+            self.zoom.value = _log_step(min(10**1.5, max(0.1, zoom)))
         finally:
             self._held = False
         self._moved(late)
@@ -161,12 +168,9 @@ class View:
         kind, late = event.get("type"), self._is_late(event)
         at = (event.get("relativeX", 0), event.get("relativeY", 0))
         if kind == "mousedown":
-            self._dragged = at
+            self._dragged = self.azimuth.value + 0.5 * at[0], self.elevation.value - 0.5 * at[1]
         elif kind == "mousemove" and self._dragged is not None:
-            dx, dy = at[0] - self._dragged[0], at[1] - self._dragged[1]
-            self._dragged = at
-            if dx or dy:
-                self._place(self.azimuth.value - 0.5 * dx, self.elevation.value + 0.5 * dy, self.zoom.value, late)
+            self._place(self._dragged[0] - 0.5 * at[0], self._dragged[1] + 0.5 * at[1], self.zoom.value, late)
         elif kind in ("mouseup", "mouseleave"):
             moved, self._dragged = self._dragged is not None and self.is_draft, None
             if moved:
@@ -190,6 +194,17 @@ def _turn(degrees):
     return (degrees + 180) % 360 - 180
 
 
+def _half_degrees(degrees, most=180):
+    """The nearest angle of a slider. The browser rounds to its slider's steps, too, and sends the result back: a value between steps would cost
+    a second frame."""
+    return min(most, max(-most, round(2 * degrees) / 2))
+
+
+def _log_step(value):
+    """The nearest value of a logarithmic slider."""
+    return 10 ** round(math.log10(value), 3)
+
+
 def _escaped(text):
     return text.replace("&", "&amp;").replace("<", "&lt;")
 
@@ -200,12 +215,12 @@ def view(data, opacity=None, color=None, size=(480, 360), camera=None, backgroun
 
     data             as in `render`; or an xarray.DataArray with a time besides three dimensions of space, or a list of data: a slider chooses
                      the step. Functions that follow from values are each step's own: give points of opacity and color to compare steps
-    camera           dict of azimuth and elevation, in degrees, and zoom, where the view begins
+    camera           dict of azimuth and elevation, in half degrees, and zoom, where the view begins
     draft            while the view moves, pictures have this part of the width and height, above 0 and at most 1
     draft_tolerance  while the view moves, pictures have this tolerance, or the look's if it is larger. 0.3 seconds after the last move the
                      full picture follows. Of a lazy array whose last picture had to read, they show a coarse copy, and so does the first picture
-    Everything else is as in `render` and `show`. Structures are built once for each step that shows. A drag turns by half a degree a pixel, the wheel zooms. The
-    slider "opacity x" is `extinction`, which 0.01..100 bound.
+    Everything else is as in `render` and `show`. Structures are built once for each step that shows. A drag turns by half a
+    degree a pixel, the wheel zooms. The slider "opacity x" is `extinction`, 0.01..100.
 
     The pictures are drawn in the notebook's own process and sent as PNG: no server runs. `show` accepts `view(data).camera`.
     """

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A view in JupyterLab and one of pyvista in a page of trame, which a mouse in headless Chromium turns, zooms and changes by sliders. After each action
+the page's pixels differ, and those of the last picture are the ones that `show` or a screenshot draws. in_browser.py FOLDER: for files and screenshots.
+`browser` runs it where Chromium, JupyterLab, ipywidgets, ipyevents, playwright, pyvista and trame are installed."""
+import contextlib
+import io
+import json
+import os
+import pathlib
+import shutil
+import socket
+import statistics
+import subprocess
+import sys
+import time
+import urllib.request
+
+from checking import ball, check, done
+
+import numpy
+
+try:
+    from PIL import Image
+    from playwright.sync_api import sync_playwright
+except ImportError as missing:
+    print(f"SKIPPED: {missing}")
+    sys.exit(77)
+
+CHROMIUM = next((found for found in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if found), None)
+LOOK = dict(opacity=[(0, 0), (1, 0.6)], color=[(0, 0.1, 0.3, 1), (1, 1, 0.5, 0.1)], device="host")
+SIZE = (320, 240)
+PATIENCE = 30  # seconds; of a machine that does much else
+
+
+def steps():
+    """A series of three steps."""
+    return [ball((24, 26, 28), (12, 9 + 4 * n, 14), 7 + n) + 0.7 * ball((24, 26, 28), (5, 20, 22), 5) for n in range(3)]
+
+
+def logged(path):
+    """Writes a line for each frame of this process: how many milliseconds Stratus drew, and what the caller adds."""
+    from stratus_volume import Volume
+    drawn, render = [], Volume.render
+
+    def timed(self, *arguments, **options):
+        start = time.perf_counter()
+        try:
+            return render(self, *arguments, **options)
+        finally:
+            drawn.append(1000 * (time.perf_counter() - start))
+    Volume.render = timed
+
+    def log(**more):
+        with open(path, "a") as file:
+            file.write(json.dumps(dict(drawing=sum(drawn), **more)) + "\n")
+        drawn.clear()
+    return log
+
+
+def notebook():
+    """What the notebook's second cell runs: a view whose frames are logged."""
+    from stratus_volume import view
+    own, log = view(steps(), size=SIZE, **LOOK), logged("frames")
+    draw = own.draw
+
+    def logging(draft=False):
+        draw(draft)
+        log(draft=draft, state=own.state, step=own.step.value)
+    own.draw = logging
+    return own
+
+
+class Page:
+    """A page of Chromium with a picture, and the log of what draws it."""
+
+    def __init__(self, page, picture, log, folder):
+        self.page, self.picture, self.log, self.folder = page, picture, log, folder
+        picture.wait_for(timeout=1000 * PATIENCE)
+        picture.evaluate("""picture => { window.seen = []; window.acted = 0;
+            picture.addEventListener("load", () => requestAnimationFrame(() => window.seen.push(performance.now())));
+            for (const kind of ["mousedown", "mousemove", "mouseup", "wheel", "pointermove"])
+              document.addEventListener(kind, event => { window.acted = event.timeStamp; }, true); }""")
+
+    def frames(self):
+        return [json.loads(line) for line in self.log.read_text().splitlines()] if self.log.exists() else []
+
+    def pixels(self, name=None):
+        image = self.picture.screenshot()
+        if name:
+            (self.folder / f"{name}.png").write_bytes(image)
+        return numpy.asarray(Image.open(io.BytesIO(image)).convert("RGB")).astype(int)
+
+    def rest(self):
+        """Waits until no frame comes any more, and returns the last one's pixels."""
+        before = None
+        for _ in range(4 * PATIENCE):
+            time.sleep(1)
+            now = self.frames(), self.page.evaluate("window.seen.length")
+            if now == before:
+                break
+            before = now
+        return self.pixels()
+
+    def drag(self, x, y, dx, dy, moves=10):
+        """Presses the mouse at x, y, moves it and releases it. Returns the milliseconds of the frames beside drawing, from the event until the page
+        shows the picture, of moves that one frame followed."""
+        costs, mouse = [], self.page.mouse
+        mouse.move(x, y)
+        mouse.down()
+        for n in range(1, moves + 1):
+            seen, logged_before = self.page.evaluate("window.seen.length"), len(self.frames())
+            mouse.move(x + dx * n / moves, y + dy * n / moves)
+            with contextlib.suppress(Exception):
+                self.page.wait_for_function(f"window.seen.length > {seen}", timeout=3000)
+            frames = self.frames()[logged_before:]
+            times, acted = self.page.evaluate("[window.seen, window.acted]")
+            if len(frames) == 1 and len(times) == seen + 1:
+                costs.append(times[-1] - acted - frames[0]["drawing"])
+        mouse.up()
+        return costs
+
+    def drag_handle(self, handle, dx):
+        box = handle.bounding_box()
+        return self.drag(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, dx, 0, 5)
+
+    def acts(self, expected, opacity, step, names):
+        """Turns, zooms, and moves both sliders; expected: the exact picture of a logged frame, and how far pixels may differ from it."""
+        costs, before = [], self.rest()
+        box = self.picture.bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+        def turn():
+            costs.extend(self.drag(x, y, 60, 30))
+
+        def zoom():
+            self.page.mouse.move(x, y)
+            self.page.mouse.wheel(0, -200)
+        for name, act in (("turn", turn), ("zoom", zoom), ("opacity", lambda: self.drag_handle(opacity, 40)), ("step", lambda: self.drag_handle(step, 200))):
+            frames = len(self.frames())
+            act()
+            after, last = self.rest(), self.frames()[-1]
+            self.pixels(f"{names}-{name}")
+            check(len(self.frames()) > frames and numpy.abs(after - before).max() > 20, f"{names}: {name} changes the picture")
+            picture, most = expected(last)
+            apart = numpy.abs(after - picture).max() if after.shape == picture.shape else f"{after.shape} and {picture.shape}"
+            check(not last["draft"] and not isinstance(apart, str) and apart <= most, f"{names}: after {name} the last picture is exact: {apart} of 255, {last}")
+            before = after
+        return costs
+
+
+def port():
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+@contextlib.contextmanager
+def serving(command, url, folder):
+    """A server that has answered. It ends with the context."""
+    with open(folder / "server.log", "w") as log, subprocess.Popen(command, cwd=folder, stdout=log, stderr=log) as server:
+        try:
+            for _ in range(2 * PATIENCE):
+                with contextlib.suppress(OSError):
+                    urllib.request.urlopen(url).close()
+                    break
+                time.sleep(0.5)
+            yield
+        finally:
+            server.terminate()
+
+
+def report(what, costs):
+    times = f"{statistics.median(costs):.0f} ms a frame beside drawing in the median of {len(costs)}, {max(costs):.0f} at most" if costs else "too busy"
+    print(f"{what}: {times}")
+
+
+def in_jupyter(browser, folder):
+    from stratus_volume import show
+    here = str(pathlib.Path(__file__).parent)
+    sources = [f"import sys; sys.path.insert(0, {here!r}); import in_browser; import stratus_volume as sv; sv.show(in_browser.steps()[0], size=in_browser.SIZE, "
+               "**in_browser.LOOK)", "in_browser.notebook()"]
+    cells = [dict(cell_type="code", execution_count=None, id=f"cell{n}", metadata={}, outputs=[], source=source) for n, source in enumerate(sources)]
+    kernel = dict(kernelspec=dict(name="python3", display_name="Python 3 (ipykernel)", language="python"))
+    (folder / "view.ipynb").write_text(json.dumps(dict(cells=cells, metadata=kernel, nbformat=4, nbformat_minor=5)))
+    at = f"http://127.0.0.1:{port()}"
+    command = [sys.executable, "-m", "jupyter", "lab", "--no-browser", "--allow-root", "--ServerApp.ip=127.0.0.1", f"--ServerApp.port={at.split(':')[-1]}",
+               "--IdentityProvider.token=", "--ServerApp.password="]
+    with serving(command, f"{at}/api", folder):
+        page = browser.new_page(viewport=dict(width=1100, height=1000))
+        try:
+            page.goto(f"{at}/doc/tree/view.ipynb?reset")
+            page.get_by_text("Python 3 (ipykernel) | Idle").wait_for(timeout=1000 * PATIENCE)
+            page.locator(".jp-Cell .cm-content").first.click()
+            page.keyboard.press("Shift+Enter")
+            page.keyboard.press("Shift+Enter")
+            inline = Page(page, page.locator(".jp-RenderedImage img"), folder / "none", folder)
+            check(numpy.array_equal(inline.pixels("jupyter-inline"), show(steps()[0], size=SIZE, **LOOK)[..., :3]), "show's picture is inline, to the bit")
+            own = Page(page, page.locator("img.widget-image"), folder / "frames", folder)
+
+            def expected(frame):
+                return show(steps()[frame["step"]], size=SIZE, **LOOK, **frame["state"])[..., :3].astype(int), 0
+            opacity, step = (page.locator(".widget-inline-hbox", has_text=name).locator(".noUi-handle") for name in ("opacity", "step"))
+            report("JupyterLab", own.acts(expected, opacity, step, "jupyter"))
+        finally:
+            page.screenshot(path=folder / "jupyter.png")
+            page.close()
+
+
+if __name__ == "__main__":
+    if CHROMIUM is None:
+        print("SKIPPED: no chromium (Debian: chromium)")
+        sys.exit(77)
+    where = pathlib.Path(sys.argv[1]).resolve()
+    where.mkdir(parents=True, exist_ok=True)
+    with sync_playwright() as driver:
+        chromium = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--force-color-profile=srgb", "--disable-gpu"])
+        print("Chromium", chromium.version)
+        in_jupyter(chromium, where)
+        chromium.close()
+    done()
