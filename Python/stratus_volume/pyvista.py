@@ -11,6 +11,7 @@ Each frame reads depth from the window, and gives it the picture as a texture of
 and picking does not see the volume.
 """
 import functools
+import time
 import warnings
 import weakref
 
@@ -19,12 +20,14 @@ import pyvista
 import pyvista.plotting.volume
 
 from . import _declarations as c
-from ._core import Unsupported
+from ._core import Unsupported, whole
+from ._dimensions import Steps
 from ._grid import LazyGrid, of_package
 from ._lazy import lazy_of
 from ._picture import paint
 from ._several import render_several
 from ._tetrahedra import Tetrahedra
+from ._trame import Sliders
 from ._values import number, numbers
 from ._volume import Volume
 
@@ -40,6 +43,7 @@ _BLENDINGS = ("composite", "maximum", "minimum", "average", "additive", "isosurf
 _MAPPERS = ("fixed_point", "gpu", "open_gl", "smart", "ugrid")
 _BLOCKS = ("Reds", "Greens", "Blues", "Greys", "Oranges", "Purples")
 _MOVES = 1.0  # frames in a second; a window that wants more is in the midst of an interaction
+_DRAFT_TOLERANCE = 0.02
 _SHADING = ("ambient", "diffuse", "specular", "specular_power")
 
 
@@ -129,6 +133,8 @@ class _Layer:
 
     def __init__(self, renderer):
         self.renderer, self.volumes, self._warned = renderer, [], False
+        self.seconds = 0.0  # of the last frame at rest
+        self._last = None  # what the last picture depends on, and the picture
         self._algorithm = _Picture(self, renderer)
         self._actor = _window(renderer, self._algorithm)
         _lay_below(renderer, self._actor)
@@ -178,6 +184,10 @@ class _Layer:
         renderer.GetRenderWindow().GetZbufferData(x, y, x + size[0] - 1, y + size[1] - 1, depths)
         opaque = numpy.clip(numpy_support.vtk_to_numpy(depths).reshape(size[1], size[0]), 0, 1)[::-1]
         view = core_camera(renderer.GetActiveCamera(), renderer.GetTiledAspectRatio())
+        rate = renderer.GetRenderWindow().GetDesiredUpdateRate()
+        moves, start = rate >= _MOVES, time.perf_counter()
+        part = 2 if moves and self.seconds > 1 / rate else 1  # a draft, if a whole frame takes longer than the window wants
+        opaque = numpy.ascontiguousarray(opaque[::part, ::part])
         for volume in shown:
             volume.place()
         coarse = self._shows_coarse(shown, renderer.GetRenderWindow())
@@ -186,10 +196,27 @@ class _Layer:
         with warnings.catch_warnings():
             if self._warned:  # once is enough: frames follow each other
                 warnings.simplefilter("ignore")
-            rgba = self._together(shown, size, view, opaque) if len(shown) > 1 else None
-            rgba = self._one_by_one(shown, size, view, opaque) if rgba is None else rgba
+            looks = [volume.asked() for volume in shown]
+            if part > 1:
+                looks = [dict(look, tolerance=max(_DRAFT_TOLERANCE, look.get("tolerance") or 0)) for look in looks]
+            key = bytes(view), part, [(volume, volume.shown, volume.revision, volume._known.tobytes(), look) for volume, look in zip(shown, looks)]
+            if self._last and self._is(key, opaque):
+                return self._last[2]
+            rgba = self._together(shown, looks, view, opaque) if len(shown) > 1 else None
+            rgba = self._one_by_one(shown, looks, view, opaque) if rgba is None else rgba
         self._warned = True
-        return numpy.ascontiguousarray(paint(rgba, None)[::-1])
+        if not moves and not coarse:
+            self.seconds = time.perf_counter() - start
+        picture = paint(rgba, None) if part == 1 else paint(rgba, None).repeat(part, axis=0).repeat(part, axis=1)[:size[1], :size[0]]
+        self._last = key, opaque, numpy.ascontiguousarray(picture[::-1])
+        return self._last[2]
+
+    def _is(self, key, opaque):
+        """Whether the last picture is the one of this key and these depths: pages of trame draw a scene twice for each move."""
+        try:
+            return self._last[0] == key and numpy.array_equal(self._last[1], opaque)
+        except ValueError:  # an array among the looks
+            return False
 
     def _shows_coarse(self, shown, window):
         """Whether lazy arrays show their coarse copies: while the camera moves, and in a volume's first picture if the window has events, one of
@@ -215,12 +242,13 @@ class _Layer:
             self.renderer.GetRenderWindow().Render()
 
     @staticmethod
-    def _together(shown, size, view, opaque):
+    def _together(shown, looks, view, opaque):
         """The picture of volumes that mix, None where one of them can't."""
-        if len(shown) > c.CONSTANTS["STRATUS_SEVERAL_MAX"] or any(volume.asked()["mode"] != "composite" for volume in shown):
+        if len(shown) > c.CONSTANTS["STRATUS_SEVERAL_MAX"] or any(look["mode"] != "composite" for look in looks):
             return None
         try:
-            rendering = render_several([(volume.shown, volume.asked()) for volume in shown], size=size, camera=view, opaque_depth=opaque)
+            rendering = render_several([(volume.shown, look) for volume, look in zip(shown, looks)], size=opaque.shape[::-1], camera=view,
+                                       opaque_depth=opaque)
         except (Unsupported, ValueError, TypeError):  # a volume's fault is reported when it is drawn by itself
             return None
         for volume, counters in zip(shown, rendering.counters["items"]):
@@ -228,16 +256,16 @@ class _Layer:
         return rendering.rgba
 
     @staticmethod
-    def _one_by_one(shown, size, view, opaque):
+    def _one_by_one(shown, looks, view, opaque):
         """The pictures one before the other, the nearest middle first."""
-        def distance(volume):
-            bounds = volume.drawn.bounds
+        def distance(item):
+            bounds = item[0].drawn.bounds
             middle = [(low + high) / 2 for low, high in zip(bounds[::2], bounds[1::2])]
             away = numpy.subtract(middle, view.eye)
             return away @ numpy.array(view.forward) if view.parallel else numpy.linalg.norm(away)
         result = None
-        for volume in sorted(shown, key=distance):
-            rendering = volume.shown.render(size=size, camera=view, opaque_depth=opaque, **volume.asked())
+        for volume, look in sorted(zip(shown, looks), key=distance):
+            rendering = volume.shown.render(size=opaque.shape[::-1], camera=view, opaque_depth=opaque, **look)
             volume.counters = rendering.counters
             result = rendering.rgba if result is None else result + (1 - result[..., 3:]) * rendering.rgba
         return result
@@ -246,12 +274,14 @@ class _Layer:
 class StratusVolume(pyvista.plotting.volume.Volume):
     """A volume in a scene: a Volume of pyvista's whose picture Stratus draws. Changes of its `prop`, `mapper`, `user_matrix`, position and so on
     show in the next frame, except of `mapper.dataset`. `set` sets other arguments of `Volume.render`, or for cells of `Tetrahedra.render`, which
-    take precedence. `remove` removes it, `visibility` hides it, `counters` are the last frame's.
+    take precedence. `remove` removes it, `visibility` hides it, `counters` are the last frame's. Of data with steps, `steps` has their `name` and
+    `labels`, and `step` is the number of the one that shows.
     """
 
     # pyvista's classes refuse attributes that they do not know. title: of the scalar bar; called: the name that was given; shown: what the frame
     # draws, a coarse copy of a lazy array while the camera moves; comes_first: the next picture is the first one, which may be coarse
     drawn, shown, look, counters, plotter, renderer, title, called, comes_first, _layer, _box, _base, _known, _words, _kept = (None,) * 15
+    steps, _step, _make = (None,) * 3
 
     def __init__(self, plotter, drawn, mapper, prop, look, user_matrix=None):
         super().__init__()
@@ -279,6 +309,30 @@ class StratusVolume(pyvista.plotting.volume.Volume):
             self.drawn._place(None if numpy.array_equal(whole, numpy.eye(4)) else whole)
             if self._box is not None:
                 self._box.mapper.SetInputData(pyvista.Box(self.bounds))
+
+    @property
+    def step(self):
+        return self._step
+
+    @step.setter
+    def step(self, n):
+        self.choose(n)
+        if self.plotter is not None:
+            self.plotter.render()
+
+    def choose(self, n):
+        """Sets the step that shows in the next frame."""
+        if self.steps is None:
+            raise ValueError("step is set, but the data have no steps: they must be an xarray.DataArray with a time, or a list")
+        whole(n, "step", 0, len(self.steps.labels) - 1)
+        if n != self._step:
+            drawn = self._make(self.steps[n])[0]
+            self.drawn, self._step, self._base, self._known = drawn, n, _matrix_of(drawn), None
+
+    @property
+    def revision(self):
+        """A number that grows when the values change."""
+        return self.drawn.grid.revision if isinstance(self.drawn, Volume) else 0
 
     def asked(self):
         """Returns the parameters of `render` that follow from prop and mapper, and the ones given to `set`."""
@@ -323,6 +377,8 @@ class StratusVolume(pyvista.plotting.volume.Volume):
     def set(self, **look):
         """Changes parameters that `Volume.render`, or of cells `Tetrahedra.render`, takes."""
         self.look.update(look)
+        if self._layer is not None:
+            self._layer._last = None  # whatever changed in an array
         if self.plotter is not None:
             self.plotter.render()
 
@@ -439,6 +495,24 @@ def _grid(volume, scalars, preference, place):
     return kind(volume, scalars=name, **place), name, values
 
 
+def _drawn(volume, scalars, resolution, preference, memory, progress, place):
+    """What draws the data, the scalars' name and values where they are known, and the data as a grid of pyvista's or as they are."""
+    spacing = None if resolution is None else numbers(resolution, 3, "resolution")
+    if isinstance(volume, (Volume, Tetrahedra)):
+        return volume, None, None, volume
+    if isinstance(volume, numpy.ndarray) and scalars is None:
+        return Volume(volume, axes="xyz", spacing=spacing, **place), None, volume, volume
+    if scalars is None and lazy_of(volume) is not None:
+        labelled = hasattr(volume, "dims") and hasattr(volume, "coords")
+        drawn = Volume(volume, axes=None if labelled else "xyz", spacing=spacing, memory=memory, **place)
+        drawn.settle(progress)
+        return drawn, volume.name if labelled else None, None if isinstance(drawn.grid, LazyGrid) else drawn.grid.values, volume
+    if isinstance(volume, numpy.ndarray):  # its scalars are distinguished from it
+        volume = pyvista.wrap(volume)
+        volume.spacing = (1, 1, 1) if spacing is None else spacing
+    return *_grid(volume, scalars, preference, place), volume
+
+
 def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacity="linear", n_colors=256, cmap=None, flip_scalars=False,
                reset_camera=None, name=None, ambient=None, categories=False, culling=False, multi_colors=False, blending="composite", mapper=None,
                scalar_bar_args=None, show_scalar_bar=None, annotations=None, pickable=True, preference="point", opacity_unit_distance=None, shade=False,
@@ -449,7 +523,8 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
     `prop.interpolation_type = "linear"`; values of cells are drawn as such. Several volumes of a renderer mix along its rays.
 
     volume    array (nx, ny, nz), as pyvista's own add_volume accepts it, or a lazy one; an xarray.DataArray; ImageData, RectilinearGrid,
-              UnstructuredGrid, StructuredGrid, or a MultiBlock of these; or a Volume or Tetrahedra
+              UnstructuredGrid, StructuredGrid, or a MultiBlock of these; or a Volume or Tetrahedra. Or steps: an xarray.DataArray with a time
+              besides three dimensions of space, or a list of data. The first shows; its range and scalars are those of all
     scalars   name of the array of a grid, or an array with one for each point or cell, or (n, 4) bytes: red, green, blue and opacity; default: the
               active one. preference: "point" or "cell", where a name or a length fits both
     clim      least and greatest value of opacity and colours; one number c means (-c, c); default: the values' own
@@ -486,23 +561,12 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
     if show_scalar_bar is None:
         show_scalar_bar = plotter.theme.show_scalar_bar or bool(scalar_bar_args)
     _matrix(user_matrix)  # refuses an invalid matrix before anything changes
-    place, title = dict(device=device, threads=threads), None
-    if isinstance(volume, (Volume, Tetrahedra)):
-        drawn, values = volume, None
-    elif isinstance(volume, numpy.ndarray) and scalars is None:
-        spacing = None if resolution is None else numbers(resolution, 3, "resolution")
-        drawn, values = Volume(volume, axes="xyz", spacing=spacing, **place), volume
-    elif scalars is None and lazy_of(volume) is not None:
-        spacing = None if resolution is None else numbers(resolution, 3, "resolution")
-        labelled = hasattr(volume, "dims") and hasattr(volume, "coords")
-        drawn = Volume(volume, axes=None if labelled else "xyz", spacing=spacing, memory=memory, **place)
-        drawn.settle(options.get("progress"))
-        values, title = None if isinstance(drawn.grid, LazyGrid) else drawn.grid.values, getattr(volume, "name", None) if labelled else None
-    else:
-        if isinstance(volume, numpy.ndarray):  # its scalars are distinguished from it
-            volume = pyvista.wrap(volume)
-            volume.spacing = (1, 1, 1) if resolution is None else numbers(resolution, 3, "resolution")
-        drawn, title, values = _grid(volume, scalars, preference, place)
+    place = dict(device=device, threads=threads)
+    steps = Steps.of(volume)
+
+    def make(data):
+        return _drawn(data, scalars, resolution, preference, memory, options.get("progress"), place)
+    drawn, title, values, volume = make(volume if steps is None else steps[0])
     of = drawn.grid if isinstance(drawn, Volume) else drawn
     low, high = (0.0, 1.0) if of.spread is None else (min(each.low for each in of.spreads), max(each.high for each in of.spreads))
     low, high = _limits(clim, low, high, log_scale)
@@ -528,6 +592,7 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
             for other in [each for each in layer.volumes if each.called == name and layer.renderer is plotter.renderer]:
                 other.remove(render=False)
     result = StratusVolume(plotter, drawn, mapper, prop, options, user_matrix)
+    result.steps, result._make, result._step = steps, make, None if steps is None else 0
     if name is not None:
         result.name = result.called = name
     result.enter(name, reset_camera, render)
@@ -609,6 +674,11 @@ class StratusComponent:
 
     def add_volume(self, volume, *arguments, **options):
         return add_volume(self._plotter, volume, *arguments, **options)
+
+    def sliders(self):
+        """Adds sliders of opacity and of steps to the layout of trame that is being made: `plotter_ui(plotter, add_menu_items=plotter.stratus.sliders)`,
+        or in a notebook `plotter.show(jupyter_backend="server", add_menu_items=plotter.stratus.sliders)`."""
+        Sliders(self._plotter)
 
     def __plotter_close__(self):
         for layer in self._plotter.__dict__.pop("_stratus_layers", []):

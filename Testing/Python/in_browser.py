@@ -28,6 +28,7 @@ except ImportError as missing:
 
 CHROMIUM = next((found for found in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if found), None)
 LOOK = dict(opacity=[(0, 0), (1, 0.6)], color=[(0, 0.1, 0.3, 1), (1, 1, 0.5, 0.1)], device="host")
+SCENE = dict(opacity="linear", show_scalar_bar=False, device="host")
 SIZE = (320, 240)
 PATIENCE = 30  # seconds; of a machine that does much else
 
@@ -35,6 +36,9 @@ PATIENCE = 30  # seconds; of a machine that does much else
 def steps():
     """A series of three steps."""
     return [ball((24, 26, 28), (12, 9 + 4 * n, 14), 7 + n) + 0.7 * ball((24, 26, 28), (5, 20, 22), 5) for n in range(3)]
+
+
+RANGE = (0, float(steps()[0].max()))  # of the first step, which is the range of all
 
 
 def logged(path):
@@ -70,14 +74,44 @@ def notebook():
     return own
 
 
-class Page:
-    """A page of Chromium with a picture, and the log of what draws it."""
+def page_of_trame(at):
+    """A server of pyvista's page with the series, whose frames are logged."""
+    import pyvista
+    from stratus_volume.pyvista import _Layer, add_volume
+    from trame.app import get_server
+    from trame.ui.vuetify3 import VAppLayout
+    from trame_pyvista.ui import plotter_ui
+    plotter, log, draw = pyvista.Plotter(off_screen=True), logged("frames"), _Layer.draw
+    volume = add_volume(plotter, steps(), **SCENE)
 
-    def __init__(self, page, picture, log, folder):
-        self.page, self.picture, self.log, self.folder = page, picture, log, folder
+    def logging(self, *arguments):
+        picture, rate = draw(self, *arguments), plotter.render_window.GetDesiredUpdateRate()
+        log(draft=rate >= 1, step=volume.step, extinction=volume.look.get("extinction", 1), camera=[list(point) for point in plotter.camera_position],
+            angle=plotter.camera.view_angle)
+        return picture
+    _Layer.draw = logging
+    server = get_server(client_type="vue3")
+    with VAppLayout(server):
+        plotter_ui(plotter, mode="server", add_menu_items=plotter.stratus.sliders)
+    server.start(port=at, host="127.0.0.1", open_browser=False)
+
+
+class Page:
+    """A page of Chromium with a picture, and the log of the frames that its server drew."""
+
+    def __init__(self, page, picture, log, folder, top=0):
+        """top: rows that a toolbar covers."""
+        self.page, self.picture, self.log, self.folder, self.top = page, picture, log, folder, top
         picture.wait_for(timeout=1000 * PATIENCE)
-        picture.evaluate("""picture => { window.seen = []; window.acted = 0;
-            picture.addEventListener("load", () => requestAnimationFrame(() => window.seen.push(performance.now())));
+        # The times of pictures that differ from the ones before: servers send some twice.
+        picture.evaluate("""picture => { window.seen = []; window.acted = 0; let last = "";
+            const small = new OffscreenCanvas(64, 48).getContext("2d", {willReadFrequently: true});
+            picture.addEventListener("load", () => requestAnimationFrame(() => {
+              const now = performance.now();
+              small.drawImage(picture, 0, 0, 64, 48);
+              const pixels = small.getImageData(0, 0, 64, 48).data.join();
+              if (pixels != last) window.seen.push(now);
+              last = pixels; }));
             for (const kind of ["mousedown", "mousemove", "mouseup", "wheel", "pointermove"])
               document.addEventListener(kind, event => { window.acted = event.timeStamp; }, true); }""")
 
@@ -88,7 +122,7 @@ class Page:
         image = self.picture.screenshot()
         if name:
             (self.folder / f"{name}.png").write_bytes(image)
-        return numpy.asarray(Image.open(io.BytesIO(image)).convert("RGB")).astype(int)
+        return numpy.asarray(Image.open(io.BytesIO(image)).convert("RGB")).astype(int)[self.top:]
 
     def rest(self):
         """Waits until no frame comes any more, and returns the last one's pixels."""
@@ -103,7 +137,7 @@ class Page:
 
     def drag(self, x, y, dx, dy, moves=10):
         """Presses the mouse at x, y, moves it and releases it. Returns the milliseconds of the frames beside drawing, from the event until the page
-        shows the picture, of moves that one frame followed."""
+        shows the picture, of moves that one picture followed."""
         costs, mouse = [], self.page.mouse
         mouse.move(x, y)
         mouse.down()
@@ -114,8 +148,8 @@ class Page:
                 self.page.wait_for_function(f"window.seen.length > {seen}", timeout=3000)
             frames = self.frames()[logged_before:]
             times, acted = self.page.evaluate("[window.seen, window.acted]")
-            if len(frames) == 1 and len(times) == seen + 1:
-                costs.append(times[-1] - acted - frames[0]["drawing"])
+            if frames and len(times) == seen + 1:
+                costs.append(times[-1] - acted - sum(frame["drawing"] for frame in frames))
         mouse.up()
         return costs
 
@@ -135,7 +169,7 @@ class Page:
         def zoom():
             self.page.mouse.move(x, y)
             self.page.mouse.wheel(0, -200)
-        for name, act in (("turn", turn), ("zoom", zoom), ("opacity", lambda: self.drag_handle(opacity, 40)), ("step", lambda: self.drag_handle(step, 200))):
+        for name, act in (("turn", turn), ("zoom", zoom), ("opacity", lambda: costs.extend(self.drag_handle(opacity, 40))), ("step", lambda: self.drag_handle(step, 100))):
             frames = len(self.frames())
             act()
             after, last = self.rest(), self.frames()[-1]
@@ -206,7 +240,35 @@ def in_jupyter(browser, folder):
             page.close()
 
 
+def in_trame(browser, folder):
+    import pyvista
+    from stratus_volume.pyvista import add_volume
+    at = port()
+    with serving([sys.executable, __file__, "page", str(at)], f"http://127.0.0.1:{at}", folder):
+        page = browser.new_page(viewport=dict(width=960, height=480))
+        try:
+            page.goto(f"http://127.0.0.1:{at}")
+            own = Page(page, page.locator("img[src^=blob]"), folder / "frames", folder, 60)
+
+            def expected(frame):
+                plotter = pyvista.Plotter(off_screen=True, window_size=(960, 480))
+                add_volume(plotter, steps()[frame["step"]], **SCENE, clim=RANGE, extinction=frame["extinction"])
+                plotter.camera_position, plotter.camera.view_angle = frame["camera"], frame["angle"]
+                plotter.renderer.reset_camera_clipping_range()
+                picture = plotter.screenshot(return_img=True)[..., :3].astype(int)
+                plotter.close()
+                return picture[60:], 8  # it comes as JPEG of the highest quality
+            opacity, step = (page.locator(".v-slider", has_text=name).locator(".v-slider-thumb") for name in ("opacity", "step"))
+            report("pyvista's page", own.acts(expected, opacity, step, "trame"))
+        finally:
+            page.screenshot(path=folder / "trame.png")
+            page.close()
+
+
 if __name__ == "__main__":
+    if sys.argv[1] == "page":
+        page_of_trame(int(sys.argv[2]))
+        sys.exit()
     if CHROMIUM is None:
         print("SKIPPED: no chromium (Debian: chromium)")
         sys.exit(77)
@@ -215,6 +277,11 @@ if __name__ == "__main__":
     with sync_playwright() as driver:
         chromium = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--force-color-profile=srgb", "--disable-gpu"])
         print("Chromium", chromium.version)
-        in_jupyter(chromium, where)
+        for test in [in_jupyter, in_trame]:
+            if len(sys.argv) < 3 or sys.argv[2] == test.__name__:
+                folder = where / test.__name__
+                shutil.rmtree(folder, ignore_errors=True)
+                folder.mkdir()
+                test(chromium, folder)
         chromium.close()
     done()

@@ -232,6 +232,50 @@ def data():
         plotter.close()
 
 
+def drafts():
+    """While the camera moves, frames that take longer than the window wants are drafts. A frame whose scene has not changed is not drawn again."""
+    plotter = pyvista.Plotter(off_screen=True, window_size=(121, 91))
+    volume = plotter.stratus.add_volume(grid, show_scalar_bar=False, opacity="sigmoid_5")
+    window, layer = plotter.render_window, plotter.__dict__["_stratus_layers"][0]
+    whole, rays = plotter.screenshot(return_img=True).astype(int), volume.counters["rays"]
+    volume.counters = None
+    plotter.render()
+    check(volume.counters is None and numpy.array_equal(plotter.screenshot(return_img=True), whole), "the same scene again")
+    window.SetDesiredUpdateRate(15)
+    for seconds, part in (0.0, 1), (10.0, 4):
+        layer.seconds, layer._last = seconds, None
+        plotter.render()
+        check(0.8 * rays < part * volume.counters["rays"] < 1.2 * rays, f"{volume.counters['rays']} of {rays} rays after a frame of {seconds} s")
+    draft = numpy.abs(plotter.screenshot(return_img=True).astype(int) - whole)
+    check(draft.max() > 0 and draft.mean() < 8, f"a draft looks alike: {draft.mean():.1f} of 255")
+    window.SetDesiredUpdateRate(0.0001)
+    plotter.render()
+    check(numpy.array_equal(plotter.screenshot(return_img=True), whole) and layer.seconds < 10, "the last frame is whole")
+    plotter.close()
+
+
+def steps():
+    def picture(data, step=None, **look):
+        plotter = pyvista.Plotter(off_screen=True, window_size=(120, 90))
+        volume = plotter.stratus.add_volume(data, show_scalar_bar=False, **look)
+        if step is not None:
+            volume.step = step
+            check(volume.step == step and volume.steps.labels == ["0", "1"], "a step is chosen")
+        result = plotter.screenshot(return_img=True)
+        plotter.close()
+        return result
+    other = grid.copy()
+    other["RTData"] = other["RTData"][::-1] ** 0.98
+    clim = (float(field.min()), float(field.max()))
+    check(numpy.array_equal(picture([grid, other], 0), picture(grid)), "the first step")
+    check(numpy.array_equal(picture([grid, other], 1), picture(other, clim=clim)), "another one, with the first one's range")
+    plotter = pyvista.Plotter(off_screen=True)
+    volume = plotter.stratus.add_volume([grid, other])
+    refuse(ValueError, "0..1", volume.choose, 2)
+    refuse(ValueError, "no steps", plotter.stratus.add_volume(grid).choose, 0)
+    plotter.close()
+
+
 def lazily():
     """A lazy array, which moves as a coarse copy, and an xarray.DataArray's kind of array as the array in memory."""
     values, pictures = numpy.ascontiguousarray(field), []
@@ -285,6 +329,8 @@ reacts()
 several()
 named_colors()
 data()
+drafts()
+steps()
 lazily()
 refines()
 done()
