@@ -11,6 +11,7 @@ class Sliders:
         from trame.widgets import vuetify3
         from trame_pyvista.ui import get_viewer
         self.plotter, self.viewer, self._rest, self._level = plotter, get_viewer(plotter), None, 0.0
+        plotter.render_window.GetInteractor().EnableRenderOff()  # trame draws after each event, and would draw each frame twice
         series = [volume for volume in plotter.stratus.volumes if volume.steps is not None]
         with vuetify3.VRow(classes="pa-0 ma-0 align-center", style="flex-wrap: nowrap"):
             self._add("opacity", self._level, self._thicken, label="opacity", min=-2, max=2, step=0.01)
@@ -44,13 +45,18 @@ class Sliders:
         loop, window = _running_loop(), self.plotter.render_window
         if self._rest is not None:
             self._rest.cancel()
-        if loop is not None:
-            window.SetDesiredUpdateRate(window.GetInteractor().GetDesiredUpdateRate())
-            self._rest = loop.call_later(_REST, self._rested)
-        self.viewer.update()
+        if loop is None:
+            self.viewer.update()
+            return
+        window.SetDesiredUpdateRate(window.GetInteractor().GetDesiredUpdateRate())
+        for view in self.viewer.views:  # a single picture would come half a second late, as trame looks again for what its threads encode
+            view.start_animation()
+        window.Render()
+        self._rest = loop.call_later(_REST, self._rested)
 
     def _rested(self):
         window, self._rest = self.plotter.render_window, None
         if window is not None:  # of a plotter that is not closed
             window.SetDesiredUpdateRate(window.GetInteractor().GetStillUpdateRate())
-            self.viewer.update()
+        for view in self.viewer.views:
+            view.stop_animation()

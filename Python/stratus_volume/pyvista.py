@@ -212,7 +212,7 @@ class _Layer:
         return self._last[2]
 
     def _is(self, key, opaque):
-        """Whether the last picture is the one of this key and these depths: pages of trame draw a scene twice for each move."""
+        """Whether the last picture is the one of this key and these depths: pages of trame draw the same scene several times."""
         try:
             return self._last[0] == key and numpy.array_equal(self._last[1], opaque)
         except ValueError:  # an array among the looks

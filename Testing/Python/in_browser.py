@@ -9,7 +9,6 @@ import os
 import pathlib
 import shutil
 import socket
-import statistics
 import subprocess
 import sys
 import time
@@ -135,43 +134,39 @@ class Page:
             before = now
         return self.pixels()
 
-    def drag(self, x, y, dx, dy, moves=10):
-        """Presses the mouse at x, y, moves it and releases it. Returns the milliseconds of the frames beside drawing, from the event until the page
-        shows the picture, of moves that one picture followed."""
-        costs, mouse = [], self.page.mouse
+    def drag(self, x, y, dx, dy, moves=60):
+        """Presses the mouse at x, y, moves it as a hand does and releases it. Returns how many pictures the page showed meanwhile, and the milliseconds
+        from one to the next without the time in which Stratus drew."""
+        mouse = self.page.mouse
         mouse.move(x, y)
         mouse.down()
+        seen, frames = self.page.evaluate("window.seen.length"), len(self.frames())
         for n in range(1, moves + 1):
-            seen, logged_before = self.page.evaluate("window.seen.length"), len(self.frames())
             mouse.move(x + dx * n / moves, y + dy * n / moves)
-            with contextlib.suppress(Exception):
-                self.page.wait_for_function(f"window.seen.length > {seen}", timeout=3000)
-            frames = self.frames()[logged_before:]
-            times, acted = self.page.evaluate("[window.seen, window.acted]")
-            if frames and len(times) == seen + 1:
-                costs.append(times[-1] - acted - sum(frame["drawing"] for frame in frames))
+            time.sleep(0.01)
+        times, drawn = self.page.evaluate(f"window.seen.slice({seen})"), self.frames()[frames:]
         mouse.up()
-        return costs
+        return len(times), (times[-1] - times[0] - sum(frame["drawing"] for frame in drawn[1:])) / (len(times) - 1) if len(times) > 4 else None
 
     def drag_handle(self, handle, dx):
         box = handle.bounding_box()
-        return self.drag(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, dx, 0, 5)
+        return self.drag(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, dx, 0)
 
     def acts(self, expected, opacity, step, names):
         """Turns, zooms, and moves both sliders; expected: the exact picture of a logged frame, and how far pixels may differ from it."""
-        costs, before = [], self.rest()
+        before = self.rest()
         box = self.picture.bounding_box()
         x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-
-        def turn():
-            costs.extend(self.drag(x, y, 60, 30))
 
         def zoom():
             self.page.mouse.move(x, y)
             self.page.mouse.wheel(0, -200)
-        for name, act in (("turn", turn), ("zoom", zoom), ("opacity", lambda: costs.extend(self.drag_handle(opacity, 40))), ("step", lambda: self.drag_handle(step, 100))):
+        for name, act in (("turn", lambda: self.drag(x, y, 60, 30)), ("zoom", zoom), ("opacity", lambda: self.drag_handle(opacity, 40)),
+                          ("step", lambda: self.drag_handle(step, 100))):
             frames = len(self.frames())
-            act()
+            cost = act()
+            if name in ("turn", "opacity"):
+                print(f"{names}, {name}: {cost[0]} pictures, " + ("too few to time" if cost[1] is None else f"{cost[1]:.0f} ms a picture beside drawing"))
             after, last = self.rest(), self.frames()[-1]
             self.pixels(f"{names}-{name}")
             check(len(self.frames()) > frames and numpy.abs(after - before).max() > 20, f"{names}: {name} changes the picture")
@@ -179,7 +174,6 @@ class Page:
             apart = numpy.abs(after - picture).max() if after.shape == picture.shape else f"{after.shape} and {picture.shape}"
             check(not last["draft"] and not isinstance(apart, str) and apart <= most, f"{names}: after {name} the last picture is exact: {apart} of 255, {last}")
             before = after
-        return costs
 
 
 def port():
@@ -201,11 +195,6 @@ def serving(command, url, folder):
             yield
         finally:
             server.terminate()
-
-
-def report(what, costs):
-    times = f"{statistics.median(costs):.0f} ms a frame beside drawing in the median of {len(costs)}, {max(costs):.0f} at most" if costs else "too busy"
-    print(f"{what}: {times}")
 
 
 def in_jupyter(browser, folder):
@@ -234,7 +223,7 @@ def in_jupyter(browser, folder):
             def expected(frame):
                 return show(steps()[frame["step"]], size=SIZE, **LOOK, **frame["state"])[..., :3].astype(int), 0
             opacity, step = (page.locator(".widget-inline-hbox", has_text=name).locator(".noUi-handle") for name in ("opacity", "step"))
-            report("JupyterLab", own.acts(expected, opacity, step, "jupyter"))
+            own.acts(expected, opacity, step, "JupyterLab")
         finally:
             page.screenshot(path=folder / "jupyter.png")
             page.close()
@@ -259,7 +248,7 @@ def in_trame(browser, folder):
                 plotter.close()
                 return picture[60:], 8  # it comes as JPEG of the highest quality
             opacity, step = (page.locator(".v-slider", has_text=name).locator(".v-slider-thumb") for name in ("opacity", "step"))
-            report("pyvista's page", own.acts(expected, opacity, step, "trame"))
+            own.acts(expected, opacity, step, "trame")
         finally:
             page.screenshot(path=folder / "trame.png")
             page.close()
