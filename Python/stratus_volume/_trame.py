@@ -49,7 +49,7 @@ class Sliders:
             self.viewer.update()
             return
         window.SetDesiredUpdateRate(window.GetInteractor().GetDesiredUpdateRate())
-        for view in self.viewer.views:  # a single picture would come half a second late, as trame looks again for what its threads encode
+        for view in self.viewer.views:  # trame looks for a single picture half a second after its threads begin to encode it
             view.start_animation()
         window.Render()
         self._rest = loop.call_later(_REST, self._rested)

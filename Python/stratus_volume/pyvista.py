@@ -677,7 +677,7 @@ class StratusComponent:
 
     def sliders(self):
         """Adds sliders of opacity and of steps to the layout of trame that is being made: `plotter_ui(plotter, add_menu_items=plotter.stratus.sliders)`,
-        or in a notebook `plotter.show(jupyter_backend="server", add_menu_items=plotter.stratus.sliders)`."""
+        or in a notebook `plotter.show(jupyter_backend="server", jupyter_kwargs=dict(add_menu_items=plotter.stratus.sliders))`."""
         Sliders(self._plotter)
 
     def __plotter_close__(self):

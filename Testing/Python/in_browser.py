@@ -9,6 +9,7 @@ import os
 import pathlib
 import shutil
 import socket
+import statistics
 import subprocess
 import sys
 import time
@@ -43,20 +44,21 @@ RANGE = (0, float(steps()[0].max()))  # of the first step, which is the range of
 def logged(path):
     """Writes a line for each frame of this process: how many milliseconds Stratus drew, and what the caller adds."""
     from stratus_volume import Volume
-    drawn, render = [], Volume.render
+    drawn, begun, render = [], [], Volume.render
 
     def timed(self, *arguments, **options):
-        start = time.perf_counter()
+        begun.append(1000 * time.time())
         try:
             return render(self, *arguments, **options)
         finally:
-            drawn.append(1000 * (time.perf_counter() - start))
+            drawn.append(1000 * time.time() - begun[-1])
     Volume.render = timed
 
     def log(**more):
         with open(path, "a") as file:
-            file.write(json.dumps(dict(drawing=sum(drawn), **more)) + "\n")
+            file.write(json.dumps(dict(drawing=sum(drawn), begin=begun[0] if begun else 0, end=1000 * time.time(), **more)) + "\n")
         drawn.clear()
+        begun.clear()
     return log
 
 
@@ -103,16 +105,16 @@ class Page:
         self.page, self.picture, self.log, self.folder, self.top = page, picture, log, folder, top
         picture.wait_for(timeout=1000 * PATIENCE)
         # The times of pictures that differ from the ones before: servers send some twice.
-        picture.evaluate("""picture => { window.seen = []; window.acted = 0; let last = "";
+        picture.evaluate("""picture => { window.seen = []; window.acted = []; let last = "";
             const small = new OffscreenCanvas(64, 48).getContext("2d", {willReadFrequently: true});
             picture.addEventListener("load", () => requestAnimationFrame(() => {
-              const now = performance.now();
+              const now = performance.timeOrigin + performance.now();
               small.drawImage(picture, 0, 0, 64, 48);
               const pixels = small.getImageData(0, 0, 64, 48).data.join();
               if (pixels != last) window.seen.push(now);
               last = pixels; }));
             for (const kind of ["mousedown", "mousemove", "mouseup", "wheel", "pointermove"])
-              document.addEventListener(kind, event => { window.acted = event.timeStamp; }, true); }""")
+              document.addEventListener(kind, event => { window.acted.push(performance.timeOrigin + event.timeStamp); }, true); }""")
 
     def frames(self):
         return [json.loads(line) for line in self.log.read_text().splitlines()] if self.log.exists() else []
@@ -135,8 +137,8 @@ class Page:
         return self.pixels()
 
     def drag(self, x, y, dx, dy, moves=60):
-        """Presses the mouse at x, y, moves it as a hand does and releases it. Returns how many pictures the page showed meanwhile, and the milliseconds
-        from one to the next without the time in which Stratus drew."""
+        """Presses the mouse at x, y, moves it as a hand does and releases it. Returns the milliseconds of each picture from the last event before it was
+        drawn until the page shows it, without the time in which Stratus drew."""
         mouse = self.page.mouse
         mouse.move(x, y)
         mouse.down()
@@ -144,9 +146,13 @@ class Page:
         for n in range(1, moves + 1):
             mouse.move(x + dx * n / moves, y + dy * n / moves)
             time.sleep(0.01)
-        times, drawn = self.page.evaluate(f"window.seen.slice({seen})"), self.frames()[frames:]
+        (times, events), drawn = self.page.evaluate(f"[window.seen.slice({seen}), window.acted]"), self.frames()[frames:]
         mouse.up()
-        return len(times), (times[-1] - times[0] - sum(frame["drawing"] for frame in drawn[1:])) / (len(times) - 1) if len(times) > 4 else None
+        costs, drawn = [], [frame for frame in drawn if frame["drawing"]]
+        for time_seen, before in zip(times[1:], times):
+            shown = [frame for frame in drawn if before - frame["drawing"] < frame["end"] < time_seen][-1:]
+            costs += [time_seen - max(event for event in events if event < frame["begin"]) - frame["drawing"] for frame in shown]
+        return costs
 
     def drag_handle(self, handle, dx):
         box = handle.bounding_box()
@@ -166,7 +172,7 @@ class Page:
             frames = len(self.frames())
             cost = act()
             if name in ("turn", "opacity"):
-                print(f"{names}, {name}: {cost[0]} pictures, " + ("too few to time" if cost[1] is None else f"{cost[1]:.0f} ms a picture beside drawing"))
+                print(f"{names}, {name}: {len(cost)} pictures" + (f", in the median {statistics.median(cost):.0f} ms beside drawing" if cost else ""))
             after, last = self.rest(), self.frames()[-1]
             self.pixels(f"{names}-{name}")
             check(len(self.frames()) > frames and numpy.abs(after - before).max() > 20, f"{names}: {name} changes the picture")
