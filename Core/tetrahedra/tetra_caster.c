@@ -143,6 +143,7 @@ static stratus_status update_values(stratus_tetra_caster* caster, const stratus_
     if (caster->view.type != mesh->type || low != known->low || high != known->high || bias != known->bias) {
       drop_table(caster); /* it spans the values */
     }
+    known->identity = stratus_tetra_identity(mesh);
     caster->view = *mesh;
     ++caster->value_builds;
   }

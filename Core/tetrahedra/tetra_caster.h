@@ -162,7 +162,7 @@ void stratus_tetra_mesh_destroy(stratus_tetra_mesh* mesh); /* takes NULL */
 /* Gives the local bounds of all finite coordinates of a mesh, or of its blocks. Returns false if an axis has none. */
 bool stratus_tetra_box(const stratus_mesh* mesh, double lo[3], double hi[3]);
 /* Whether the mesh has the content in points and vertices, not merely the pointers, that `tetra` was made from. */
-bool stratus_tetra_mesh_fits(stratus_tetra_mesh* tetra, const stratus_mesh* mesh);
+bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh);
 /* Takes other values of a mesh that fits. *taken false: other cells show by them, so that the borders differ; then nothing has changed. */
 stratus_status stratus_tetra_mesh_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken);
 /* Whether a cell is drawn: it is not hidden, names four different points, and its values are finite. range: their least and greatest.

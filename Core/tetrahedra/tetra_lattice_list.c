@@ -138,7 +138,7 @@ stratus_status stratus_tetra_list_create(stratus_context* context, const stratus
   list->mesh.float_points = NULL;
   list->mesh.blocks = NULL;
   list->mesh.block_count = 0;
-  list->mesh.geometry = 0; /* its vertices are not those of the lattice */
+  list->mesh.geometry = 0; /* the list has other vertices than the lattice */
   list->mesh.cell_count = 6 * lattice->cell_count;
   const stratus_status status = fill(list, lattice);
   if (status != STRATUS_OK) {

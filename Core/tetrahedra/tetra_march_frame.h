@@ -27,7 +27,7 @@ typedef struct stratus_tetra_buffer {
   size_t bytes;
 } stratus_tetra_buffer;
 
-/* What the points and the faces in buffers were placed for. */
+/* The camera and the image for which a frame placed its points and faces. */
 typedef struct stratus_tetra_placement {
   double matrix[16], scale, middle;
   int parallel, width, height;
@@ -37,7 +37,7 @@ typedef struct stratus_tetra_placement {
  * are, and only values are stored anew. */
 typedef struct stratus_tetra_buffers {
   stratus_tetra_buffer points, places, faces, lines, ends, bin_begin, bins, first, entries;
-  bool placed, binned; /* points and faces are those of `placement`; whoever changes the mesh sets both false */
+  bool placed, binned; /* points, and faces, fit `placement`; whoever changes the mesh sets both false */
   stratus_tetra_placement placement;
 } stratus_tetra_buffers;
 

@@ -339,17 +339,14 @@ bool stratus_tetra_box(const stratus_mesh* mesh, double lo[3], double hi[3])
   return lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2];
 }
 
-bool stratus_tetra_mesh_fits(stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
+bool stratus_tetra_mesh_fits(const stratus_tetra_mesh* tetra, const stratus_mesh* mesh)
 {
   const bool lattice = stratus_mesh_is_lattice(mesh);
   const uint64_t identity = stratus_tetra_identity(mesh);
-  const bool fits = tetra->cell_count == (lattice ? 6 : 1) * mesh->cell_count &&
-    tetra->lattices == (lattice ? stratus_mesh_part_count(mesh) : 0) &&
+  return tetra->cell_count == (lattice ? 6 : 1) * mesh->cell_count && tetra->lattices == (lattice ? stratus_mesh_part_count(mesh) : 0) &&
     (lattice || (tetra->point_count == mesh->point_count && (tetra->at || !mesh->labels))) &&
     (tetra->values == NULL) == (mesh->cell_values != 0) &&
     ((identity && identity == tetra->identity) || tetra->geometry == stratus_tetra_hash(tetra->context, mesh));
-  tetra->identity = fits ? identity : tetra->identity;
-  return fits;
 }
 
 stratus_status stratus_tetra_mesh_take_values(stratus_tetra_mesh* tetra, const stratus_mesh* mesh, bool* taken)

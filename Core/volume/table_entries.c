@@ -218,20 +218,6 @@ static void flag_cells(dividing* d)
   }
 }
 
-static size_t points_until(const double* x, size_t count, double value)
-{
-  size_t lo = 0, hi = count;
-  while (lo < hi) {
-    const size_t middle = (lo + hi) / 2;
-    if (x[middle] <= value) {
-      lo = middle + 1;
-    } else {
-      hi = middle;
-    }
-  }
-  return lo;
-}
-
 /* Finds the floats of the values that are in a cell; returns false if there are none. */
 static bool floats_of_cell(const dividing* d, int cell, float* first, float* last)
 {
@@ -267,7 +253,7 @@ static double value_of_entry(const dividing* d, float first, float last)
       best = ends[e];
     }
   }
-  for (size_t i = points_until(opacity->x, opacity->count, ends[0]); i < opacity->count && opacity->x[i] <= ends[1]; ++i) {
+  for (size_t i = stratus_points_until(opacity->x, opacity->count, ends[0]); i < opacity->count && opacity->x[i] <= ends[1]; ++i) {
     const double x = fetching->integer ? ceil(opacity->x[i]) : opacity->x[i];
     if ((float)(x - fetching->bias) == first && opacity->at[i] > stratus_curve_at(opacity, best)) {
       best = x;
@@ -292,7 +278,7 @@ static double reach_of(const dividing* d, float first, float last)
 /* True if the curve has a vertical step in (lo, hi]. */
 static bool steps_within(const stratus_curve* curve, double lo, double hi)
 {
-  for (size_t i = points_until(curve->x, curve->count, lo); i < curve->count && curve->x[i] <= hi; ++i) {
+  for (size_t i = stratus_points_until(curve->x, curve->count, lo); i < curve->count && curve->x[i] <= hi; ++i) {
     if (curve->at[i] != curve->left[i]) {
       return true;
     }
@@ -419,7 +405,8 @@ static stratus_status bound_cell(dividing* d, float first, float last)
   TRY(add_bound(d, first));
   /* Of wide types, the neighbours' points may be fetched as floats of this cell. */
   const double reach = d->values->fetching.wide ? reach_of(d, first, last) + 1.0 : 0.0;
-  for (size_t i = points_until(d->points, d->count, nextafter(lo - reach, -INFINITY)); i < d->count && d->points[i] <= hi + reach; ++i) {
+  for (size_t i = stratus_points_until(d->points, d->count, nextafter(lo - reach, -INFINITY)); i < d->count && d->points[i] <= hi + reach;
+       ++i) {
     if (i == 0 || d->points[i] > d->points[i - 1]) {
       TRY(bound_point(d, d->points[i], first, last));
     }

@@ -13,16 +13,8 @@ static double next_point(const stratus_pieces* pieces, double x)
   const stratus_curve* curves[] = { &pieces->opacity, &pieces->color[0], &pieces->color[1], &pieces->color[2] };
   double next = INFINITY;
   for (int c = 0; c < 4; ++c) {
-    size_t lo = 0, hi = curves[c]->count;
-    while (lo < hi) {
-      const size_t middle = (lo + hi) / 2;
-      if (curves[c]->x[middle] <= x) {
-        lo = middle + 1;
-      } else {
-        hi = middle;
-      }
-    }
-    next = lo < curves[c]->count ? fmin(next, curves[c]->x[lo]) : next;
+    const size_t until = stratus_points_until(curves[c]->x, curves[c]->count, x);
+    next = until < curves[c]->count ? fmin(next, curves[c]->x[until]) : next;
   }
   return next;
 }

@@ -113,13 +113,12 @@ void stratus_pieces_destroy(stratus_pieces* pieces)
   }
 }
 
-/* Returns the number of points with a value <= x. */
-static size_t points_until(const stratus_curve* curve, double x)
+size_t stratus_points_until(const double* x, size_t count, double value)
 {
-  size_t lo = 0, hi = curve->count;
+  size_t lo = 0, hi = count;
   while (lo < hi) {
     const size_t middle = (lo + hi) / 2;
-    if (curve->x[middle] <= x) {
+    if (x[middle] <= value) {
       lo = middle + 1;
     } else {
       hi = middle;
@@ -128,7 +127,7 @@ static size_t points_until(const stratus_curve* curve, double x)
   return lo;
 }
 
-/* The curve at x, of which `until` is points_until(). */
+/* The curve at x, of which `until` is stratus_points_until(). */
 static double value_in(const stratus_curve* curve, double x, size_t until)
 {
   if (until == 0) {
@@ -144,7 +143,7 @@ static double value_in(const stratus_curve* curve, double x, size_t until)
 
 double stratus_curve_at(const stratus_curve* curve, double x)
 {
-  return value_in(curve, x, points_until(curve, x));
+  return value_in(curve, x, stratus_points_until(curve->x, curve->count, x));
 }
 
 void stratus_curve_extremes(const stratus_curve* curve, double lo, double hi, double extremes[2])
@@ -154,7 +153,8 @@ void stratus_curve_extremes(const stratus_curve* curve, double lo, double hi, do
   if (!(lo <= hi)) {
     return;
   }
-  const size_t first = points_until(curve, lo), beyond = points_until(curve, hi); /* points in (lo, hi] */
+  const size_t first = stratus_points_until(curve->x, curve->count, lo),
+               beyond = stratus_points_until(curve->x, curve->count, hi); /* points in (lo, hi] */
   widen(extremes, value_in(curve, lo, first));
   widen(extremes, value_in(curve, hi, beyond));
   for (size_t a = curve->leaves + first, b = curve->leaves + beyond; a < b; a /= 2, b /= 2) {

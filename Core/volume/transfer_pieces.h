@@ -32,6 +32,8 @@ static inline double stratus_part_between(double x, double left, double right)
   const double width = right - left;
   return isfinite(width) ? (x - left) / width : (0.5 * x - 0.5 * left) / (0.5 * right - 0.5 * left);
 }
+/* Returns the number of ascending x that are <= value. */
+size_t stratus_points_until(const double* x, size_t count, double value);
 /* The curve at x. */
 double stratus_curve_at(const stratus_curve* curve, double x);
 /* Gives the greatest lower and the least upper bound of the curve over the closed interval lo..hi, whose ends may be infinite. They are

@@ -70,14 +70,14 @@ bool vtkStratusMeshView::SetGeometry(vtkDataSet* grid, std::string& error)
     this->Time = time;
     this->IsLattice = lattice != nullptr;
     if (lattice) { // the core asks whether its content has changed
-      this->ContentTime = 0;
+      this->Geometry = vtkTimeStamp();
       this->Divided = nullptr;
       this->HasLeaves = false;
       this->Refusal.clear();
       this->Accepted = this->Lattice.Set(lattice, this->Refusal);
       std::copy_n(this->Lattice.GetBounds(), 6, this->Bounds);
     } else {
-      this->Divide(cells, time);
+      this->Divide(cells);
       grid->GetBounds(this->Bounds);
     }
   }
@@ -86,14 +86,13 @@ bool vtkStratusMeshView::SetGeometry(vtkDataSet* grid, std::string& error)
 }
 
 // Divides the grid into tetrahedra, if its content has changed.
-void vtkStratusMeshView::Divide(vtkUnstructuredGrid* grid, vtkMTimeType time)
+void vtkStratusMeshView::Divide(vtkUnstructuredGrid* grid)
 {
   const uint64_t content = HashGrid(grid);
-  if (this->ContentTime > 0 && this->Content == content) {
+  if (this->Geometry.GetMTime() > 0 && this->Content == content) {
     return;
   }
   this->Content = content;
-  this->ContentTime = time;
   this->Divided = nullptr;
   this->Refusal.clear();
   this->Accepted = this->Tetrahedra.Set(grid, this->Refusal) && this->SetHidden(grid, this->Refusal);
@@ -137,7 +136,7 @@ bool vtkStratusMeshView::Set(
   this->Mesh.components = values.components;
   this->Mesh.cell_values = cells ? 1 : 0;
   this->Mesh.hidden = hidden.empty() ? nullptr : hidden.data();
-  const vtkMTimeType geometry = this->IsLattice ? this->Time : this->ContentTime;
+  const vtkMTimeType geometry = this->IsLattice ? this->Time : this->Geometry.GetMTime();
   this->Mesh.revision = values.revision ^ (static_cast<uint64_t>(geometry) * UINT64_C(0x9E3779B97F4A7C15));
   if (matrix) {
     std::copy(&matrix->Element[0][0], &matrix->Element[0][0] + 16, this->Mesh.matrix);
@@ -150,7 +149,7 @@ bool vtkStratusMeshView::SetSeveral(const Grids& grids, bool cells, vtkMatrix4x4
   stratus_mesh whole = stratus_mesh_default();
   std::vector<uint64_t> revisions;
   this->Grid = nullptr; // a single grid is read anew
-  this->ContentTime = 0;
+  this->Geometry = vtkTimeStamp();
   this->IsLattice = true;
   this->HasLeaves = false;
   this->Several.resize(grids.size());

@@ -50,7 +50,7 @@ public:
   stratus_volume GetBox() const;
 
 private:
-  void Divide(vtkUnstructuredGrid* grid, vtkMTimeType time);
+  void Divide(vtkUnstructuredGrid* grid);
   bool SetHidden(vtkUnstructuredGrid* grid, std::string& error);
   vtkDataArray* Spread(vtkDataArray* array, bool cells);
   void HideNotFinite();
@@ -62,8 +62,7 @@ private:
   vtkMTimeType Time = 0;
   // Of points, cells, hidden flags and partition: the cells are divided anew only where it changes, not with every step of a simulation.
   uint64_t Content = 0;
-  vtkMTimeType ContentTime = 0; // 0: no grid has been divided
-  vtkTimeStamp Geometry;        // when cells were divided
+  vtkTimeStamp Geometry; // when that was; 0: no grid has been divided
   bool Accepted = false;
   std::string Refusal;
   vtkStratusTetrahedra Tetrahedra;

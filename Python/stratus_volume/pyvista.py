@@ -134,14 +134,14 @@ class _Layer:
     def __init__(self, renderer):
         self.renderer, self.volumes, self._warned = renderer, [], False
         self.seconds = 0.0  # of the last frame at rest
-        self._last = None  # what the last picture depends on, and the picture
+        self._last = None  # the last picture, behind its key and depths
         self._algorithm = _Picture(self, renderer)
         self._actor = _window(renderer, self._algorithm)
         _lay_below(renderer, self._actor)
         anew = weakref.ref(self._algorithm)
         # VTK's commands are beyond Python's garbage collector: they hold nothing that holds the renderer.
         self._observer = renderer.AddObserver("StartEvent", lambda caller, event: anew() and anew().Modified())
-        self._follows, self._timed = False, None  # the picture that follows a coarse one; the interactor that asks for it, and its observer
+        self._follows, self._timed = False, None  # an exact picture follows; the interactor whose timer draws it, and the observer
 
     @classmethod
     def of(cls, plotter):
@@ -188,10 +188,9 @@ class _Layer:
         moves, start = rate >= _MOVES, time.perf_counter()
         part = 2 if moves and self.seconds > 1 / rate else 1  # a draft, if a whole frame takes longer than the window wants
         opaque = numpy.ascontiguousarray(opaque[::part, ::part])
+        coarse = moves or self._begins_coarse(shown, renderer.GetRenderWindow())
         for volume in shown:
             volume.place()
-        coarse = self._shows_coarse(shown, renderer.GetRenderWindow())
-        for volume in shown:
             volume.shown = volume.drawn.draft(volume.look.get("labels")) if coarse and isinstance(volume.drawn, Volume) else volume.drawn
         with warnings.catch_warnings():
             if self._warned:  # once is enough: frames follow each other
@@ -205,7 +204,7 @@ class _Layer:
             rgba = self._together(shown, looks, view, opaque) if len(shown) > 1 else None
             rgba = self._one_by_one(shown, looks, view, opaque) if rgba is None else rgba
         self._warned = True
-        if not moves and not coarse:
+        if not coarse:
             self.seconds = time.perf_counter() - start
         picture = paint(rgba, None) if part == 1 else paint(rgba, None).repeat(part, axis=0).repeat(part, axis=1)[:size[1], :size[0]]
         self._last = key, opaque, numpy.ascontiguousarray(picture[::-1])
@@ -218,11 +217,9 @@ class _Layer:
         except ValueError:  # an array among the looks
             return False
 
-    def _shows_coarse(self, shown, window):
-        """Whether lazy arrays show their coarse copies: while the camera moves, and in a volume's first picture if the window has events, one of
-        which then asks for the exact picture."""
-        if window.GetDesiredUpdateRate() >= _MOVES:
-            return True
+    def _begins_coarse(self, shown, window):
+        """Whether lazy arrays show their coarse copies in a picture at rest: in a volume's first one, if the window has events. A timer then draws
+        the exact picture."""
         interactor, self._follows = window.GetInteractor(), False
         first = [volume for volume in shown if volume.comes_first]
         for volume in first:

@@ -100,8 +100,7 @@ INLINE void cell_cut(CONSTANT stratus_ray_cast_arguments* a, cell_way* way, vflo
   }
 }
 
-/* Return the lanes of `mask` whose cell, with corners v, shows something, and set their paths through it. sums: NULL if the paths are not
- * cut at the function's stretches. */
+/* Return the lanes of `mask` whose cell, with corners v, shows something, and set their paths through it. */
 INLINE vmask cell_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const uchar* hidden, GLOBAL const int* sums, const stratus_packet* k,
   const cell_walk* w, const vint inside[3], const vfloat v[8], vmask mask, cell_way* ways)
 {
@@ -126,7 +125,7 @@ INLINE vmask cell_look(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const ucha
       mask = mask & v_lt(from, to);
     }
     way.front = cell_way_at(&way, from);
-    if (CELL_BY_STRETCHES(a) && sums) {
+    if (CELL_BY_STRETCHES(a)) {
       way.from = from;
       way.share = to - from;
       way.left = v_set(CELL_STRETCHES);
@@ -248,11 +247,11 @@ INLINE void cell_next_piece(const cell_way* way, cell_piece* piece)
   piece->back = cell_within(way, piece->value + move);
 }
 
-/* The next piece of a path. sums: as in cell_look(). Returns the part of the whole path that the piece is. */
+/* The next piece of a path. Returns the part of the whole path that the piece is. */
 INLINE vfloat cell_next(CONSTANT stratus_ray_cast_arguments* a, GLOBAL const int* sums, const cell_way* way, vmask mask, cell_piece* piece)
 {
   vfloat share = way->share;
-  if (CELL_BY_STRETCHES(a) && sums) {
+  if (CELL_BY_STRETCHES(a)) {
     cell_next_stretch(a, sums, way, mask, piece);
     share = piece->to - way->from;
   } else {
