@@ -89,6 +89,9 @@ def pictures():
         uneven = ball((20, 20, 20), (14, 7, 9), 8) + ball((20, 20, 20), (4, 15, 15), 4)
         plain, changed = stratus.show(uneven, size=(90, 60)), stratus.show(uneven, size=(90, 60), **options)
         check(not numpy.array_equal(plain, changed), f"{options} changes the picture")
+    twice, short = (stratus.show(field, size=(90, 60), **options) for options in (dict(unit_distance=2, extinction=2), dict(unit_distance=1)))
+    check(numpy.array_equal(twice, short), "twice the extinction is half the unit distance")
+    check(not numpy.array_equal(twice, stratus.show(field, size=(90, 60), unit_distance=2)), "and no other picture")
     camera = vtk.vtkCamera()
     camera.SetPosition(10, 10, 60), camera.SetFocalPoint(10, 10, 10)
     check(stratus.show(field, camera=camera, size=(90, 60), background=None)[30, 45, 3] > 0, "a camera of one's own")
@@ -312,7 +315,7 @@ def refusals():
     for options in dict(opacity=1j), dict(opacity="x"), dict(color=3), dict(camera=3), dict(camera=dict(zoom="x")), \
             dict(unit_distance="x"), dict(tolerance="x"), dict(mapper=3), dict(background=3), dict(size=5), dict(origin=None):
         refuse(TypeError, next(iter(options)), show, field, **options)
-    for options in dict(size=(10.5, 9)), dict(background=(2, 0, 0)), dict(unit_distance=0), dict(unit_distance=numpy.nan), dict(axes=3), \
+    for options in dict(size=(10.5, 9)), dict(background=(2, 0, 0)), dict(unit_distance=0), dict(unit_distance=numpy.nan), dict(extinction=0), dict(axes=3), \
             dict(tolerance=-1), dict(tolerance=numpy.nan), \
             dict(camera=dict(zoom=0)), dict(camera=dict(azimuth=numpy.inf)), dict(opacity=numpy.nan), dict(origin=(1, 2)), \
             dict(color="no such colour"):
