@@ -108,13 +108,7 @@ output_file::output_file(const std::string& path) : Path(path), Target(path)
   if (exists && this->Stream < 0 && access(path.c_str(), W_OK) != 0) { // a rename needs no such permission
     this->fail(errno);
   }
-  this->InPlace = exists && (this->Stream >= 0 || !S_ISREG(status.st_mode));
-  if (!this->InPlace) {
-    // A rename must replace the target of a link. A target without a name of its own cannot be replaced.
-    struct stat found;
-    this->Target = vtkStratusFollowLinks(path);
-    this->InPlace = exists && !(stat(this->Target.c_str(), &found) == 0 && same_file(found, status));
-  }
+  this->InPlace = this->Stream >= 0 || !vtkStratusFindTarget(path, this->Target);
   const std::string folder = this->Target.substr(0, this->Target.find_last_of('/') + 1);
   if (!this->InPlace && access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) != 0) {
     this->fail(errno);

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * Images as PNG files (ISO/IEC 15948), by zlib. */
+#define _XOPEN_SOURCE 700
 #include "base.h"
 #include "stratus/camera.h"
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #ifdef STRATUS_ZLIB
 #include <zlib.h>
@@ -81,33 +84,52 @@ static bool write_file(FILE* file, const stratus_image* image, size_t channels, 
   return wrote && write_chunk(file, "IEND", NULL, 0);
 }
 
+/* Whether a rename may put the picture at `path`: there is a regular file or nothing yet. A rename would replace a device, a pipe or a file
+ * that has no name by a file; these are written in place. Sets *target to the file behind links, to be freed, or to NULL. */
+static bool can_be_replaced(const char* path, char** target)
+{
+  struct stat status, found;
+  *target = realpath(path, NULL);
+  if (!*target) {
+    return lstat(path, &found) != 0;
+  }
+  return stat(path, &status) == 0 && stat(*target, &found) == 0 && S_ISREG(found.st_mode) && status.st_dev == found.st_dev &&
+    status.st_ino == found.st_ino;
+}
+
 static stratus_status write_image(stratus_context* context, const stratus_image* image, const double background[3], const char* path)
 {
   const size_t channels = background ? 3 : 4, row = 1 + channels * (size_t)image->width, count = row * (size_t)image->height;
   uLongf packed = compressBound(count);
+  char* behind = NULL;
+  const bool replaced = can_be_replaced(path, &behind);
+  const char *target = replaced && behind ? behind : path, *written = target;
   void *rows = NULL, *bytes = NULL, *part = NULL;
   stratus_status status;
   TRY_CLEANUP(stratus_allocate(context, count, 1, &rows));
   TRY_CLEANUP(stratus_allocate(context, packed, 1, &bytes));
-  TRY_CLEANUP(stratus_allocate(context, strlen(path) + sizeof ".part", 1, &part));
+  TRY_CLEANUP(stratus_allocate(context, strlen(target) + sizeof ".part", 1, &part));
   make_rows(image, background, channels, rows);
   if (compress2(bytes, &packed, rows, count, Z_BEST_SPEED) != Z_OK) {
     status = stratus_fail(context, STRATUS_OUT_OF_MEMORY, "zlib has no memory for a picture of %zu bytes", count);
     goto cleanup;
   }
-  strcat(strcpy(part, path), ".part");
+  if (replaced) {
+    written = strcat(strcpy(part, target), ".part");
+  }
   errno = 0;
-  FILE* file = fopen(part, "wb");
+  FILE* file = fopen(written, "wb");
   const bool wrote = file && write_file(file, image, channels, bytes, packed);
   const bool closed = file && fclose(file) == 0;
-  if (!wrote || !closed || rename(part, path) != 0) {
+  if (!wrote || !closed || (replaced && rename(written, target) != 0)) {
     status = stratus_fail(context, STRATUS_FILE_ERROR, "cannot write '%s': %s", path, strerror(errno));
-    if (file) {
-      remove(part);
+    if (file && replaced) {
+      remove(written);
     }
   }
 
 cleanup:
+  free(behind);
   stratus_release(context, part);
   stratus_release(context, bytes);
   stratus_release(context, rows);

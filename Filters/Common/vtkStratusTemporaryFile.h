@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files are written under a temporary name and renamed when complete, so that a reader finds the old file or the new one, never half of it.
+// What is no regular file (a pipe, a device) is written in place, because a rename would replace it by a file.
 // Private to the modules, never installed.
 #ifndef vtkStratusTemporaryFile_h
 #define vtkStratusTemporaryFile_h
@@ -35,6 +36,16 @@ inline std::string vtkStratusFollowLinks(const std::string& path)
   return target.string();
 }
 
+// Sets `target` to the file that `path` names, behind links. Returns whether a rename may replace it: it is a regular file with a name of
+// its own, or nothing yet.
+inline bool vtkStratusFindTarget(const std::string& path, std::string& target)
+{
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  target = vtkStratusFollowLinks(path);
+  return !std::filesystem::exists(status) || (std::filesystem::is_regular_file(status) && std::filesystem::equivalent(path, target, error));
+}
+
 // Returns a name in the folder of `path`, because a rename is atomic only within a file system. The file's own name is not part of it,
 // because names are limited to 255 bytes.
 inline std::string vtkStratusTemporaryName(const std::string& path, int number)
@@ -63,15 +74,61 @@ inline std::FILE* vtkStratusCreateTemporary(const std::string& name, const std::
 #endif
 }
 
-// Creates a new file to be renamed to `path` and puts its name in `name`. Returns nullptr on failure, with the reason in errno.
-inline std::FILE* vtkStratusOpenTemporary(const std::string& path, std::string& name)
+// A file that replaces another when it is whole. Each call returns 0, or the reason of a failure as errno has it.
+class vtkStratusReplacingFile
 {
-  std::FILE* file = nullptr;
-  for (int number = 0; !file && (number == 0 || errno == EEXIST); ++number) {
-    name = vtkStratusTemporaryName(path, number);
-    file = vtkStratusCreateTemporary(name, path);
+public:
+  vtkStratusReplacingFile() = default;
+  vtkStratusReplacingFile(const vtkStratusReplacingFile&) = delete;
+  vtkStratusReplacingFile& operator=(const vtkStratusReplacingFile&) = delete;
+  ~vtkStratusReplacingFile()
+  {
+    this->Close();
+    if (!this->Part.empty()) {
+      std::remove(this->Part.c_str());
+    }
   }
-  return file;
-}
+
+  int Open(const std::string& path)
+  {
+    if (!vtkStratusFindTarget(path, this->Target)) {
+      this->File = std::fopen(path.c_str(), "wb");
+      return this->File ? 0 : errno;
+    }
+    for (int number = 0; !this->File && (number == 0 || errno == EEXIST); ++number) {
+      this->Part = vtkStratusTemporaryName(this->Target, number);
+      this->File = vtkStratusCreateTemporary(this->Part, this->Target);
+    }
+    if (!this->File) {
+      this->Part.clear(); // another's file, if any
+    }
+    return this->File ? 0 : errno;
+  }
+
+  std::FILE* Get() const { return this->File; }
+
+  int Close()
+  {
+    std::FILE* file = this->File;
+    this->File = nullptr;
+    return file && std::fclose(file) != 0 ? errno : 0;
+  }
+
+  int Rename() // after Close()
+  {
+    std::error_code error;
+    if (!this->Part.empty()) {
+      std::filesystem::rename(this->Part, this->Target, error);
+    }
+    if (!error) {
+      this->Part.clear();
+    }
+    return error.value();
+  }
+
+private:
+  std::string Target, Part; // Part is empty where the target is written in place
+  std::FILE* File = nullptr;
+};
 
 #endif

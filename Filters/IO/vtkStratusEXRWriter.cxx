@@ -16,7 +16,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -110,28 +109,16 @@ void AddChannels(vtkAbstractArray* abstract, int width, std::vector<vtkStratusEX
   }
 }
 
-// Writes a temporary file and renames it, so that there is the old file or the new one, never half of it.
 void Store(const std::vector<unsigned char>& bytes, const std::string& path)
 {
-  std::string part;
-  const std::string target = vtkStratusFollowLinks(path);
-  std::FILE* file = vtkStratusOpenTemporary(target, part);
-  if (!file) {
-    Fail("can't open " + part + " for writing " + path + ": " + std::strerror(errno), vtkErrorCode::CannotOpenFileError);
+  vtkStratusReplacingFile file;
+  if (const int reason = file.Open(path)) {
+    Fail("can't open " + path + ": " + std::strerror(reason), vtkErrorCode::CannotOpenFileError);
   }
-  bool done = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  int reason = errno;
-  if (std::fclose(file) != 0 && done) {
-    done = false;
-    reason = errno;
-  }
-  std::error_code error;
-  if (done) {
-    std::filesystem::rename(part, target, error);
-    reason = error.value();
-  }
-  if (!done || error) {
-    std::remove(part.c_str());
+  int reason = std::fwrite(bytes.data(), 1, bytes.size(), file.Get()) == bytes.size() ? 0 : errno;
+  const int closing = file.Close();
+  reason = reason != 0 ? reason : closing != 0 ? closing : file.Rename();
+  if (reason != 0) {
     Fail("can't write " + path + ": " + std::strerror(reason),
       reason == ENOSPC ? vtkErrorCode::OutOfDiskSpaceError : vtkErrorCode::UnknownError);
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusTetGenText.h"
 
-#include "vtkStratusTemporaryFile.h"
-
 #include "vtkErrorCode.h"
 
 #include <algorithm>
@@ -248,30 +246,18 @@ void vtkStratusTetGenInput::EndFile(const char* things, vtkIdType all)
 }
 
 vtkStratusTetGenOutput::vtkStratusTetGenOutput(const std::string& path, const vtkStratusTetGenProgress& progress)
-    : Path(path), Target(vtkStratusFollowLinks(path)), Progress(progress)
+    : Path(path), Progress(progress)
 {
   this->Buffer.reserve(ChunkBytes + 64);
-  this->File = vtkStratusOpenTemporary(this->Target, this->Part);
-  if (!this->File) {
-    throw vtkStratusTetGenError{ "can't open " + this->Part + " for writing " + path + ": " + std::strerror(errno),
-      vtkErrorCode::CannotOpenFileError };
+  if (const int reason = this->File.Open(path)) {
+    throw vtkStratusTetGenError{ "can't open " + path + ": " + std::strerror(reason), vtkErrorCode::CannotOpenFileError };
   }
 }
 
-vtkStratusTetGenOutput::~vtkStratusTetGenOutput()
+void vtkStratusTetGenOutput::Fail(const char* doing, int reason) const
 {
-  if (this->File) {
-    std::fclose(this->File);
-  }
-  if (!this->Committed) {
-    std::remove(this->Part.c_str());
-  }
-}
-
-void vtkStratusTetGenOutput::Fail(const char* doing) const
-{
-  throw vtkStratusTetGenError{ std::string("can't ") + doing + " " + this->Path + ": " + std::strerror(errno),
-    errno == ENOSPC ? vtkErrorCode::OutOfDiskSpaceError : vtkErrorCode::UnknownError };
+  throw vtkStratusTetGenError{ std::string("can't ") + doing + " " + this->Path + ": " + std::strerror(reason),
+    reason == ENOSPC ? vtkErrorCode::OutOfDiskSpaceError : vtkErrorCode::UnknownError };
 }
 
 void vtkStratusTetGenOutput::Put(vtkIdType value)
@@ -304,8 +290,8 @@ void vtkStratusTetGenOutput::EndLine()
 void vtkStratusTetGenOutput::Flush()
 {
   const size_t bytes = this->Buffer.size();
-  if (std::fwrite(this->Buffer.data(), 1, bytes, this->File) != bytes) {
-    this->Fail("write");
+  if (std::fwrite(this->Buffer.data(), 1, bytes, this->File.Get()) != bytes) {
+    this->Fail("write", errno);
   }
   this->Buffer.clear();
   this->Progress(bytes);
@@ -314,20 +300,14 @@ void vtkStratusTetGenOutput::Flush()
 void vtkStratusTetGenOutput::Close()
 {
   this->Flush();
-  std::FILE* file = this->File;
-  this->File = nullptr;
-  if (std::fclose(file) != 0) {
-    this->Fail("write");
+  if (const int reason = this->File.Close()) {
+    this->Fail("write", reason);
   }
 }
 
 void vtkStratusTetGenOutput::Commit()
 {
-  std::error_code error;
-  std::filesystem::rename(this->Part, this->Target, error);
-  if (error) {
-    errno = error.value();
-    this->Fail("rename the file just written to");
+  if (const int reason = this->File.Rename()) {
+    this->Fail("rename the file just written to", reason);
   }
-  this->Committed = true;
 }

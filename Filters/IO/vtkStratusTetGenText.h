@@ -5,6 +5,7 @@
 #define vtkStratusTetGenText_h
 
 #include "vtkStratusPrivate.h"
+#include "vtkStratusTemporaryFile.h"
 
 #include "vtkType.h"
 
@@ -74,12 +75,11 @@ private:
   std::string_view Rest; // of the line, starting at a number
 };
 
-// A file being written under a temporary name. Commit() gives it its final name; without it, the destructor removes the file.
+// A file being written. Commit() replaces the file at its path; without it, that one stays.
 class VTK_STRATUS_PRIVATE vtkStratusTetGenOutput
 {
 public:
   vtkStratusTetGenOutput(const std::string& path, const vtkStratusTetGenProgress& progress);
-  ~vtkStratusTetGenOutput();
   vtkStratusTetGenOutput(const vtkStratusTetGenOutput&) = delete;
   void operator=(const vtkStratusTetGenOutput&) = delete;
 
@@ -91,15 +91,12 @@ public:
 
 private:
   void Flush();
-  [[noreturn]] void Fail(const char* doing) const;
+  [[noreturn]] void Fail(const char* doing, int reason) const;
 
   std::string Path;
-  std::string Target;
-  std::string Part;
   vtkStratusTetGenProgress Progress;
-  std::FILE* File = nullptr;
+  vtkStratusReplacingFile File;
   std::string Buffer;
-  bool Committed = false;
 };
 
 #endif

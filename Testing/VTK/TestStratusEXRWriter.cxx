@@ -25,6 +25,8 @@
 #include <malloc.h>
 #include <random>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <thread>
 
 namespace {
 std::string Folder;
@@ -319,6 +321,27 @@ void KeepsLinksAndPermissions()
   CHECK(files::status(target).permissions() == few, "the permissions are others");
 }
 
+// A rename would put a file in the place of a pipe, as of a device.
+void KeepsPipes()
+{
+  vtkSmartPointer<vtkImageData> image = MakeImage(4, 3);
+  AddFloats(image, "RGBA", 4);
+  const std::string path = Folder + "/pipe.exr";
+  CHECK(mkfifo(path.c_str(), 0600) == 0, "no pipe");
+  std::string got;
+  std::thread reader([&] {
+    std::ifstream file(path, std::ios::binary);
+    got.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  });
+  vtkNew<vtkStratusEXRWriter> writer;
+  writer->SetInputData(image);
+  writer->SetFileName(path.c_str());
+  writer->Write();
+  reader.join();
+  CHECK(writer->GetErrorCode() == 0 && std::filesystem::is_fifo(path), "the pipe was replaced");
+  CHECK(got.compare(0, 4, "\x76\x2f\x31\x01") == 0 && got.size() > 4 * 3 * 16, "%zu bytes came out of the pipe", got.size());
+}
+
 // As a full disk would: the file may have so many bytes, from 3, which the old file has, to all of its bytes but one.
 void RefusesFullDisks()
 {
@@ -372,6 +395,7 @@ int main(int argc, char** argv)
   RefusesArrays();
   RefusesPaths();
   KeepsLinksAndPermissions();
+  KeepsPipes();
   RefusesFullDisks();
   StopsWhenAborted();
   std::filesystem::remove_all(Folder);

@@ -120,7 +120,7 @@ void make_folder(const std::string& folder);
 std::string default_reference_cache();
 // Returns false if there is no such file, or if its number of floats differs.
 bool load_picture(const std::string& path, std::vector<float>& rgba);
-void save_picture(const std::string& path, const std::vector<float>& rgba); // writes the whole file or none
+void save_picture(const std::string& path, const std::vector<float>& rgba);
 
 class progress;
 
@@ -162,7 +162,7 @@ struct table {
   std::vector<row> rows;
 };
 origin origin_of_this_run(); // without scenes
-void write_origin(std::FILE* file, const origin& o);
+void write_origin(std::ostream& out, const origin& o);
 void read_origin(const std::string& line, std::vector<origin>& origins); // a row before the header
 // Replaces the rows of the scenes that this run measured, and keeps other scenes' rows before them.
 void replace_scenes(table& t, const std::vector<row>& rows);
@@ -175,6 +175,8 @@ void add_failure(const std::string& scene, const std::string& method, const char
 bool any_failed(const std::vector<row>& rows);
 void add_rows(const result& r, std::vector<row>& rows);
 void add_rows(const std::string& scene, const floor_result& f, std::vector<row>& rows);
+// Replaces a file whole, so that what it holds outlives a run that is interrupted; a device or a pipe is written in place.
+void save_file(const std::string& path, const void* bytes, size_t size);
 // Writes the rows of this run; append: the file's rows of other scenes stay.
 void save_rows(const std::string& path, const std::vector<row>& rows, const char* benchmark, bool append);
 // path "-": the standard output; benchmark: the first column. The rows' origins come before the header.

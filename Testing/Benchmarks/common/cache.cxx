@@ -39,11 +39,6 @@ bool load_picture(const std::string& path, std::vector<float>& rgba)
 
 void save_picture(const std::string& path, const std::vector<float>& rgba)
 {
-  const std::string part = path + ".part";
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  const bool whole = file && std::fwrite(rgba.data(), sizeof(float), rgba.size(), file) == rgba.size();
-  if (!file || std::fclose(file) != 0 || !whole || std::rename(part.c_str(), path.c_str()) != 0) {
-    throw failure("cannot write " + path);
-  }
+  save_file(path, rgba.data(), rgba.size() * sizeof(float));
 }
 } // namespace bench

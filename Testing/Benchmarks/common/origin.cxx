@@ -100,14 +100,14 @@ origin origin_of_this_run()
   return o;
 }
 
-void write_origin(std::FILE* file, const origin& o)
+void write_origin(std::ostream& out, const origin& o)
 {
-  std::fprintf(file, "# processor,%s\n# cores,%s\n# compiler,%s\n", o.processor.c_str(), o.cores.c_str(), o.compiler.c_str());
-  std::fprintf(file, "# commit,%s\n# date,%s\n# scenes", o.commit.c_str(), o.date.c_str());
+  out << "# processor," << o.processor << "\n# cores," << o.cores << "\n# compiler," << o.compiler << "\n# commit," << o.commit
+      << "\n# date," << o.date << "\n# scenes";
   for (const std::string& scene : o.scenes) {
-    std::fprintf(file, ",%s", scene.c_str());
+    out << ',' << scene;
   }
-  std::fprintf(file, "\n");
+  out << '\n';
 }
 
 void read_origin(const std::string& line, std::vector<origin>& origins)

@@ -193,12 +193,7 @@ void write_page(const std::string& folder, const std::vector<std::string>& failu
     write_table(out, c);
   }
   out << "</body></html>\n";
-  const std::string path = folder + "/index.html";
-  std::ofstream file(path + ".part");
-  file << out.str();
-  file.close();
-  if (!file || std::rename((path + ".part").c_str(), path.c_str()) != 0) {
-    throw failure("cannot write " + path);
-  }
+  const std::string text = out.str();
+  save_file(folder + "/index.html", text.data(), text.size());
 }
 } // namespace bench

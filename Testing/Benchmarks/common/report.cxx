@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench.h"
 
+#include "vtkStratusTemporaryFile.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -84,38 +86,54 @@ void add_rows(const std::string& scene, const floor_result& f, std::vector<row>&
   rows.push_back({ scene, "floor", "rate", "1/s", f.rate });
 }
 
+void save_file(const std::string& path, const void* bytes, size_t size)
+{
+  vtkStratusReplacingFile file;
+  int reason = file.Open(path);
+  if (reason == 0) {
+    reason = std::fwrite(bytes, 1, size, file.Get()) == size ? 0 : errno;
+    const int closing = file.Close();
+    reason = reason != 0 ? reason : closing != 0 ? closing : file.Rename();
+  }
+  if (reason != 0) {
+    throw failure("cannot write " + path + ": " + std::strerror(reason));
+  }
+}
+
 void write_csv(const std::string& path, const table& t, const char* benchmark)
 {
-  // A file is replaced as a whole, so that what it holds outlives a run that is interrupted.
-  const std::string part = path + ".part";
-  std::FILE* file = path == "-" ? stdout : std::fopen(part.c_str(), "w");
-  if (!file) {
-    throw failure("cannot write " + path + ": " + std::strerror(errno));
-  }
+  std::ostringstream out;
+  out.precision(9);
   for (const origin& o : t.origins) {
-    write_origin(file, o);
+    write_origin(out, o);
   }
-  std::fprintf(file, "benchmark,scene,method,metric,value,unit\n");
+  out << "benchmark,scene,method,metric,value,unit\n";
   for (const row& r : t.rows) {
-    std::fprintf(file, "%s,%s,%s,%s,%.9g,%s\n", benchmark, r.scene.c_str(), r.method.c_str(), r.metric.c_str(), r.value, r.unit.c_str());
+    out << benchmark << ',' << r.scene << ',' << r.method << ',' << r.metric << ',' << r.value << ',' << r.unit << '\n';
   }
-  const bool bad = std::ferror(file) != 0;
-  if ((file == stdout ? std::fflush(file) : std::fclose(file)) != 0 || bad ||
-    (file != stdout && std::rename(part.c_str(), path.c_str()) != 0)) {
-    throw failure("cannot write " + path + ": " + std::strerror(errno));
+  const std::string text = out.str();
+  if (path != "-") {
+    save_file(path, text.data(), text.size());
+  } else if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw failure(std::string("cannot write to the standard output: ") + std::strerror(errno));
   }
 }
 
 void check_writable(const std::string& path)
 {
-  const std::string part = path + ".part";
-  std::FILE* file = path == "-" ? stdout : std::fopen(part.c_str(), "w");
-  if (!file) {
-    throw failure("cannot write " + path + ": " + std::strerror(errno));
+  std::string target;
+  if (path == "-") {
+    return;
   }
-  if (file != stdout) {
-    std::fclose(file);
-    std::remove(part.c_str());
+  if (!vtkStratusFindTarget(path, target)) { // a pipe must not be opened and closed
+    if (access(path.c_str(), W_OK) != 0) {
+      throw failure("cannot write " + path + ": " + std::strerror(errno));
+    }
+    return;
+  }
+  vtkStratusReplacingFile file;
+  if (const int reason = file.Open(path)) {
+    throw failure("cannot write " + path + ": " + std::strerror(reason));
   }
 }
 

@@ -3,6 +3,7 @@
 #define _XOPEN_SOURCE 700
 #include "structures.h"
 
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <sys/resource.h>
@@ -141,6 +142,54 @@ static void what_cannot_be_written_is_an_error(void** state)
   stratus_context_destroy(context);
 }
 
+struct pipe {
+  const char* path;
+  size_t read;
+};
+
+static void* read_pipe(void* of)
+{
+  struct pipe* pipe = of;
+  char bytes[4096];
+  FILE* file = fopen(pipe->path, "rb");
+  for (size_t got; file && (got = fread(bytes, 1, sizeof bytes, file)) > 0; pipe->read += got) {}
+  return file && fclose(file) == 0 ? pipe : NULL;
+}
+
+/* A rename would put a file in the place of a pipe, as of a device, and of a link. */
+static void pipes_and_links_stay(void** state)
+{
+  (void)state;
+  stratus_context* context = make_context("host", 1);
+  float pixel[4] = { 0 };
+  stratus_image image = { .width = 1, .height = 1, .rgba = pixel };
+  char folder[] = "/tmp/stratus_image_XXXXXX", path[64], link[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/pipe", folder);
+  struct pipe pipe = { .path = path };
+  struct stat was;
+  pthread_t reader;
+  void* done = NULL;
+  assert_int_equal(mkfifo(path, 0600), 0);
+  assert_int_equal(pthread_create(&reader, NULL, read_pipe, &pipe), 0);
+  assert_int_equal(stratus_image_write(context, &image, NULL, path), STRATUS_OK);
+  assert_int_equal(pthread_join(reader, &done), 0);
+  assert_non_null(done);
+  assert_true(pipe.read > 50 && stat(path, &was) == 0 && S_ISFIFO(was.st_mode));
+  unlink(path);
+  snprintf(link, sizeof link, "%s/link", folder);
+  for (int i = 0; i < 2; ++i) { /* to nothing, to a file */
+    assert_true(i > 0 || symlink("pipe", link) == 0);
+    assert_int_equal(stratus_image_write(context, &image, NULL, link), STRATUS_OK);
+    assert_true(lstat(link, &was) == 0 && S_ISLNK(was.st_mode));
+    assert_true(stat(path, &was) == 0 && S_ISREG(was.st_mode) && (size_t)was.st_size == pipe.read);
+  }
+  unlink(link);
+  unlink(path);
+  assert_int_equal(rmdir(folder), 0); /* no part is left */
+  stratus_context_destroy(context);
+}
+
 #else
 
 static void without_zlib_there_are_none(void** state)
@@ -160,6 +209,7 @@ int test_image_file(void)
 #ifdef STRATUS_ZLIB
     cmocka_unit_test(pixels_are_those_of_the_image),
     cmocka_unit_test(what_cannot_be_written_is_an_error),
+    cmocka_unit_test(pipes_and_links_stay),
 #else
     cmocka_unit_test(without_zlib_there_are_none),
 #endif
