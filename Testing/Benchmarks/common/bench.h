@@ -90,7 +90,7 @@ struct floor_result {
 // How much of a method is measured.
 struct effort {
   int size = 512;      // of the window, in pixels each way
-  int repeats = 3;     // frames of each view
+  int repeats = 7;     // most frames of each view, see settled()
   bool updates = true; // whether transfer functions are changed, too
 };
 
@@ -99,6 +99,8 @@ inline double now_ms()
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 double median(std::vector<double> values);
+// Whether repeated times suffice: the middle half of two or more is within 3 % of their median, they took a second, or there are `most`.
+bool settled(const std::vector<double>& ms, int most);
 
 // ---- methods.cxx, floor.cxx
 

@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 namespace bench {
 
@@ -278,5 +279,17 @@ double median(std::vector<double> values)
   std::sort(values.begin(), values.end());
   const size_t half = values.size() / 2;
   return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+bool settled(const std::vector<double>& ms, int most)
+{
+  constexpr double narrow = 0.03, long_ms = 1000.0;
+  const size_t count = ms.size(), beyond = count / 4;
+  if (count >= static_cast<size_t>(most) || std::accumulate(ms.begin(), ms.end(), 0.0) >= long_ms) {
+    return count > 0;
+  }
+  std::vector<double> sorted = ms;
+  std::sort(sorted.begin(), sorted.end());
+  return count >= 2 && sorted[count - 1 - beyond] - sorted[beyond] <= narrow * median(ms);
 }
 } // namespace bench

@@ -31,7 +31,8 @@ const char* const help = R"(stratus-bench tetra [options]
                             vtk:zsweep, which takes tens of seconds a frame)
   --curves, --quick-curves  mappers over their settings
   --size N                  N x N pixels (default 512)
-  --repeats N               frames a view and method (default 3); rounds of sorters
+  --repeats N               most frames a view and method (default 7): fewer if the middle half of their times is within 3 % of the
+                            median, or they took a second; rounds of sorters (at most 3)
   --rays N                  N x N rays a view ask orders for wrong pairs, 24 views; 0: none (default 160)
   --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
                             the comments before them say where they come from, as in stratus-bench volume
@@ -62,7 +63,7 @@ VTK's mappers of tetrahedra use opacity as attenuation: they get functions with 
 struct options {
   std::vector<std::string> meshes, functions, methods;
   std::string csv = "-", chart, cache, reference_cache = default_reference_cache(), pictures;
-  int size = 512, repeats = 3, rays = 160;
+  int size = 512, repeats = 7, rays = 160;
   bool error = true, append = false;
 };
 
@@ -238,7 +239,7 @@ void run_mesh(stratus_context* context, const tetra_mesh& mesh, const options& o
     }
   }
   order_options how;
-  how.rounds = o.repeats;
+  how.rounds = std::min(o.repeats, 3);
   how.rays = o.rays;
   how.threads = stratus_context_threads(context);
   std::map<std::string, sorter_metrics> orders = run_sorters(context, mesh, needed, how);

@@ -19,6 +19,7 @@ namespace bench {
 
 namespace {
 
+constexpr int fewest_updates = 3; // views
 const char* const structures[] = { "auto", "none", "block", "distance", "octant", "hybrid" };
 
 // Splits NAME+WINDOW into the name and the window's other contents. Returns false for other windows.
@@ -284,9 +285,9 @@ result run_method(stratus_context* context, const scene& s, const std::string& w
   for (int view = 0; view < views; ++view) {
     std::vector<double> times;
     w.show(view);
-    for (int i = 0; i < how.repeats; ++i) {
+    do {
       times.push_back(w.render());
-    }
+    } while (!settled(times, how.repeats));
     r.time.frames.push_back(median(times));
     samples.push_back(samples_of(mapper));
     r.pictures.push_back({ float_picture(mapper, how.size), w.read() });
@@ -295,7 +296,7 @@ result run_method(stratus_context* context, const scene& s, const std::string& w
     }
   }
   std::vector<double> updates;
-  for (int view = 0; view < views && how.updates; ++view) {
+  for (int view = 0; view < views && how.updates && (view < fewest_updates || !settled(updates, views)); ++view) {
     w.show(view);
     w.use(s.edited);
     w.render();
