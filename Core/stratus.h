@@ -40,6 +40,7 @@
 #include "stratus/look.h"
 #include "stratus/annotation.h"
 #include "stratus/globe.h"
+#include "stratus/layers.h"
 #include "stratus/scenes.h"
 
 #endif

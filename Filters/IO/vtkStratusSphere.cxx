@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusSphere.h"
 
-#include "vtkStratusReadError.h"
-
-#include "stratus/context.h"
+#include "vtkStratusReaderCore.h"
 
 #include "vtkDoubleArray.h"
 
@@ -11,36 +9,6 @@
 #include <cmath>
 
 namespace {
-// A context of the core on the host, whose failures are the reader's.
-class Core
-{
-public:
-  Core()
-  {
-    stratus_context_options options = stratus_context_options_default();
-    options.device = "host";
-    options.threads = 1;
-    char message[256] = "";
-    if (stratus_context_create(&options, &this->Context, message, sizeof message) != STRATUS_OK) {
-      throw vtkStratusReadError{ message };
-    }
-  }
-  ~Core() { stratus_context_destroy(this->Context); }
-  Core(const Core&) = delete;
-  void operator=(const Core&) = delete;
-
-  operator stratus_context*() const { return this->Context; }
-  void Check(stratus_status status) const
-  {
-    if (status != STRATUS_OK) {
-      throw vtkStratusReadError{ stratus_context_message(this->Context) };
-    }
-  }
-
-private:
-  stratus_context* Context = nullptr;
-};
-
 // Calls back with the index of each point of the lattice, and with the file's points that it is made of: first, stride, count.
 template <class Visit> void EachPoint(const stratus_globe_lattice& lattice, size_t levels, const Visit& visit)
 {
@@ -66,7 +34,7 @@ size_t SizeOf(const stratus_globe_lattice& lattice, size_t levels)
 
 stratus_globe_lattice vtkStratusSphere::FindLattice(size_t columns, size_t rows, const std::vector<double>& degrees)
 {
-  const Core core;
+  const vtkStratusReaderCore core;
   stratus_globe_lattice lattice;
   core.Check(stratus_globe_find_lattice(core, static_cast<int64_t>(columns), static_cast<int64_t>(rows), degrees.data(), &lattice));
   return lattice;
@@ -138,7 +106,7 @@ vtkSmartPointer<vtkDoubleArray> vtkStratusSphere::Place(
     result->SetNumberOfComponents(3);
     result->SetNumberOfTuples(static_cast<vtkIdType>(SizeOf(*lattice, levels)));
   }
-  const Core core;
+  const vtkStratusReaderCore core;
   core.Check(stratus_globe_place(core, &from, result->GetPointer(0)));
   return result;
 }

@@ -2,64 +2,14 @@
 // Meshes that no variable of UGRID describes: MPAS, whose nodes are the middles of cells, and cells with bounds by CF, as ICON has them.
 #include "vtkStratusUgridMesh.h"
 
+#include "vtkStratusReaderCore.h"
 #include "vtkStratusText.h"
 #include "vtkStratusUnits.h"
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 namespace {
-constexpr size_t MostCorners = 64;  // of a cell
-constexpr double SameCorner = 1e-6; // radians, some six metres: corners of cells that are nearer to each other are one node
-
-using Point = std::array<double, 3>;
-
-// Numbers points on the unit sphere, near ones by one number.
-class CornerNumbers
-{
-public:
-  // Returns the number, which is the next one if the point is new.
-  int NumberOf(const Point& at)
-  {
-    const std::array<int64_t, 3> box = BoxOf(at);
-    for (int64_t i = -1; i <= 1; ++i) {
-      for (int64_t j = -1; j <= 1; ++j) {
-        for (int64_t k = -1; k <= 1; ++k) {
-          const auto range = this->Boxes.equal_range(KeyOf({ { box[0] + i, box[1] + j, box[2] + k } }));
-          for (auto one = range.first; one != range.second; ++one) {
-            const Point& other = this->Points[static_cast<size_t>(one->second)];
-            if (std::hypot(std::hypot(at[0] - other[0], at[1] - other[1]), at[2] - other[2]) < SameCorner) {
-              return one->second;
-            }
-          }
-        }
-      }
-    }
-    const int number = static_cast<int>(this->Points.size());
-    this->Boxes.insert({ KeyOf(box), number });
-    this->Points.push_back(at);
-    return number;
-  }
-  size_t Count() const { return this->Points.size(); }
-
-private:
-  static std::array<int64_t, 3> BoxOf(const Point& at)
-  {
-    std::array<int64_t, 3> box;
-    std::transform(at.begin(), at.end(), box.begin(), [](double one) { return static_cast<int64_t>(std::floor(one / SameCorner)); });
-    return box;
-  }
-  static uint64_t KeyOf(const std::array<int64_t, 3>& box) // 21 bits each, which 2 / SameCorner boxes fit into
-  {
-    constexpr uint64_t mask = (1U << 21) - 1U;
-    return (static_cast<uint64_t>(box[0]) & mask) << 42 | (static_cast<uint64_t>(box[1]) & mask) << 21 |
-      (static_cast<uint64_t>(box[2]) & mask);
-  }
-  std::vector<Point> Points;
-  std::unordered_multimap<uint64_t, int> Boxes;
-};
-
 bool IsLongitude(const vtkStratusNetCDFModel& file, const vtkStratusNetCDFVariable& one)
 {
   return file.Text(one, "standard_name") == "longitude" || vtkStratusIsEast(file.Text(one, "units"));
@@ -76,7 +26,7 @@ const vtkStratusNetCDFVariable* BoundsOf(const vtkStratusNetCDFModel& file, cons
   const std::string name = one.Dimensions.size() == 1 ? file.Text(one, "bounds") : "";
   const vtkStratusNetCDFVariable* bounds = name.empty() ? nullptr : file.Find(name, &one);
   const bool fits = bounds && bounds->Dimensions.size() == 2 && bounds->Dimensions[0] == one.Dimensions[0] && bounds->HasNumbers() &&
-    file.LengthOf(bounds->Dimensions[1]) >= 3 && file.LengthOf(bounds->Dimensions[1]) <= MostCorners;
+    file.LengthOf(bounds->Dimensions[1]) >= 3 && file.LengthOf(bounds->Dimensions[1]) <= STRATUS_FACE_NODES_MAX;
   return fits ? bounds : nullptr;
 }
 
@@ -114,20 +64,6 @@ const vtkStratusUgridMesh::Variable* vtkStratusUgridMesh::FindCells(const vtkStr
   return nullptr;
 }
 
-// Adds a face of the file; one that lacks corners keeps its place.
-void vtkStratusUgridMesh::AddFaceOf(std::vector<int>& corners)
-{
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end()); // files repeat a corner where cells have fewer
-  while (corners.size() > 1 && corners.front() == corners.back()) {
-    corners.pop_back();
-  }
-  this->Absent.push_back(corners.size() < 3 ? 1 : 0);
-  if (corners.size() < 3) {
-    corners.assign(3, 0);
-  }
-  this->AddFace(corners);
-}
-
 // The faces are the triangles between the middles of cells, one for each corner of cells ("vertex"), so that values of cells are on nodes.
 void vtkStratusUgridMesh::ReadMpas()
 {
@@ -140,44 +76,28 @@ void vtkStratusUgridMesh::ReadMpas()
   const bool by_vertex = this->Topology->BaseName() == "cellsOnVertex";
   const Variable* const of_vertices = this->File.Find(sphere ? "lonVertex" : "xVertex", this->Topology);
   const size_t rows = this->File.LengthOf(this->Topology->Dimensions[0]), columns = this->File.LengthOf(this->Topology->Dimensions[1]);
-  const vtkSmartPointer<vtkDataArray> numbers = this->File.Read(*this->Topology);
-  std::vector<std::vector<int>> faces;
-  if (by_vertex) {
-    this->FaceDimension = this->Topology->Dimensions[0];
-    faces.resize(rows);
-  } else {
-    if (!of_vertices || of_vertices->Dimensions.size() != 1 || rows != this->GetNodes()) {
-      this->File.Fail("the mesh '" + this->Topology->Name + "' needs corners of all " + std::to_string(this->GetNodes()) +
-        " cells, and 'lonVertex' or 'xVertex', which say how many there are");
-    }
-    this->FaceDimension = of_vertices->Dimensions[0];
-    faces.resize(this->File.LengthOf(this->FaceDimension));
+  if (!by_vertex && (!of_vertices || of_vertices->Dimensions.size() != 1 || rows != this->GetNodes())) {
+    this->File.Fail("the mesh '" + this->Topology->Name + "' needs corners of all " + std::to_string(this->GetNodes()) +
+      " cells, and 'lonVertex' or 'xVertex', which say how many there are");
   }
+  this->FaceDimension = by_vertex ? this->Topology->Dimensions[0] : of_vertices->Dimensions[0];
   const Variable* const counts = by_vertex ? nullptr : this->File.Find("nEdgesOnCell", this->Topology);
   const std::vector<double> used = counts ? this->File.ReadComplete(*counts, "number of edges") : std::vector<double>();
-  const size_t most = by_vertex ? this->GetNodes() : faces.size();
-  for (size_t row = 0; row < rows; ++row) {
-    const size_t end = row < used.size() ? static_cast<size_t>(std::min(std::max(used[row], 0.0), static_cast<double>(columns))) : columns;
-    for (size_t column = 0; column < end; ++column) {
-      const double number = numbers->GetComponent(static_cast<vtkIdType>(row * columns + column), 0);
-      if (std::isnan(number) || number == 0.0) { // none
-        continue;
-      }
-      if (!(number >= 1.0 && number <= static_cast<double>(most)) || number != std::floor(number)) {
-        this->File.Fail("'" + this->Topology->Name + "' has the number " + vtkStratusNumberText(number) + " in row " + std::to_string(row) +
-          ", it must be 1 to " + std::to_string(most) + ", or 0 for none");
-      }
-      const size_t at = static_cast<size_t>(number) - 1;
-      by_vertex ? faces[row].push_back(static_cast<int>(at)) : faces[at].push_back(static_cast<int>(row));
-    }
+  const vtkSmartPointer<vtkDataArray> values = this->File.Read(*this->Topology);
+  std::vector<double> numbers(rows * columns);
+  for (size_t i = 0; i < numbers.size(); ++i) { // 0: none
+    const double number = values->GetComponent(static_cast<vtkIdType>(i), 0);
+    const bool counts_not = i / columns < used.size() && !(static_cast<double>(i % columns) < used[i / columns]);
+    numbers[i] = counts_not || number == 0.0 ? NAN : number;
   }
-  const size_t full = this->File.FindDimension("vertexDegree") >= 0 ? this->File.LengthOf(this->File.FindDimension("vertexDegree")) : 3;
-  for (std::vector<int>& face : faces) {
-    if (face.size() < full) { // a corner at the border of a region
-      face.clear();
-    }
-    this->AddFaceOf(face);
-  }
+  stratus_face_table table = {};
+  table.rows = static_cast<int64_t>(rows);
+  table.columns = static_cast<int64_t>(columns);
+  table.first = 1.0;
+  table.rows_are_nodes = by_vertex ? 0 : 1;
+  const int degree = this->File.FindDimension("vertexDegree"); // a corner at the border of a region has fewer cells
+  table.fewest = degree >= 0 ? static_cast<int>(this->File.LengthOf(degree)) : 3;
+  this->FindFaces(numbers, table, this->File.LengthOf(this->FaceDimension), this->Topology->Name);
   this->HidePeriodic(global);
 }
 
@@ -191,9 +111,11 @@ void vtkStratusUgridMesh::HidePeriodic(const Variable& global)
     for (size_t face = 0; !this->Degrees && this->File.Number(global, periods[a], period) && period > 0.0 && face < this->GetFaces();
          ++face) {
       double low = INFINITY, high = -INFINITY;
-      for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1]; ++c) {
-        low = std::min(low, at[static_cast<size_t>(this->Corners[c])]);
-        high = std::max(high, at[static_cast<size_t>(this->Corners[c])]);
+      int count = 0;
+      const int* corners = this->GetFace(face, count);
+      for (int c = 0; c < count; ++c) {
+        low = std::min(low, at[static_cast<size_t>(corners[c])]);
+        high = std::max(high, at[static_cast<size_t>(corners[c])]);
       }
       this->Absent[face] = high - low > 0.5 * period ? 1 : this->Absent[face];
     }
@@ -205,7 +127,6 @@ void vtkStratusUgridMesh::ReadCells()
 {
   const Variable &x = *this->Topology, &y = *LatitudesOf(this->File, x);
   const Variable* const bounds[2] = { BoundsOf(this->File, x), BoundsOf(this->File, y) };
-  const double degree = std::acos(-1.0) / 180.0;
   std::array<std::vector<double>, 2> at;
   for (size_t a = 0; a < 2; ++a) {
     const std::string own = this->File.Text(*bounds[a], "units"), units = own.empty() ? this->File.Text(a == 0 ? x : y, "units") : own;
@@ -221,24 +142,29 @@ void vtkStratusUgridMesh::ReadCells()
     this->File.Fail("'" + this->File.NameOf(this->FaceDimension) + "' is the dimension of the mesh's cells, which cannot be selected");
   }
   this->Metres = this->Degrees = true;
-  const size_t corners = this->File.LengthOf(bounds[0]->Dimensions[1]);
-  CornerNumbers numbers;
-  std::vector<std::vector<int>> faces(at[0].size() / corners);
-  for (size_t i = 0; i < at[0].size(); ++i) {
-    const double longitude = at[0][i] * degree, latitude = at[1][i] * degree;
-    const Point point = { { std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude) } };
-    const int number = numbers.NumberOf(point);
-    if (static_cast<size_t>(number) == this->X.size()) {
-      this->X.push_back(at[0][i]);
-      this->Y.push_back(at[1][i]);
-    }
-    faces[i / corners].push_back(number);
-  }
-  if (this->X.empty()) {
+  const size_t corners = this->File.LengthOf(bounds[0]->Dimensions[1]), count = at[0].size();
+  if (count == 0) {
     this->File.Fail("the mesh has no cells");
   }
-  this->DescribeNodes("corners of cells by '" + bounds[0]->Name + "' and '" + bounds[1]->Name + "'");
-  for (std::vector<int>& face : faces) {
-    this->AddFaceOf(face);
+  std::vector<double> degrees(2 * count);
+  for (size_t i = 0; i < count; ++i) {
+    degrees[2 * i] = at[0][i];
+    degrees[2 * i + 1] = at[1][i];
   }
+  std::vector<int32_t> joined(count);
+  std::vector<int64_t> first(count);
+  int64_t nodes = 0;
+  const vtkStratusReaderCore core;
+  core.Check(stratus_faces_join_corners(core, static_cast<int64_t>(count), degrees.data(), joined.data(), first.data(), &nodes),
+    this->File.GetPath() + ": '" + bounds[0]->Name + "': ");
+  for (size_t node = 0; node < static_cast<size_t>(nodes); ++node) {
+    this->X.push_back(at[0][static_cast<size_t>(first[node])]);
+    this->Y.push_back(at[1][static_cast<size_t>(first[node])]);
+  }
+  this->DescribeNodes("corners of cells by '" + bounds[0]->Name + "' and '" + bounds[1]->Name + "'");
+  stratus_face_table table = {};
+  table.rows = static_cast<int64_t>(count / corners);
+  table.columns = static_cast<int64_t>(corners);
+  table.fewest = 3;
+  this->FindFaces({ joined.begin(), joined.end() }, table, count / corners, bounds[0]->Name);
 }

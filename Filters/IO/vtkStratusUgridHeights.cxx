@@ -2,6 +2,8 @@
 // Heights of a layered mesh that the file has at every node or face: of the layers' borders, of their middles, or their thicknesses.
 #include "vtkStratusUgridLayers.h"
 
+#include "vtkStratusReaderCore.h"
+
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -51,57 +53,35 @@ bool vtkStratusUgridLayers::FindThicknesses()
   return true;
 }
 
-// Missing heights below the lowest layer of a node are set to the lowest border that has a height.
-void vtkStratusUgridLayers::ReadHeights(size_t step, std::vector<double>& z) const
+// Heights at each node, from the bottom up; missing ones below the lowest layer of a node are the core's task.
+void vtkStratusUgridLayers::ReadHeights(size_t step, std::vector<double>& z, std::vector<uint8_t>& none) const
 {
   const vtkStratusUgridValues values = this->Mesh.Read(*this->Source, step);
   const size_t nodes = this->Mesh.GetNodes(), given = this->OfBorders ? this->Count + 1 : this->Count;
-  std::vector<double> at(nodes * given); // from the bottom up
+  std::vector<double> at(nodes * given);
   for (size_t i = 0; i < given; ++i) {
     const std::vector<double> level = this->Mesh.ToNodes(values, this->Mesh.IsOnFaces(*this->Source), this->TopFirst ? given - 1 - i : i);
     std::transform(
       level.begin(), level.end(), at.begin() + static_cast<std::ptrdiff_t>(i * nodes), [this](double one) { return this->ToHeight(one); });
   }
-  for (size_t node = 0; node < nodes; ++node) {
-    double last = NAN;
-    for (size_t i = given; i-- > 0;) {
-      double& height = at[i * nodes + node];
-      height = std::isfinite(height) ? height : last;
-      if (std::isfinite(last) && height > last) {
-        this->File.Fail("layers are upside down: '" + this->Source->Name + "' has " + vtkStratusNumberText(height) + " under " +
-          vtkStratusNumberText(last) + " at node " + std::to_string(node));
-      }
-      last = height;
-    }
-    const auto middle = [&](size_t i) { return at[i * nodes + node]; };
-    for (size_t b = 0; b <= this->Count; ++b) {
-      const bool end = b == 0 || b == this->Count;
-      const size_t near = b == 0 ? 0 : this->Count - 1, next = b == 0 ? 1 : this->Count - 2; // of an end
-      z[b * nodes + node] = this->OfBorders ? middle(b)
-        : !end                              ? 0.5 * (middle(b - 1) + middle(b))
-        : this->Count > 1                   ? 1.5 * middle(near) - 0.5 * middle(next)
-                                            : middle(0) + (b == 0 ? -0.5 : 0.5);
-    }
-  }
+  const vtkStratusReaderCore core;
+  core.Check(stratus_layers_from_heights(core, static_cast<int64_t>(nodes), static_cast<int64_t>(this->Count), this->OfBorders ? 1 : 0,
+               at.data(), z.data(), none.data()),
+    this->File.GetPath() + ": '" + this->Source->Name + "': ");
 }
 
-void vtkStratusUgridLayers::ReadThicknesses(size_t step, std::vector<double>& z, std::vector<char>& none) const
+void vtkStratusUgridLayers::ReadThicknesses(size_t step, std::vector<double>& z, std::vector<uint8_t>& none) const
 {
   const vtkStratusUgridValues values = this->Mesh.Read(*this->Source, step);
-  const std::vector<double> bottom = this->ReadLength(*this->Bed, step);
-  const std::vector<double> lowest = this->Lowest ? this->Mesh.ReadAtNodes(*this->Lowest, step) : std::vector<double>();
   const size_t nodes = this->Mesh.GetNodes();
-  for (size_t node = 0; node < nodes; ++node) {
-    double height = std::isfinite(bottom[node]) ? -bottom[node] : 0.0;
-    const double foot = height;
-    z[node] = height;
-    for (size_t b = 1; b <= this->Count; ++b) {
-      const size_t layer = this->Count - b; // from the top
-      const double thickness = values.At(node, layer);
-      const bool there = std::isfinite(thickness) && thickness > 0.0 && (lowest.empty() || static_cast<double>(layer) < lowest[node]);
-      height += there ? thickness : 0.0;
-      z[b * nodes + node] = height;
-    }
-    none[node] = std::isfinite(bottom[node]) && height > foot ? 0 : 1;
+  std::vector<double> thicknesses(nodes * this->Count), bottom = this->ReadLength(*this->Bed, step);
+  for (size_t i = 0; i < thicknesses.size(); ++i) {
+    thicknesses[i] = values.At(i % nodes, this->FromBottom(i / nodes, this->Count));
   }
+  std::transform(bottom.begin(), bottom.end(), bottom.begin(), [](double depth) { return -depth; });
+  const std::vector<double> present = this->Lowest ? this->Mesh.ReadAtNodes(*this->Lowest, step) : std::vector<double>();
+  const vtkStratusReaderCore core;
+  core.Check(stratus_layers_from_thicknesses(core, static_cast<int64_t>(nodes), static_cast<int64_t>(this->Count), thicknesses.data(),
+               bottom.data(), this->Lowest ? present.data() : nullptr, z.data(), none.data()),
+    this->File.GetPath() + ": '" + this->Source->Name + "': ");
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusUgridLayers.h"
+
+#include "vtkStratusReaderCore.h"
 #include "vtkStratusText.h"
 
 #include "vtkStratusHeights.h"
@@ -328,13 +330,13 @@ std::vector<double> vtkStratusUgridLayers::Bottom(size_t step, const std::vector
 {
   std::vector<double> bottom = this->ReadLength(*this->Bed, step);
   for (size_t node = 0; node < bottom.size(); ++node) {
-    bottom[node] = this->BedMeans == Altitude ? bottom[node] : (this->BedMeans == WaterDepth ? surface[node] : 0.0) - bottom[node];
+    bottom[node] =
+      this->BedMeans == Altitude ? bottom[node] : (this->BedMeans == WaterDepth && !surface.empty() ? surface[node] : 0.0) - bottom[node];
   }
   return bottom;
 }
 
-// The levels of the borders at a node, from the bottom up. Between centres they are in the middle. The outermost borders are sigma's, or as
-// far from the outermost centre as the next border, but not beyond height 0 if all centres are on one side of it.
+// The levels of the borders at a node, from the bottom up. The outermost borders of sigma are its ends.
 std::vector<double> vtkStratusUgridLayers::BordersOf(const vtkStratusUgridValues& levels, size_t node) const
 {
   if (!this->Fixed.empty()) {
@@ -360,44 +362,47 @@ std::vector<double> vtkStratusUgridLayers::BordersOf(const vtkStratusUgridValues
   if (this->OfBorders) {
     return at;
   }
-  for (size_t i = 1; i < this->Count; ++i) {
-    borders[i] = 0.5 * (at[i - 1] + at[i]);
+  const vtkStratusReaderCore core;
+  core.Check(stratus_layers_between(core, static_cast<int64_t>(this->Count), at.data(), borders.data()));
+  if (this->Kind == Sigma) {
+    borders.front() = -1.0;
+    borders.back() = 0.0;
   }
-  const bool sigma = this->Kind == Sigma;
-  borders.front() = sigma ? -1.0 : this->Count > 1 ? 2.0 * at.front() - borders[1] : at.front() - 0.5;
-  borders.back() = sigma ? 0.0 : this->Count > 1 ? 2.0 * at.back() - borders[this->Count - 1] : at.back() + 0.5;
-  borders.back() = !sigma && at.back() < 0.0 ? std::min(borders.back(), 0.0) : borders.back();
-  borders.front() = !sigma && at.front() > 0.0 ? std::max(borders.front(), 0.0) : borders.front();
   return borders;
 }
 
-void vtkStratusUgridLayers::ReadLevels(size_t step, std::vector<double>& z, std::vector<char>& none) const
+void vtkStratusUgridLayers::ReadLevels(size_t step, std::vector<double>& z, std::vector<uint8_t>& none) const
 {
   const size_t nodes = this->Mesh.GetNodes();
-  const std::vector<double> surface = this->Surface ? this->ReadLength(*this->Surface, step) : std::vector<double>(nodes, INFINITY);
-  const std::vector<double> bottom = this->Bed ? this->Bottom(step, surface) : std::vector<double>(nodes, -INFINITY);
+  const std::vector<double> surface = this->Surface ? this->ReadLength(*this->Surface, step) : std::vector<double>();
+  const std::vector<double> bottom = this->Bed ? this->Bottom(step, surface) : std::vector<double>();
   const vtkStratusUgridValues levels = this->Source ? this->Mesh.Read(*this->Source, step) : vtkStratusUgridValues();
   std::vector<double> borders = { -1.0, 0.0 };
-  for (size_t node = 0; node < nodes; ++node) {
-    if (this->Source && (node == 0 || levels.Across > 0)) {
-      borders = this->BordersOf(levels, node);
+  if (this->Source && levels.Across > 0) {
+    borders.resize((this->Count + 1) * nodes);
+    for (size_t node = 0; node < nodes; ++node) {
+      const std::vector<double> own = this->BordersOf(levels, node);
+      for (size_t b = 0; b <= this->Count; ++b) {
+        borders[b * nodes + node] = own[b];
+      }
     }
-    const bool missing = std::isnan(surface[node]) || std::isnan(bottom[node]) || surface[node] <= bottom[node];
-    const double low = std::isnan(bottom[node]) ? std::isfinite(surface[node]) ? surface[node] : 0.0 : bottom[node];
-    none[node] = missing ? 1 : 0;
-    for (size_t b = 0; b <= this->Count; ++b) {
-      const double height =
-        this->Kind == Levels ? std::min(std::max(borders[b], low), surface[node]) : surface[node] + borders[b] * (surface[node] - low);
-      z[b * nodes + node] = missing ? low : height;
-    }
-    if (this->Kind == Levels && !missing) { // the uppermost layer ends at the free surface, and Delft3D FM's lowest one at the bottom
-      z[node] = this->Stretched && std::isfinite(low) ? low : z[node];
-      z[this->Count * nodes + node] = std::isfinite(surface[node]) ? surface[node] : borders[this->Count];
-    }
+  } else if (this->Source) {
+    borders = this->BordersOf(levels, 0);
   }
+  stratus_layer_borders from = {};
+  from.node_count = static_cast<int64_t>(nodes);
+  from.layer_count = static_cast<int64_t>(this->Count);
+  from.borders = borders.data();
+  from.of_nodes = this->Source && levels.Across > 0 ? 1 : 0;
+  from.sigma = this->Kind == Levels ? 0 : 1;
+  from.stretched = this->Stretched ? 1 : 0; // Delft3D FM's lowest layer ends at the bottom
+  from.bottom = this->Bed ? bottom.data() : nullptr;
+  from.surface = this->Surface ? surface.data() : nullptr;
+  const vtkStratusReaderCore core;
+  core.Check(stratus_layers_from_borders(core, &from, z.data(), none.data()), this->File.GetPath() + ": ");
 }
 
-void vtkStratusUgridLayers::FindDry(size_t step, const std::vector<char>& none, std::vector<char>& dry) const
+void vtkStratusUgridLayers::FindDry(size_t step, std::vector<uint8_t>& dry) const
 {
   vtkStratusUgridValues wet, surface;
   const bool own = this->Surface && this->Mesh.IsOnFaces(*this->Surface);
@@ -408,32 +413,23 @@ void vtkStratusUgridLayers::FindDry(size_t step, const std::vector<char>& none, 
     surface = this->Mesh.Read(*this->Surface, step);
   }
   for (size_t face = 0; face < this->Mesh.GetFaces(); ++face) {
-    int corners = 0;
-    const int* nodes = this->Mesh.GetFace(face, corners);
-    const bool all_wet = std::none_of(nodes, nodes + corners, [&none](int node) { return none[static_cast<size_t>(node)] != 0; });
-    dry[face] = !all_wet || this->Mesh.IsAbsent(face) || (wet.Values && (wet.At(face, 0) == 1.0) != this->WetIsOne) ||
+    dry[face] = this->Mesh.IsAbsent(face) || (wet.Values && (wet.At(face, 0) == 1.0) != this->WetIsOne) ||
       (own && !std::isfinite(surface.At(face, 0)));
   }
 }
 
-void vtkStratusUgridLayers::Read(size_t step, std::vector<double>& z, std::vector<char>& dry) const
+void vtkStratusUgridLayers::Read(size_t step, std::vector<double>& z, std::vector<uint8_t>& none, std::vector<uint8_t>& dry) const
 {
   const size_t nodes = this->Mesh.GetNodes();
   z.assign(nodes * (this->Count + 1), 0.0);
+  none.assign(nodes, 0);
   dry.assign(this->Mesh.GetFaces(), 0);
-  std::vector<char> none(nodes, 0);
   if (this->Kind == Thicknesses) {
     this->ReadThicknesses(step, z, none);
   } else if (this->Kind == Heights) {
-    this->ReadHeights(step, z);
-    for (size_t node = 0; node < nodes; ++node) {
-      none[node] = std::isfinite(z[node]) ? 0 : 1;
-      for (size_t b = 0; none[node] && b <= this->Count; ++b) {
-        z[b * nodes + node] = 0.0;
-      }
-    }
+    this->ReadHeights(step, z, none);
   } else {
     this->ReadLevels(step, z, none);
   }
-  this->FindDry(step, none, dry);
+  this->FindDry(step, dry);
 }

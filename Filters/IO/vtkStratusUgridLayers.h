@@ -34,8 +34,8 @@ public:
   std::string Describe() const;
   bool Uses(const Variable& variable) const; // as a height
 
-  // Finds the borders' heights, z[border * nodes + node], ascending, and the faces that are dry at this step.
-  void Read(size_t step, std::vector<double>& z, std::vector<char>& dry) const;
+  // Finds the borders' heights, z[border * nodes + node], ascending, the nodes that have none, and the faces that are dry at this step.
+  void Read(size_t step, std::vector<double>& z, std::vector<uint8_t>& none, std::vector<uint8_t>& dry) const;
 
 private:
   enum KindType { Flat, Heights, Thicknesses, Sigma, Levels };
@@ -43,8 +43,8 @@ private:
   // In vtkStratusUgridHeights.cxx:
   void FindHeights();
   bool FindThicknesses();
-  void ReadHeights(size_t step, std::vector<double>& z) const;
-  void ReadThicknesses(size_t step, std::vector<double>& z, std::vector<char>& none) const;
+  void ReadHeights(size_t step, std::vector<double>& z, std::vector<uint8_t>& none) const;
+  void ReadThicknesses(size_t step, std::vector<double>& z, std::vector<uint8_t>& none) const;
 
   void FindOrder();
   double ToHeight(double level) const;
@@ -58,8 +58,8 @@ private:
   void TakeCount(const Variable& variable, int dimension, bool borders);
   std::vector<double> Bottom(size_t step, const std::vector<double>& surface) const;
   std::vector<double> BordersOf(const vtkStratusUgridValues& levels, size_t node) const;
-  void ReadLevels(size_t step, std::vector<double>& z, std::vector<char>& none) const;
-  void FindDry(size_t step, const std::vector<char>& none, std::vector<char>& dry) const;
+  void ReadLevels(size_t step, std::vector<double>& z, std::vector<uint8_t>& none) const;
+  void FindDry(size_t step, std::vector<uint8_t>& dry) const;
 
   const vtkStratusUgridMesh& Mesh;
   const vtkStratusNetCDFModel& File;

@@ -4,6 +4,7 @@
 #include "vtkStratusUgridMesh.h"
 
 #include "vtkStratusLongitudes.h"
+#include "vtkStratusReaderCore.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,10 +60,12 @@ void vtkStratusUgridMesh::JoinLongitudes()
 {
   const auto edges = [this](const std::function<void(size_t, size_t)>& call) {
     for (size_t face = 0; face < this->GetFaces(); ++face) {
-      for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1]; ++c) {
-        const size_t next = c + 1 < this->Offsets[face + 1] ? c + 1 : this->Offsets[face];
-        if (!this->IsPole(this->Corners[c]) && !this->IsPole(this->Corners[next])) {
-          call(static_cast<size_t>(this->Corners[c]), static_cast<size_t>(this->Corners[next]));
+      int count = 0;
+      const int* corners = this->GetFace(face, count);
+      for (int c = 0; c < count; ++c) {
+        const int next = corners[(c + 1) % count];
+        if (!this->IsPole(corners[c]) && !this->IsPole(next)) {
+          call(static_cast<size_t>(corners[c]), static_cast<size_t>(next));
         }
       }
     }
@@ -86,15 +89,14 @@ void vtkStratusUgridMesh::JoinLongitudes()
   for (size_t node = 0; around && node < this->X.size(); ++node) {
     this->X[node] -= 360.0 * std::floor((this->X[node] - west) / 360.0);
   }
-  const std::vector<size_t> offsets = this->Offsets;
-  const std::vector<int> corners = std::move(this->Corners);
+  const std::vector<int64_t> offsets = this->Offsets;
+  const std::vector<int32_t> corners = std::move(this->Corners);
   std::vector<std::vector<int>> further; // parts of faces behind the first
   std::vector<size_t> of;
   this->Offsets.assign(1, 0);
   this->Corners.clear();
   for (size_t face = 0; face + 1 < offsets.size(); ++face) {
-    const auto first = corners.begin() + static_cast<std::ptrdiff_t>(offsets[face]),
-               end = corners.begin() + static_cast<std::ptrdiff_t>(offsets[face + 1]);
+    const auto first = corners.begin() + offsets[face], end = corners.begin() + offsets[face + 1];
     std::vector<std::vector<int>> parts;
     for (const Polygon& part : this->Unfold({ first, end })) {
       this->Cut(part, around, west, parts);
@@ -103,7 +105,7 @@ void vtkStratusUgridMesh::JoinLongitudes()
       parts.assign(1, { first, end });
     }
     this->Corners.insert(this->Corners.end(), parts[0].begin(), parts[0].end());
-    this->Offsets.push_back(this->Corners.size());
+    this->Offsets.push_back(static_cast<int64_t>(this->Corners.size()));
     for (size_t i = 1; i < parts.size(); ++i) {
       further.push_back(parts[i]);
       of.push_back(face);
@@ -111,8 +113,9 @@ void vtkStratusUgridMesh::JoinLongitudes()
   }
   for (size_t i = 0; i < further.size(); ++i) {
     this->Corners.insert(this->Corners.end(), further[i].begin(), further[i].end());
-    this->Offsets.push_back(this->Corners.size());
+    this->Offsets.push_back(static_cast<int64_t>(this->Corners.size()));
     this->FaceOf.push_back({ of[i], of[i], 1.0 });
+    this->Absent.push_back(0);
   }
   this->Description += around ? ", faces cut at longitude " + vtkStratusNumberText(west) : "";
 }
@@ -199,31 +202,13 @@ void vtkStratusUgridMesh::Cut(const Polygon& polygon, bool around, double west, 
 // Turns faces so that their corners are counterclockwise, seen from above.
 void vtkStratusUgridMesh::TurnFaces()
 {
-  const double degree = std::acos(-1.0) / 180.0;
-  const auto place = [&](size_t node) { // on the plane, or on the unit sphere
-    std::array<double, 3> at = { { this->X[node], this->Y[node], 0.0 } };
-    if (this->Sphere && this->Degrees) {
-      const double longitude = at[0] / this->Factors[0] * degree, latitude = at[1] / this->Factors[1] * degree;
-      at = { { std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude) } };
-    }
-    return at;
-  };
-  for (size_t face = 0; face < this->GetFaces(); ++face) {
-    const auto first = this->Corners.begin() + static_cast<std::ptrdiff_t>(this->Offsets[face]),
-               end = this->Corners.begin() + static_cast<std::ptrdiff_t>(this->Offsets[face + 1]);
-    const std::array<double, 3> at = place(static_cast<size_t>(*first));
-    const std::array<double, 3> up = this->Sphere && this->Degrees ? at : std::array<double, 3>{ { 0.0, 0.0, 1.0 } };
-    double area = 0.0;
-    for (auto corner = first + 1; corner + 1 < end; ++corner) {
-      std::array<double, 3> a = place(static_cast<size_t>(corner[0])), b = place(static_cast<size_t>(corner[1]));
-      for (size_t i = 0; i < 3; ++i) {
-        a[i] -= at[i];
-        b[i] -= at[i];
-      }
-      area += up[0] * (a[1] * b[2] - a[2] * b[1]) + up[1] * (a[2] * b[0] - a[0] * b[2]) + up[2] * (a[0] * b[1] - a[1] * b[0]);
-    }
-    if (area < 0.0) {
-      std::reverse(first, end);
-    }
+  const bool sphere = this->Sphere && this->Degrees;
+  std::vector<double> places;
+  places.reserve(2 * this->GetNodes());
+  for (size_t node = 0; node < this->GetNodes(); ++node) { // longitudes and latitudes, or x and y
+    places.insert(places.end(), { this->X[node] / (sphere ? this->Factors[0] : 1.0), this->Y[node] / (sphere ? this->Factors[1] : 1.0) });
   }
+  const vtkStratusReaderCore core;
+  const stratus_faces view = this->ViewFaces(this->Absent);
+  core.Check(stratus_faces_turn(core, &view, places.data(), sphere ? 1 : 0));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusUgridMesh.h"
 
+#include "vtkStratusReaderCore.h"
 #include "vtkStratusSphere.h"
 #include "vtkStratusUnits.h"
 
@@ -147,35 +148,45 @@ void vtkStratusUgridMesh::ReadFaces(const Variable& connectivity, int first)
     this->File.Fail("the mesh has " + std::to_string(faces) + " faces of up to " + std::to_string(corners) + " nodes, 3 to " +
       std::to_string(MostCorners) + " are needed");
   }
-  const vtkSmartPointer<vtkDataArray> numbers = this->File.Read(connectivity);
-  std::vector<int> face;
+  const vtkSmartPointer<vtkDataArray> values = this->File.Read(connectivity);
+  std::vector<double> numbers(faces * corners);
   for (size_t f = 0; f < faces; ++f) {
-    face.clear();
     for (size_t c = 0; c < corners; ++c) {
-      const double number = numbers->GetComponent(static_cast<vtkIdType>(turned ? c * faces + f : f * corners + c), 0);
-      if (std::isnan(number)) {
-        continue;
-      }
-      const double node = number - start;
-      if (!(node >= 0.0 && node < static_cast<double>(this->GetNodes())) || node != std::floor(node)) {
-        this->File.Fail("face " + std::to_string(f) + " names node " + vtkStratusNumberText(number) + ", the nodes are " +
-          vtkStratusNumberText(start) + " to " + vtkStratusNumberText(start + static_cast<double>(this->GetNodes()) - 1));
-      }
-      face.push_back(static_cast<int>(node));
+      numbers[f * corners + c] = values->GetComponent(static_cast<vtkIdType>(turned ? c * faces + f : f * corners + c), 0);
     }
-    if (face.size() < 3) {
-      this->File.Fail("face " + std::to_string(f) + " has " + std::to_string(face.size()) + " nodes, at least 3 are needed");
-    }
-    this->AddFace(face);
   }
+  stratus_face_table table = {};
+  table.rows = static_cast<int64_t>(faces);
+  table.columns = static_cast<int64_t>(corners);
+  table.first = start;
+  this->FindFaces(numbers, table, faces, connectivity.Name);
 }
 
-void vtkStratusUgridMesh::AddFace(const std::vector<int>& face)
+stratus_faces vtkStratusUgridMesh::ViewFaces(const std::vector<uint8_t>& absent) const
 {
-  this->Corners.insert(this->Corners.end(), face.begin(), face.end());
-  this->Offsets.push_back(this->Corners.size());
-  const size_t number = this->FaceOf.size();
-  this->FaceOf.push_back({ number, number, 1.0 });
+  stratus_faces view = {}; // whose arrays are read only, unless the mesh itself changes them
+  view.node_count = static_cast<int64_t>(this->GetNodes());
+  view.face_count = static_cast<int64_t>(this->GetFaces());
+  view.offsets = const_cast<int64_t*>(this->Offsets.data());
+  view.nodes = const_cast<int32_t*>(this->Corners.data());
+  view.absent = const_cast<uint8_t*>(absent.data());
+  return view;
+}
+
+// Finds the faces by a table of numbers. table: all but its numbers; name: of its variable
+void vtkStratusUgridMesh::FindFaces(const std::vector<double>& numbers, stratus_face_table table, size_t faces, const std::string& name)
+{
+  const vtkStratusReaderCore core;
+  table.numbers = numbers.data();
+  this->Offsets.assign(faces + 1, 0);
+  this->Corners.assign(numbers.size() + 3 * faces, 0);
+  this->Absent.assign(faces, 0);
+  stratus_faces view = this->ViewFaces(this->Absent);
+  core.Check(stratus_faces_from_table(core, &table, &view), this->File.GetPath() + ": '" + name + "': ");
+  this->Corners.resize(static_cast<size_t>(this->Offsets.back()));
+  for (size_t face = 0; face < faces; ++face) {
+    this->FaceOf.push_back({ face, face, 1.0 });
+  }
 }
 
 // Turns degrees into metres and faces counterclockwise, once all nodes and faces are there.
@@ -322,8 +333,10 @@ std::vector<double> vtkStratusUgridMesh::ToNodes(const vtkStratusUgridValues& va
   std::vector<int> around(this->GetNodes(), 0);
   for (size_t face = 0; face < this->GetFaces(); ++face) {
     const double value = this->IsAbsent(face) ? NAN : values.At(face, layer);
-    for (size_t c = this->Offsets[face]; c < this->Offsets[face + 1] && std::isfinite(value); ++c) {
-      const vtkStratusUgridPlace& of = this->NodeOf[static_cast<size_t>(this->Corners[c])];
+    int count = 0;
+    const int* corners = this->GetFace(face, count);
+    for (int c = 0; c < count && std::isfinite(value); ++c) {
+      const vtkStratusUgridPlace& of = this->NodeOf[static_cast<size_t>(corners[c])];
       for (const size_t node : { of.First, of.Second }) {
         result[node] += value;
         ++around[node];

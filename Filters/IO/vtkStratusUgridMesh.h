@@ -7,6 +7,8 @@
 #include "vtkStratusNetCDFModel.h"
 #include "vtkStratusProjection.h"
 
+#include "stratus/layers.h"
+
 #include <array>
 #include <map>
 #include <memory>
@@ -62,10 +64,12 @@ public:
   const int* GetFace(size_t face, int& corners) const
   {
     corners = static_cast<int>(this->Offsets[face + 1] - this->Offsets[face]);
-    return &this->Corners[this->Offsets[face]];
+    return &this->Corners[static_cast<size_t>(this->Offsets[face])];
   }
   // Returns whether the file's face lacks corners, as at the border of MPAS' meshes.
-  bool IsAbsent(size_t face) const { return !this->Absent.empty() && face < this->Absent.size() && this->Absent[face] != 0; }
+  bool IsAbsent(size_t face) const { return this->Absent[face] != 0; }
+  // A view of the faces for the core, with one flag for each face that is not there.
+  stratus_faces ViewFaces(const std::vector<uint8_t>& absent) const;
   std::string GetAxisName(int axis) const
   {
     const std::string& name = axis == 0 ? this->XName : this->YName;
@@ -118,9 +122,8 @@ private:
   void ReadFaces(const Variable& connectivity, int first);
   void ReadMpas();
   void HidePeriodic(const Variable& global);
-  void AddFaceOf(std::vector<int>& corners);
   void ReadCells();
-  void AddFace(const std::vector<int>& face);
+  void FindFaces(const std::vector<double>& numbers, stratus_face_table table, size_t faces, const std::string& name);
   void Finish();
   // On the plane, in vtkStratusUgridLongitudes.cxx:
   void JoinLongitudes();
@@ -140,12 +143,12 @@ private:
   std::vector<double> X, Y; // in the file's units or degrees until faces are read, then in metres if they can be
   std::vector<vtkStratusUgridPlace> NodeOf, FaceOf;
   std::map<std::tuple<int, int, double>, int> Copies; // of nodes and of edges' points, by longitude
-  std::vector<char> Absent;                           // of the file's faces; empty: none is
+  std::vector<uint8_t> Absent;                        // of each face
   std::array<double, 2> Factors = { { 1.0, 1.0 } };
   bool Degrees = false, Mpas = false;
   const bool Sphere;
-  std::vector<size_t> Offsets = { 0 };
-  std::vector<int> Corners;
+  std::vector<int64_t> Offsets = { 0 };
+  std::vector<int32_t> Corners;
   std::string Description;
   bool Metres = false;
 };

@@ -3,6 +3,7 @@
 
 #include "vtkStratusHDF5Lock.h"
 #include "vtkStratusNetCDFFile.h"
+#include "vtkStratusReaderCore.h"
 #include "vtkStratusUgridLayers.h"
 #include "vtkStratusUgridMesh.h"
 #include "vtkStratusSphere.h"
@@ -76,31 +77,29 @@ void AddPrism(vtkUnstructuredGrid* grid, const int* corners, int count, vtkIdTyp
   grid->InsertNextCell(VTK_POLYHEDRON, count + 2, ids.data());
 }
 
-void AddCells(const vtkStratusUgridMesh& mesh, const std::vector<double>& z, const std::vector<char>& dry, vtkUnstructuredGrid* grid)
+void AddCells(const vtkStratusUgridMesh& mesh, const std::vector<double>& z, const std::vector<uint8_t>& none,
+  const std::vector<uint8_t>& dry, vtkUnstructuredGrid* grid)
 {
   const size_t nodes = mesh.GetNodes(), layers = z.size() / nodes - 1;
-  vtkSmartPointer<vtkUnsignedCharArray> ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-  ghosts->SetNumberOfValues(static_cast<vtkIdType>(layers * mesh.GetFaces()));
-  ghosts->FillValue(0);
+  std::vector<uint8_t> hidden(layers * mesh.GetFaces());
+  const vtkStratusReaderCore core;
+  const stratus_faces faces = mesh.ViewFaces(dry);
+  core.Check(stratus_prisms_hide(core, &faces, static_cast<int64_t>(layers), z.data(), none.data(), hidden.data()));
   std::vector<vtkIdType> ids;
-  grid->Allocate(static_cast<vtkIdType>(layers * mesh.GetFaces()));
-  bool any = false;
+  grid->Allocate(static_cast<vtkIdType>(hidden.size()));
   for (size_t layer = 0; layer < layers; ++layer) {
     for (size_t face = 0; face < mesh.GetFaces(); ++face) {
       int count = 0;
       const int* corners = mesh.GetFace(face, count);
-      const double* below = &z[layer * nodes];
       AddPrism(grid, corners, count, static_cast<vtkIdType>(layer * nodes), static_cast<vtkIdType>((layer + 1) * nodes), ids);
-      const bool thin =
-        std::all_of(corners, corners + count, [below, nodes](int n) { return below[nodes + static_cast<size_t>(n)] <= below[n]; });
-      if (thin || dry[face]) {
-        ghosts->SetValue(static_cast<vtkIdType>(layer * mesh.GetFaces() + face), vtkDataSetAttributes::HIDDENCELL);
-        any = true;
-      }
     }
   }
-  if (any) {
+  if (std::any_of(hidden.begin(), hidden.end(), [](uint8_t one) { return one != 0; })) {
+    vtkSmartPointer<vtkUnsignedCharArray> ghosts = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    ghosts->SetNumberOfValues(static_cast<vtkIdType>(hidden.size()));
+    std::transform(hidden.begin(), hidden.end(), ghosts->GetPointer(0),
+      [](uint8_t one) { return static_cast<unsigned char>(one ? vtkDataSetAttributes::HIDDENCELL : 0); });
     grid->GetCellData()->AddArray(ghosts);
   }
 }
@@ -122,25 +121,19 @@ std::vector<double> DegreesOf(const vtkStratusUgridMesh& mesh, const std::shared
   return degrees;
 }
 
-// A value at a border of layers on a node, from those in the middle of the layers below and above it, by distance.
-double Between(const vtkStratusUgridValues& values, const vtkStratusUgridLayers& layers, const std::vector<double>& z, size_t nodes,
-  size_t node, size_t border)
+// Values at the borders of layers on nodes, from those in the middle of the layers.
+std::vector<double> AtBorders(
+  const vtkStratusUgridValues& values, const vtkStratusUgridLayers& layers, const std::vector<double>& z, size_t nodes)
 {
   const size_t count = layers.GetCount();
-  const auto value = [&](size_t layer) { return values.At(node, layers.FromBottom(layer, count)); };
-  if (border == 0 || border == count) {
-    return value(border == 0 ? 0 : count - 1);
+  std::vector<double> middles(count * nodes), result((count + 1) * nodes);
+  for (size_t i = 0; i < middles.size(); ++i) {
+    middles[i] = values.At(i % nodes, layers.FromBottom(i / nodes, count));
   }
-  const auto height = [&](size_t one) { return z[one * nodes + node]; };
-  const double under = height(border) - height(border - 1), over = height(border + 1) - height(border);
-  if ((under <= 0.0 && over > 0.0) || std::isnan(value(border - 1))) { // the layer below is under the bottom
-    return value(border);
-  }
-  if (std::isnan(value(border))) {
-    return value(border - 1);
-  }
-  const double weight = under + over > 0.0 ? over / (under + over) : 0.5; // of the layer below: it is nearer where the one above is thicker
-  return weight * value(border - 1) + (1.0 - weight) * value(border);
+  const vtkStratusReaderCore core;
+  core.Check(
+    stratus_layers_to_borders(core, static_cast<int64_t>(nodes), static_cast<int64_t>(count), z.data(), middles.data(), result.data()));
+  return result;
 }
 } // namespace
 
@@ -225,8 +218,8 @@ void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFModel& file, size_t 
   const vtkStratusUgridLayers layers(mesh);
   mesh.SetLayers(layers.GetDimensions(), layers.GetCount());
   std::vector<double> z;
-  std::vector<char> dry;
-  layers.Read(step, z, dry);
+  std::vector<uint8_t> none, dry;
+  layers.Read(step, z, none, dry);
   grid->SetPoints(MakePoints(mesh, z));
   if (vtkDoubleArray* places = this->Coordinates == SPHERE ? vtkDoubleArray::SafeDownCast(grid->GetPoints()->GetData()) : nullptr) {
     this->UsedHeightFactor = this->HeightFactor > 0.0 ? this->HeightFactor : vtkStratusSphere::FactorOf(places, {});
@@ -234,7 +227,7 @@ void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFModel& file, size_t 
     const size_t levels = static_cast<size_t>(places->GetNumberOfTuples()) / mesh.GetNodes();
     vtkStratusSphere::Place(nullptr, levels, degrees, places, this->UsedHeightFactor);
   }
-  AddCells(mesh, z, dry, grid);
+  AddCells(mesh, z, none, dry, grid);
   const Variable& chosen = *file.Find(this->ChosenName());
   const vtkStratusUgridValues values = mesh.Read(chosen, step);
   const size_t count = layers.GetCount();
@@ -244,11 +237,12 @@ void vtkStratusUgridReader::BuildFile(const vtkStratusNetCDFModel& file, size_t 
   array.TakeReference(values.Values->NewInstance());
   array->SetName(chosen.Name.c_str());
   array->SetNumberOfTuples(static_cast<vtkIdType>(places * storeys));
+  const std::vector<double> at_borders = on_nodes && layered ? AtBorders(values, layers, z, places) : std::vector<double>();
   for (size_t s = 0; s < storeys; ++s) {
     for (size_t p = 0; p < places; ++p) {
       double value = 0.0;
       if (on_nodes && layered) {
-        value = Between(values, layers, z, places, p, s);
+        value = at_borders[s * places + p];
       } else if (on_nodes || layered) {
         value = values.At(p, layered ? layers.FromBottom(s, count) : borders ? layers.FromBottom(s, count + 1) : 0);
       } else {

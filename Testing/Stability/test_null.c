@@ -660,6 +660,60 @@ static void orders(const stratus_mesh* mesh, const stratus_camera* camera)
   stratus_visibility_order_destroy(order);
 }
 
+static void layers(void)
+{
+  const double numbers[3] = { 0, 1, 2 }, degrees[6] = { 0, 0, 1, 0, 0, 1 }, heights[6] = { 0, 0, 0, 1, 1, 1 };
+  int64_t offsets[2] = { 0, 3 }, first[3], count;
+  int32_t nodes[6] = { 0, 1, 2 }, prisms[3], vertices[12];
+  uint8_t absent[1] = { 0 }, none[3], hidden[1];
+  double z[6];
+  const stratus_face_table table = { .numbers = numbers, .rows = 1, .columns = 3 };
+  stratus_faces faces = { .node_count = 3, .face_count = 1, .offsets = offsets, .nodes = nodes, .absent = absent };
+  const stratus_layer_borders borders = { .node_count = 3, .layer_count = 1, .borders = heights };
+  IS_SILENT(stratus_faces_from_table(NULL, &table, &faces));
+  REFUSES(stratus_faces_from_table(context, NULL, &faces));
+  REFUSES(stratus_faces_from_table(context, &table, NULL));
+  IS_SILENT(stratus_faces_join_corners(NULL, 3, degrees, nodes, first, &count));
+  REFUSES(stratus_faces_join_corners(context, 3, NULL, nodes, first, &count));
+  REFUSES(stratus_faces_join_corners(context, 3, degrees, NULL, first, &count));
+  REFUSES(stratus_faces_join_corners(context, 3, degrees, nodes, NULL, &count));
+  REFUSES(stratus_faces_join_corners(context, 3, degrees, nodes, first, NULL));
+  IS_SILENT(stratus_faces_turn(NULL, &faces, degrees, 1));
+  REFUSES(stratus_faces_turn(context, NULL, degrees, 1));
+  REFUSES(stratus_faces_turn(context, &faces, NULL, 1));
+  IS_SILENT(stratus_layers_between(NULL, 1, heights, z));
+  REFUSES(stratus_layers_between(context, 1, NULL, z));
+  REFUSES(stratus_layers_between(context, 1, heights, NULL));
+  IS_SILENT(stratus_layers_from_borders(NULL, &borders, z, none));
+  REFUSES(stratus_layers_from_borders(context, NULL, z, none));
+  REFUSES(stratus_layers_from_borders(context, &borders, NULL, none));
+  REFUSES(stratus_layers_from_borders(context, &borders, z, NULL));
+  IS_SILENT(stratus_layers_from_heights(NULL, 3, 1, 1, heights, z, none));
+  REFUSES(stratus_layers_from_heights(context, 3, 1, 1, NULL, z, none));
+  REFUSES(stratus_layers_from_heights(context, 3, 1, 1, heights, NULL, none));
+  REFUSES(stratus_layers_from_heights(context, 3, 1, 1, heights, z, NULL));
+  IS_SILENT(stratus_layers_from_thicknesses(NULL, 3, 1, heights, heights, NULL, z, none));
+  REFUSES(stratus_layers_from_thicknesses(context, 3, 1, NULL, heights, NULL, z, none));
+  REFUSES(stratus_layers_from_thicknesses(context, 3, 1, heights, NULL, NULL, z, none));
+  REFUSES(stratus_layers_from_thicknesses(context, 3, 1, heights, heights, NULL, NULL, none));
+  REFUSES(stratus_layers_from_thicknesses(context, 3, 1, heights, heights, NULL, z, NULL));
+  IS_SILENT(stratus_layers_to_borders(NULL, 3, 1, heights, heights, z));
+  REFUSES(stratus_layers_to_borders(context, 3, 1, NULL, heights, z));
+  REFUSES(stratus_layers_to_borders(context, 3, 1, heights, NULL, z));
+  REFUSES(stratus_layers_to_borders(context, 3, 1, heights, heights, NULL));
+  IS_SILENT(stratus_prisms_hide(NULL, &faces, 1, heights, NULL, hidden));
+  REFUSES(stratus_prisms_hide(context, NULL, 1, heights, NULL, hidden));
+  REFUSES(stratus_prisms_hide(context, &faces, 1, NULL, NULL, hidden));
+  REFUSES(stratus_prisms_hide(context, &faces, 1, heights, NULL, NULL));
+  IS_SILENT(stratus_prisms_divide(NULL, &faces, 1, NULL, &count, vertices, prisms));
+  REFUSES(stratus_prisms_divide(context, NULL, 1, NULL, &count, vertices, prisms));
+  REFUSES(stratus_prisms_divide(context, &faces, 1, NULL, NULL, vertices, prisms));
+  REFUSES(stratus_prisms_divide(context, &faces, 1, NULL, &count, NULL, prisms));
+  REFUSES(stratus_prisms_divide(context, &faces, 1, NULL, &count, vertices, NULL));
+  faces.nodes = NULL;
+  REFUSES(stratus_faces_turn(context, &faces, degrees, 1));
+}
+
 static void meshes(const small_scene* scene)
 {
   static const double points[12] = { 0, 0, 0, 4, 0, 0, 0, 4, 0, 0, 0, 4 };
@@ -820,6 +874,7 @@ static void no_public_function_falls_over_null(void** state)
   bricks(&scene.volume);
   path_tracers(&scene);
   frustums(&scene);
+  layers();
   meshes(&scene);
   scenes();
   assert_none_is_left_out();

@@ -195,7 +195,7 @@ void test_schism(const std::string& folder)
   check(values(grid->GetPointData()->GetArray("salt")) == std::vector<double>{ 1, 4, 7, 10, 2, 5, 8, 11, 3, 6, 9, 12 }, "values of nodes");
   check(!hidden(grid, 0) && hidden(grid, 1) && hidden(grid, 3), "a face at a node without heights is blanked");
   c.of("zcor").values[1] = -10;
-  refuse<reader>(write_netcdf(folder + "/inverted.nc", c), "salt", "layers are upside down: 'zcor' has -9 under -10 at node 0");
+  refuse<reader>(write_netcdf(folder + "/inverted.nc", c), "salt", "'zcor': layers are upside down: -9 is below -10 at node 0");
 }
 
 // One layer, faces of five, six and seven corners.
@@ -238,10 +238,10 @@ void test_bad(const std::string& folder)
   check(!reader::CanReadFile(bare.c_str()), "a file without a mesh is seen");
   refuse<reader>(
     with("nodes", delft(), [](auto& c) { c.of("mesh2d").texts["node_coordinates"] = "a b"; }), nullptr, "there is no variable 'a'");
-  refuse<reader>(
-    with("high", delft(), [](auto& c) { c.of("mesh2d_face_nodes").values[6] = 6; }), nullptr, "face 1 names node 6, the nodes are 1 to 5");
-  refuse<reader>(
-    with("low", delft(), [](auto& c) { c.of("mesh2d_face_nodes").values[0] = 0; }), nullptr, "face 0 names node 0, the nodes are 1 to 5");
+  refuse<reader>(with("high", delft(), [](auto& c) { c.of("mesh2d_face_nodes").values[6] = 6; }), nullptr,
+    "'mesh2d_face_nodes': face 1 has the node 6, must be 1 to 5");
+  refuse<reader>(with("low", delft(), [](auto& c) { c.of("mesh2d_face_nodes").values[0] = 0; }), nullptr,
+    "'mesh2d_face_nodes': face 0 has the node 0, must be 1 to 5");
   refuse<reader>(with("two", delft(), [](auto& c) { c.of("mesh2d_face_nodes").values[6] = -1; }), nullptr, "face 1 has 2 nodes");
   refuse<reader>(with("back", delft(),
                    [](auto& c) {

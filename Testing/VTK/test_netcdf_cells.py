@@ -234,7 +234,7 @@ sizes = dict(dimensions, nVertLevels=layers, nVertLevelsP1=layers + 1)
 bad = mesh["cellsOnVertex"][1].copy()
 bad[3, 1] = 99
 for name, change, words in (
-    ("a number", dict(cellsOnVertex=("nVertices vertexDegree", bad, {})), "has the number 99 in row 3, it must be 1 to 42, or 0 for none"),
+    ("a number", dict(cellsOnVertex=("nVertices vertexDegree", bad, {})), "'cellsOnVertex': face 3 has the node 99, must be 1 to 42"),
     ("no middles", dict(lonCell=None), "there is no variable 'lonCell'"),
     ("no heights", dict(zgrid=None), "there is no free surface"),
     ("upside down", dict(zgrid=(zgrid[0], zgrid[1][:, [0, 2, 1, 3, 4]], {"units": "m"})), "layers are upside down")):
