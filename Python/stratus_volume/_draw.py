@@ -2,7 +2,8 @@
 """One call for one picture of whatever it is."""
 from ._annotation import flag
 from ._core import Progress, whole
-from ._globe import Globe
+from ._globe import OnGlobe
+from ._globe_layers import check_variable, on_globe
 from ._picture import Film, paint
 from ._tetrahedra import Tetrahedra
 from ._values import background_color, number, positive
@@ -15,13 +16,19 @@ _OF_DATA = ("spacing", "origin", "axes", "scalars", "component", "device", "thre
 def drawn_of(data, spacing=None, origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, exaggerate=None,
              globe=False, memory=None):
     """What draws the data: a Volume or Tetrahedra."""
+    is_dataset = hasattr(data, "data_vars")
+    if is_dataset:
+        check_variable(data, scalars)
     if flag(globe, "globe"):
-        for name, value in dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, matrix=matrix).items():
+        chosen = None if is_dataset else scalars
+        for name, value in dict(spacing=spacing, origin=origin, axes=axes, scalars=chosen, component=component, matrix=matrix).items():
             if value is not None:
                 raise ValueError(f"{name} is {value!r}, but on a globe places are those of longitudes, latitudes and heights: leave it out")
         if memory is not None:
             raise ValueError(f"memory is {memory!r}, but on a globe all values are read at once: leave it out")
-        return Globe(data, exaggerate, device, threads)
+        return on_globe(data, scalars, exaggerate, device, threads)
+    if is_dataset:
+        data, scalars = data[scalars], None
     if isinstance(data, (Volume, Tetrahedra)):
         given = dict(spacing=spacing, origin=origin, axes=axes, scalars=scalars, component=component, device=device, threads=threads, matrix=matrix,
                      exaggerate=exaggerate, memory=memory)
@@ -41,13 +48,14 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
            device=None, threads=None, matrix=None, exaggerate=None, globe=False, memory=None, **options):
     """Draws a volume and returns a Rendering: rgba, depth, counters.
 
-    data           a NumPy array, an xarray.DataArray, a lazy array such as zarr's, a vtkImageData or vtkRectilinearGrid, a vtkUnstructuredGrid or
-                   vtkStructuredGrid, pyvista's too; or a Volume or Tetrahedra, which are drawn again without building anew. See `Volume` and
-                   `Tetrahedra` for the accepted data, and for spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate
-                   and memory
-    globe          True: an xarray.DataArray with longitudes and latitudes, of one or two dimensions, on a sphere of 6371 km, which hides what is
-                   behind it. Heights are times `exaggerate`, by default as much as makes them reach over a tenth of the radius. Lattices that go
-                   all the way round are closed, at poles and at the seam between two poles, too. Cells are drawn, as of structured grids
+    data           a NumPy array, an xarray.DataArray, an xarray.Dataset, whose variable `scalars` names, a lazy array such as zarr's, a
+                   vtkImageData or vtkRectilinearGrid, a vtkUnstructuredGrid or vtkStructuredGrid, pyvista's too; or a Volume or Tetrahedra, which
+                   are drawn again without building anew. See `Volume` and `Tetrahedra` for the accepted data, and for spacing, origin, axes,
+                   scalars, component, device, threads, matrix, exaggerate and memory
+    globe          True: on a sphere of 6371 km, which hides what is behind it: an xarray.DataArray with longitudes and latitudes, of one or two
+                   dimensions, or a variable of an xarray.Dataset with a mesh in layers, of UGRID, MPAS or ICON. Heights are times `exaggerate`,
+                   by default as much as makes them reach over a tenth of the radius. Lattices that go all the way round are closed, at poles and at
+                   the seam between two poles, too. Cells are drawn, as of structured grids
     opacity        pairs of a value and its opacity in 0..1 per unit_distance. Two pairs at one value are a step. A number is the top of a
                    ramp away from the most frequent value, or the opacity of the whole volume if all values are equal; default 0.3, in mode
                    slice 1 for all values. For several components one of these for all, or a list with one for each
@@ -128,7 +136,7 @@ def show(data, opacity=None, color=None, size=(640, 480), camera=None, backgroun
     background = background_color(background)
     drawn = drawn_of(data, **{name: options.pop(name) for name in _OF_DATA if name in options})
     factor = getattr(drawn, "exaggeration", 1.0)
-    heights = "" if factor == 1 else f"heights x {factor:.4g}" if isinstance(drawn, Globe) else f"heights x {factor:.15g}"
+    heights = "" if factor == 1 else f"heights x {factor:.4g}" if isinstance(drawn, OnGlobe) else f"heights x {factor:.15g}"
     if options.get("caption") is None and heights:
         options["caption"] = heights
     elif options.get("caption") and heights:

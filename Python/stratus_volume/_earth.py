@@ -133,14 +133,15 @@ class About:
         return kind, ctypes.string_at(name.value).decode() if name.value else None
 
 
-def functions(context, about, volume, column_axis, thickness=None):
+def functions(context, about, volume, column_axis, thickness=None, unordered=False):
     """Returns points of opacity, points of colour and the unit distance, guessed by the core. Call it with the context's lock held.
 
     thickness  the length along the column of each value; None: as of the volume
+    unordered  True: values are in no order of space
     """
     options, look = library.stratus_look_options_default(), c.stratus_look()
     options.kind, name = about.kind()
-    options.column_axis, options.thickness = column_axis, address(thickness)
+    options.column_axis, options.thickness, options.unordered = column_axis, address(thickness), int(unordered)
     context.call(library.stratus_look_guess, context.pointer, ctypes.byref(volume), 1, ctypes.byref(options), ctypes.byref(look))
     if name is None:
         name = "cool-warm" if look.kind == c.ENUMS["stratus_look_kind"]["STRATUS_LOOK_SIGNED"] else "viridis"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Longitudes and latitudes of an xarray.DataArray on a sphere, as the command line's --globe shows them. The core closes the lattice, places its
+"""Longitudes and latitudes of xarray's data on a sphere, as the command line's --globe shows them. The core closes the lattice, places its
 points and draws the Earth."""
 import ctypes
 import math
@@ -79,51 +79,25 @@ class Earth:
                      ctypes.byref(image.struct))
 
 
-class Globe(Tetrahedra):
-    """A DataArray of longitudes and latitudes, of one or two dimensions, and a height, depth or pressure, on a sphere of 6371 km.
+class OnGlobe(Tetrahedra):
+    """Data on a sphere of 6371 km, whose base is the core's."""
 
-    exaggerate  factor of heights, above 0; default: as much as makes them reach over a tenth of the radius
-
-    `exaggeration` is the factor that is used.
-    """
-
-    def __init__(self, data, exaggerate=None, device=None, threads=None):
-        if not (hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs")):
-            raise ValueError(f"globe is True, but the data are of the type {type(data).__name__}, only an xarray.DataArray has longitudes and latitudes")
-        space_axes_of(data)  # refuses other dimensions than three of space
-        places, horizontal = _horizontal(data)
-        vertical, = set(data.dims) - set(horizontal)
-        context = context_of("host", 1)
-        heights = None if vertical not in data.coords else _earth.heights_of(context, vertical, data.coords[vertical])
-        if heights is None:
-            raise ValueError(f"globe is True, but the dimension {vertical!r} has no coordinate in a unit of length or pressure")
-        values = values_of(data).transpose([data.dims.index(name) for name in (vertical, *horizontal)])
-        degrees = numpy.ascontiguousarray(numpy.stack(places, axis=-1), numpy.float64)
+    def _finish(self, data, description):
+        """Sets what a picture needs besides the mesh. data: the DataArray."""
         self.about = _earth.About(data)
         self.bar_title = tuple(str(text or "") for text in (getattr(data, "name", None), data.attrs.get("units")))
-        self.exaggeration = (float(library.stratus_globe_height_factor(heights.min(), heights.max())) if exaggerate is None else
-                             positive(exaggerate, "exaggerate"))
-        unknown = ~numpy.isfinite(degrees).all(axis=-1)
-        if unknown.any():
-            values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | unknown, values)
-        with context.lock:
-            lattice = c.stratus_globe_lattice()
-            context.call(library.stratus_globe_find_lattice, context.pointer, degrees.shape[1], degrees.shape[0], address(degrees),
-                         ctypes.byref(lattice))
-            points = self._points(context, lattice, degrees, heights)
-        super().__init__(points, None, _spread(lattice, values), device=device, threads=threads)
         self.innermost = float(numpy.sqrt((self.points ** 2).sum(axis=-1).min()))
-        text = ctypes.create_string_buffer(256)
-        library.stratus_globe_describe(ctypes.byref(lattice), text, len(text))
-        self.description = "on a sphere of 6371 km" + text.value.decode()
+        self.description = "on a sphere of 6371 km" + description
 
-    def _points(self, context, lattice, degrees, heights):
-        every = numpy.ascontiguousarray(numpy.broadcast_to(heights[:, None, None], (len(heights), *degrees.shape[:2])))
-        points = numpy.empty((len(heights), library.stratus_globe_rows(ctypes.byref(lattice)), library.stratus_globe_columns(ctypes.byref(lattice)), 3))
-        own = c.stratus_globe_points(lattice=ctypes.pointer(lattice), count=degrees.shape[0] * degrees.shape[1], levels=len(heights),
-                                     degrees=address(degrees), heights=address(every), height_stride=1, factor=self.exaggeration)
-        context.call(library.stratus_globe_place, context.pointer, ctypes.byref(own), address(points))
-        return points
+    def _box(self, dimensions):
+        """A box about the data, of values in cells."""
+        volume = library.stratus_volume_default()
+        volume.values, volume.type, volume.value_stride = address(self.values), self._mesh().type, 1
+        volume.dimensions[:], volume.cell_centered = dimensions, 1
+        for axis in range(3):
+            volume.origin[axis] = self.bounds[2 * axis]
+            volume.spacing[axis] = (self.bounds[2 * axis + 1] - self.bounds[2 * axis]) / volume.dimensions[axis]
+        return volume
 
     def camera_of(self, camera):
         """The default camera, and the ones about the data, look from above the middle of the data, unless they go round."""
@@ -140,6 +114,49 @@ class Globe(Tetrahedra):
         wishes.update(camera or {})
         return wishes if aside else dict(wishes, zoom=number(wishes["zoom"], "camera's zoom") * _ALL_ROUND)
 
+
+class Globe(OnGlobe):
+    """A DataArray of longitudes and latitudes, of one or two dimensions, and a height, depth or pressure, on a sphere of 6371 km.
+
+    exaggerate  factor of heights, above 0; default: as much as makes them reach over a tenth of the radius
+
+    `exaggeration` is the factor that is used.
+    """
+
+    def __init__(self, data, exaggerate=None, device=None, threads=None):
+        if not (hasattr(data, "dims") and hasattr(data, "coords") and hasattr(data, "attrs")):
+            raise ValueError(f"globe is True, but the data are of the type {type(data).__name__}, only xarray's have longitudes and latitudes")
+        space_axes_of(data)  # refuses other dimensions than three of space
+        places, horizontal = _horizontal(data)
+        vertical, = set(data.dims) - set(horizontal)
+        context = context_of("host", 1)
+        heights = None if vertical not in data.coords else _earth.heights_of(context, vertical, data.coords[vertical])
+        if heights is None:
+            raise ValueError(f"globe is True, but the dimension {vertical!r} has no coordinate in a unit of length or pressure")
+        values = values_of(data).transpose([data.dims.index(name) for name in (vertical, *horizontal)])
+        degrees = numpy.ascontiguousarray(numpy.stack(places, axis=-1), numpy.float64)
+        self.exaggeration = exaggeration(exaggerate, heights)
+        unknown = ~numpy.isfinite(degrees).all(axis=-1)
+        if unknown.any():
+            values = numpy.ma.masked_where(numpy.ma.getmaskarray(values) | unknown, values)
+        with context.lock:
+            lattice = c.stratus_globe_lattice()
+            context.call(library.stratus_globe_find_lattice, context.pointer, degrees.shape[1], degrees.shape[0], address(degrees),
+                         ctypes.byref(lattice))
+            points = self._points(context, lattice, degrees, heights)
+        super().__init__(points, None, _spread(lattice, values), device=device, threads=threads)
+        text = ctypes.create_string_buffer(256)
+        library.stratus_globe_describe(ctypes.byref(lattice), text, len(text))
+        self._finish(data, text.value.decode())
+
+    def _points(self, context, lattice, degrees, heights):
+        every = numpy.ascontiguousarray(numpy.broadcast_to(heights[:, None, None], (len(heights), *degrees.shape[:2])))
+        points = numpy.empty((len(heights), library.stratus_globe_rows(ctypes.byref(lattice)), library.stratus_globe_columns(ctypes.byref(lattice)), 3))
+        own = c.stratus_globe_points(lattice=ctypes.pointer(lattice), count=degrees.shape[0] * degrees.shape[1], levels=len(heights),
+                                     degrees=address(degrees), heights=address(every), height_stride=1, factor=self.exaggeration)
+        context.call(library.stratus_globe_place, context.pointer, ctypes.byref(own), address(points))
+        return points
+
     def guess(self, mode):
         """Points of opacity, points of colour and the unit distance by what the data say of their variable and by the depth of their columns, or
         None. Call it with the context's lock held."""
@@ -148,13 +165,12 @@ class Globe(Tetrahedra):
         radii = numpy.sqrt((self.points ** 2).sum(axis=-1))
         ends = numpy.concatenate([radii[:1], radii, radii[-1:]])
         thickness = numpy.ascontiguousarray(0.5 * abs(ends[2:] - ends[:-2]))
-        volume = library.stratus_volume_default()
-        volume.values, volume.type, volume.value_stride = address(self.values), self._mesh().type, 1
-        volume.dimensions[:], volume.cell_centered = self.lattice[::-1], 1
-        for axis in range(3):
-            volume.origin[axis] = self.bounds[2 * axis]
-            volume.spacing[axis] = (self.bounds[2 * axis + 1] - self.bounds[2 * axis]) / volume.dimensions[axis]
-        return _earth.functions(self.context, self.about, volume, 2, thickness)
+        return _earth.functions(self.context, self.about, self._box(self.lattice[::-1]), 2, thickness)
+
+
+def exaggeration(factor, heights):
+    """The factor of heights, of which None is as much as makes them reach over a tenth of the radius."""
+    return float(library.stratus_globe_height_factor(heights.min(), heights.max())) if factor is None else positive(factor, "exaggerate")
 
 
 def _mean(values):

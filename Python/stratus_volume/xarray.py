@@ -29,16 +29,10 @@ class DatasetAccessor:
     def __init__(self, data):
         self._data = data
 
-    def _variable(self, name):
-        if name not in self._data.variables:
-            known = sorted(str(each) for each, array in self._data.data_vars.items() if array.ndim >= 3)
-            raise ValueError(f"the Dataset has no variable {name!r}, " + (f"it must be one of {known}" if known else "and none of three dimensions"))
-        return self._data[name].stratus
-
     def show(self, name, *arguments, **options):
         """Draws a variable and returns a Picture. Everything else is as in `stratus_volume.show`."""
-        return self._variable(name).show(*arguments, **options)
+        return show(self._data, *arguments, scalars=name, **options)
 
     def render(self, name, *arguments, **options):
         """Draws a variable and returns a Rendering: rgba, depth, counters. Everything else is as in `stratus_volume.render`."""
-        return self._variable(name).render(*arguments, **options)
+        return render(self._data, *arguments, scalars=name, **options)

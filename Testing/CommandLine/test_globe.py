@@ -185,9 +185,11 @@ expect(1, "is none of the known ones: albers_conical_equal_area", "render", wron
 # Data all around the Earth: the whole disk is in the picture, in its middle, and meshes of MPAS and ICON are seen on it. A column of them has an
 # optical depth of about 1.5, which is more than half opaque.
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "Python"))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "Python"))
+import datasets
 import model_files
 
-for path, least in ((model_files.mpas_atmosphere("."), 0.1), (model_files.icon_atmosphere("."), 0.4)):
+for path, name, least in ((model_files.mpas_atmosphere("."), "qc", 0.1), (model_files.icon_atmosphere("."), "temp", 0.4)):
     full, none = (picture(path, "--globe", *words)[1].astype(float) for words in ((), ("--opacity", "0:0,1000:0")))
     disk = none[20:].max(axis=2) > 0  # without the caption
     rows, columns = numpy.nonzero(disk)
@@ -200,4 +202,14 @@ for path, least in ((model_files.mpas_atmosphere("."), 0.1), (model_files.icon_a
     whole = full[20:].max(axis=2) > 0
     if whole[-1].any() or whole[:, 0].any() or whole[:, -1].any():
         fail(f"{path}: data are cut off")
+    if stratus_volume:  # Python draws the same first picture
+        said, image = picture(path, "--globe", "--coast")
+        eye = [float(x) for x in re.search(r"eye (\S+) (\S+) (\S+),", said).groups()]
+        camera = dict(position=eye, focal_point=(0, 0, 0), view_angle=float(re.search(r"angle (\S+)", said).group(1)))
+        other = stratus_volume.show(datasets.of_file(path), None, None, (SIZE, SIZE), camera, (0, 0, 0), scalars=name, globe=True, coast=True, device="host",
+                                    ink=0.85, caption="")
+        apart = abs(other[::-1, :, :3].astype(int)[:SIZE - 30] - image[:SIZE - 30]).max(axis=2)
+        print(f"{path}: Python's picture differs from the command line's in {(apart > 2).sum()} pixels")
+        if (apart > 2).any():
+            fail(f"{path}: Python draws another first picture")
 done()

@@ -140,7 +140,7 @@ def pictures():
 
 def refusals():
     field = spot(40, 20)
-    refuse(ValueError, "are of the type ndarray, only an xarray.DataArray has longitudes", show, field, globe=True)
+    refuse(ValueError, "are of the type ndarray, only xarray's have longitudes", show, field, globe=True)
     refuse(ValueError, "are of the type Volume", render, Volume(field, device="host"), globe=True)
     refuse(TypeError, "globe is 'yes', it must be True or False", show, earth(field), globe="yes")
     refuse(ValueError, "spacing is (1, 1, 1), but on a globe", render, earth(field), globe=True, spacing=(1, 1, 1))

@@ -52,6 +52,26 @@ def accessors():
     check(subprocess.run([sys.executable, "-c", program]).returncode == 0, "the package itself does not import xarray")
 
 
+def meshes():
+    """Datasets with a mesh and with a lattice on a globe."""
+    sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "Python"))
+    from geodesic import icon, icosphere
+    points, triangles = icosphere(2)
+    count = len(triangles)
+    parts = dict(icon(points, triangles)[1], z_ifc=("height_2 ncells", numpy.tile([[9000.0], [4000], [0]], (1, count)), {"units": "m"}),
+                 q=("time height ncells", numpy.arange(2.0 * count).reshape(1, 2, count), {"units": "K"}))
+    data = xarray.Dataset({name: (dims.split(), values, attrs) for name, (dims, values, attrs) in parts.items()})
+    wanted = show(data, scalars="q", globe=True, **host)
+    check(wanted.std() > 10 and wanted.caption == "heights x 70.79", f"a picture of a mesh: {wanted.caption}")
+    check(numpy.array_equal(data.stratus.show("q", globe=True, **host), wanted), "show of a Dataset with a mesh")
+    check(numpy.array_equal(data.stratus.render("q", globe=True, **host).rgba, render(data, scalars="q", globe=True, **host).rgba), "render")
+    refuse(ValueError, "no variable 'p', it must be one of ['clat_bnds', 'clon_bnds', 'q', 'z_ifc']", data.stratus.show, "p", globe=True)
+    refuse(ValueError, "it must have three", data.isel(time=0).stratus.show, "q")  # without globe=True it is no volume
+    lattice = xarray.Dataset(dict(t=array_of(dims=("z", "lat", "lon"))), dict(z=along("z", numpy.arange(12.0), units="m"),
+        lat=along("lat", numpy.arange(20.0), units="degrees_north"), lon=along("lon", numpy.arange(24.0), units="degrees_east")))
+    check(numpy.array_equal(lattice.stratus.show("t", globe=True, **host), show(lattice.t, globe=True, **host)), "a Dataset of a lattice")
+
+
 def axes():
     """Shuffled dimensions whose names say nothing are drawn as the same data in the usual order."""
     usual = render(array_of(), points, **host).rgba
@@ -142,6 +162,7 @@ def of_file():
 
 
 accessors()
+meshes()
 axes()
 wrong()
 lazy()

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Meshes in layers of files, as the reader and as the Python package place them on a sphere: the same points, cells and values."""
+import os
+import sys
+
+import numpy
+from vtk.util.numpy_support import vtk_to_numpy
+
+from netcdf_reading import Read, check, finish, folder, write
+
+here = os.path.dirname(os.path.abspath(__file__))
+sys.path[1:1] = [os.path.join(here, "..", "Python"), os.path.join(here, "..", "..", "Examples", "Python")]
+import datasets
+import model_files
+from geodesic import degrees_of, dual, icosphere, middles, mpas, rotation
+
+from stratus_volume._draw import drawn_of
+
+VOLUME_CELLS = {13: 3, 12: 4, 15: 5, 16: 6}  # VTK's prisms, and their corners below
+
+
+def prisms_of(grid):
+    """The number of tetrahedra of each cell that is not hidden, and the numbers of these cells."""
+    ghosts = grid.GetCellData().GetArray("vtkGhostType")
+    shown = numpy.arange(grid.GetNumberOfCells()) if not ghosts else numpy.nonzero(vtk_to_numpy(ghosts) == 0)[0]
+    corners = numpy.array([VOLUME_CELLS[grid.GetCellType(int(cell))] for cell in shown])
+    return shown, 3 * (corners - 2)
+
+
+def compare(path, name, factor=0.0):
+    def prepare(reader):
+        reader.SetCoordinatesToSphere()
+        reader.SetHeightFactor(factor)
+
+    got = Read(path, name, cls="vtkStratusUgridReader", prepare=prepare)
+    check(not got.error, f"{path}: {got.error}")
+    if got.error:
+        return
+    own = drawn_of(datasets.of_file(path), scalars=name, globe=True, exaggerate=factor or None, device="host")
+    points = vtk_to_numpy(got.data.GetPoints().GetData())
+    check(own.points.shape == points.shape and abs(own.points - points).max() < 1e-3, f"{path}: points {own.points.shape}, the reader's {points.shape}")
+    check(abs(own.exaggeration / got.reader.GetUsedHeightFactor() - 1) < 1e-12, f"{path}: heights x {own.exaggeration}")
+    shown, pieces = prisms_of(got.data)
+    check(len(own.cells) == pieces.sum(), f"{path}: {len(own.cells)} tetrahedra, of the reader's cells {pieces.sum()}")
+    of_points = got.data.GetPointData().GetArray(name) is not None
+    wanted = vtk_to_numpy(got.data.GetPointData().GetArray(name) if of_points else got.data.GetCellData().GetArray(name))
+    wanted = wanted if of_points else numpy.repeat(wanted[shown], pieces)
+    check(own.of_cells != of_points and own.values.shape == wanted.shape and numpy.allclose(own.values, wanted, rtol=1e-6, atol=0, equal_nan=True),
+          f"{path}: values of {name}")
+    if not of_points:  # each tetrahedron is in the cell whose value it has
+        cells = numpy.repeat(shown, pieces)
+        for n in range(0, len(cells), 97):
+            ids = got.data.GetCell(int(cells[n])).GetPointIds()
+            check(set(own.cells[n]) <= {ids.GetId(i) for i in range(ids.GetNumberOfIds())}, f"{path}: tetrahedron {n} is in cell {cells[n]}")
+
+
+for make, name in ((model_files.mpas_atmosphere, "qc"), (model_files.icon_atmosphere, "temp")):
+    path = make(folder)
+    compare(path, name)
+    compare(path, name, 3.5)
+
+points, triangles = icosphere(3, rotation(11, 23, 37))
+borders = numpy.array([0.0, 300, 1000, 2500, 6000])
+layers, thickness = 4, numpy.diff(borders)
+
+# MPAS' ocean with coasts and a bottom
+wet = points @ numpy.array([0.6, 0.0, 0.8]) < 0.5
+count = int(wet.sum())
+dimensions, mesh = mpas(points, triangles, wet)
+deep = numpy.where(numpy.arange(layers)[None, :] < 1 + (numpy.arange(count) % layers)[:, None], thickness[::-1], -1e34)
+compare(write("python ocean", dict(dimensions, nVertLevels=layers), **mesh, layerThickness=("nCells nVertLevels", deep, {"units": "m"}),
+    maxLevelCell=("nCells", (1 + numpy.arange(count) % layers).astype("i4"), {}),
+    bottomDepth=("nCells", numpy.where(deep > 0, deep, 0).sum(axis=1), {"units": "m"}),
+    salinity=("nCells nVertLevels", 30 + numpy.arange(1.0 * count * layers).reshape(count, layers) / 1000, {})), "salinity", 100)
+
+# cells of five and six corners on levels with bounds
+table, counts = dual(points, triangles)
+corner = table[numpy.arange(len(points))[:, None], numpy.minimum(numpy.arange(6), counts[:, None] - 1)]
+(lon, lat), (at_lon, at_lat) = degrees_of(middles(points, triangles)), degrees_of(points)
+compare(write("python hexagons", {"cell": len(points), "nv": 6, "lev": 3, "bnds": 2},
+    lon=("cell", at_lon, {"units": "degrees_east", "bounds": "lon_bounds"}), lon_bounds=("cell nv", lon[corner] % 360, {}),
+    lat=("cell", at_lat, {"units": "degrees_north", "bounds": "lat_bounds"}), lat_bounds=("cell nv", lat[corner], {}),
+    lev=("lev", numpy.array([10.0, 300, 2000]), {"units": "m", "positive": "down", "bounds": "lev_bnds"}),
+    lev_bnds=("lev bnds", numpy.array([[0.0, 20], [20, 1000], [1000, 5000]]), {}),
+    t=("lev cell", numpy.arange(3.0 * len(points)).reshape(3, -1), {"units": "K", "coordinates": "lat lon"})), "t", 50)
+
+# UGRID of triangles and quadrangles
+faces = numpy.concatenate([triangles, numpy.full((len(triangles), 1), -1)], axis=1)
+faces[::2] = faces[::2, [2, 1, 0, 3]]  # in any orientation
+for name, place in (("node", len(points)), ("face", len(triangles))):
+    values = numpy.arange(2.0 * place, dtype="f4").reshape(2, -1)
+    compare(write("python ugrid " + name, {"node": len(points), "face": len(triangles), "corner": 4, "layer": 2},
+        mesh=("", numpy.int32(0), {"cf_role": "mesh_topology", "topology_dimension": numpy.int32(2), "node_coordinates": "lon lat",
+                                   "face_node_connectivity": "faces"}),
+        lon=("node", at_lon, {"units": "degrees_east", "standard_name": "longitude"}),
+        lat=("node", at_lat, {"units": "degrees_north", "standard_name": "latitude"}),
+        faces=("face corner", faces.astype("i4"), {"start_index": numpy.int32(0), "fill": numpy.int32(-1)}),
+        layer=("layer", numpy.array([-3000.0, -1000.0]), {"units": "m", "positive": "up", "axis": "Z"}),
+        q=(f"layer {name}", values, {"mesh": "mesh", "location": name})), "q", 100)
+finish()
