@@ -209,7 +209,8 @@ def view(
     data: Any, opacity: _Points = ..., color: _Colors = ..., size: Sequence[int] = ..., camera: dict[str, float] | None = ...,
     background: _Background = ..., draft: float = ..., draft_tolerance: float = ..., spacing: Sequence[float] | None = ...,
     origin: Sequence[float] | None = ..., axes: str | Sequence[str] | None = ..., scalars: str | None = ..., component: _Component = ...,
-    device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., memory: _Memory = ..., **options: Any) -> View: ...
+    device: _Device = ..., threads: int | None = ..., matrix: _Matrix = ..., memory: _Memory = ..., globe: bool = ...,
+    exaggerate: float | None = ..., **options: Any) -> View: ...
 def render_several(
     items: Sequence[Any], size: Sequence[int] = ..., camera: _Camera = ..., opaque_depth: ArrayLike | None = ..., device: _Device = ...,
     threads: int | None = ..., progress: _Progress = ..., quantities: _Quantities = ..., threshold: float = ...) -> Rendering: ...

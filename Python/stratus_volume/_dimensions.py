@@ -88,19 +88,21 @@ class Steps:
         return self._choose(n)
 
     @classmethod
-    def of(cls, data):
+    def of(cls, data, scalars=None):
         """The steps of data, or None if the data have none. A DataArray has steps if it has a dimension besides three of space, which is time or of
-        which nothing is known."""
+        which nothing is known, and a Dataset if its variable `scalars` has a time."""
         if isinstance(data, (list, tuple)) and data and all(getattr(each, "ndim", 3) == 3 and not isinstance(each, (list, tuple)) for each in data):
             return cls("step", [str(n) for n in range(len(data))], lambda n: data[n])
-        if not (hasattr(data, "dims") and hasattr(data, "coords")) or len(data.dims) != 4:
+        is_dataset = hasattr(data, "data_vars")
+        own = data[scalars] if is_dataset and scalars in data.variables else data
+        if hasattr(own, "data_vars") or not (hasattr(own, "dims") and hasattr(own, "coords")) or not is_dataset and len(own.dims) != 4:
             return None
-        axes = {name: axis_of(name, coordinate_of(data, name)) for name in data.dims}
-        found = [name for name in data.dims if axes[name] == "t"] or [name for name in data.dims if axes[name] == ""]
+        axes = {name: axis_of(name, coordinate_of(own, name)) for name in own.dims}
+        found = [name for name in own.dims if axes[name] == "t"] or [name for name in own.dims if axes[name] == "" and not is_dataset]
         if len(found) != 1:
             return None
         name, = found
-        values = numpy.asarray(data.coords[name].values) if name in data.coords else numpy.arange(data.shape[data.dims.index(name)])
+        values = numpy.asarray(own.coords[name].values) if name in own.coords else numpy.arange(own.shape[own.dims.index(name)])
         labels = numpy.datetime_as_string(values, unit="auto") if values.dtype.kind == "M" else values
         return cls(name, [str(label) for label in labels], lambda n: data.isel({name: n}))
 

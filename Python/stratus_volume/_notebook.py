@@ -210,11 +210,13 @@ def _escaped(text):
 
 
 def view(data, opacity=None, color=None, size=(480, 360), camera=None, background=(0.08, 0.1, 0.14), draft=0.5, draft_tolerance=0.02, spacing=None,
-         origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, memory=None, **options):
+         origin=None, axes=None, scalars=None, component=None, device=None, threads=None, matrix=None, memory=None, globe=False,
+         exaggerate=None, **options):
     """Returns a View: a picture in a notebook that the mouse turns (where ipyevents is installed) and sliders turn. Needs ipywidgets.
 
-    data             as in `render`; or an xarray.DataArray with a time besides three dimensions of space, or a list of data: a slider chooses
-                     the step. Functions that follow from values are each step's own: give points of opacity and color to compare steps
+    data             as in `render`; or an xarray.DataArray with a time besides three dimensions of space, an xarray.Dataset whose variable has a
+                     time, or a list of data: a slider chooses the step. Functions that follow from values are each step's own: give points of
+                     opacity and color to compare steps
     camera           dict of azimuth and elevation, in half degrees, and zoom, where the view begins
     draft            while the view moves, pictures have this part of the width and height, above 0 and at most 1
     draft_tolerance  while the view moves, pictures have this tolerance, or the look's if it is larger. 0.3 seconds after the last move the
@@ -238,10 +240,11 @@ def view(data, opacity=None, color=None, size=(480, 360), camera=None, backgroun
         if name in options:
             raise TypeError(f"a view has no {name}")
     small = tuple(max(1, round(side * draft)) for side in size)
-    steps, extinction = None if axes is not None else Steps.of(data), options.pop("extinction", 1.0)
+    steps, extinction = None if axes is not None else Steps.of(data, scalars), options.pop("extinction", 1.0)
     if not 0.01 <= number(extinction, "extinction") <= 100:
         raise ValueError(f"extinction is {extinction!r}, a view's must be in 0.01..100")
 
     def make(step):
-        return drawn_of(data if step is None else steps[step], spacing, origin, axes, scalars, component, device, threads, matrix, memory=memory)
+        return drawn_of(data if step is None else steps[step], spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, globe,
+                        memory)
     return View(steps, make, dict(options, opacity=opacity, color=color), extinction, size, begins, background, small, draft_tolerance)

@@ -2,6 +2,7 @@
 """A view that is turned as a notebook turns it: by the traits of its widgets, by the events of a mouse, with and without an event loop. `wheel`
 runs it where ipywidgets and ipyevents are installed."""
 import asyncio
+import os
 import sys
 
 from checking import Chunks, ball, check, done, refuse
@@ -78,6 +79,19 @@ def by_steps():
     refuse(ValueError, "three", view, xarray.DataArray(numpy.zeros((2, 2, 2, 2, 2))), **host)
 
 
+def on_globe():
+    sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "Python"))
+    from geodesic import icosphere, mpas
+    points, triangles = icosphere(2)
+    parts = dict(mpas(points, triangles)[1], zgrid=("nCells levels", numpy.tile([0.0, 4000, 9000], (len(points), 1)), {"units": "m"}),
+                 q=("Time nCells layers", numpy.stack([points[:, [0, 1]], points[:, [1, 2]]]), {}))
+    data = xarray.Dataset({name: (dims.split(), values, attrs) for name, (dims, values, attrs) in parts.items()})
+    own = view(data, scalars="q", globe=True, exaggerate=30, **host)
+    own.step.value, own.azimuth.value = 1, 70
+    check(own.step.description == "Time" and len(own.step.options) == 2, f"a Dataset has steps: {own.step.options}")
+    check(same(own, own.camera, data.isel(Time=1), scalars="q", globe=True, exaggerate=30, caption=""), "a mesh on the globe is turned as show draws it")
+
+
 async def while_it_moves():
     own = view(field, **host)
     full = own.rendering.counters["samples"]
@@ -144,6 +158,7 @@ def refusals():
 
 by_sliders()
 by_steps()
+on_globe()
 asyncio.run(while_it_moves())
 asyncio.run(lazily())
 refusals()
