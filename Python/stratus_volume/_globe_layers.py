@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes in layers on a sphere: UGRID, MPAS and ICON of xarray."""
+"""Meshes in layers of xarray on a sphere: UGRID, FVCOM, MPAS and ICON."""
 import ctypes
 
 import numpy
@@ -7,8 +7,9 @@ import numpy
 from . import _declarations as c
 from . import _earth
 from ._core import address, context as context_of, library
+from ._faces import Faces, variables_of
 from ._globe import Globe, OnGlobe, exaggeration
-from ._layers import Faces, Layers, variables_of
+from ._layers import Layers
 
 
 class GlobeLayers(OnGlobe):

@@ -1,190 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes in layers of an xarray.Dataset: UGRID, MPAS, and cells with bounds as ICON has them. This file finds which variables are nodes, faces
-and heights; the core makes faces, heights of layers and tetrahedra of them, as it does for the readers of files."""
+"""Variables in layers above the faces of a mesh of an xarray.Dataset. This file finds which variables heights follow from; the core makes the heights
+of layers and tetrahedra of them, as it does for the readers of files."""
 import ctypes
 
 import numpy
 
 from . import _declarations as c
 from . import _earth
-from ._core import address, context as context_of, library
+from ._core import address, library
 from ._dimensions import axis_of, values_of
+from ._faces import Faces, numbers_of, text
 
 _BORDERS = ("zCoordinates", "zcor", "z_coordinates", "zgrid", "z_ifc", "zghalf", "HHL")
 _MIDDLES = ("z_mc", "zMid")
 _STANDARD_BORDERS = ("altitude", "height", "geometric_height_at_half_level_center")
 _STANDARD_MIDDLE = "geometric_height_at_full_level_center"
-_MOST = c.CONSTANTS["STRATUS_FACE_NODES_MAX"]
-
-
-def text(variable, key):
-    """An attribute of a variable, which xarray may have moved to its encoding."""
-    found = variable.attrs.get(key)
-    return str((getattr(variable, "encoding", None) or {}).get(key, "") if found is None else found).strip()
-
-
-def numbers_of(variable):
-    """Values as float64, NaN where there is none."""
-    return numpy.ma.filled(numpy.ma.asarray(values_of(variable), numpy.float64), numpy.nan)
-
-
-def _degrees(variable, usual=""):
-    """Values of a coordinate in degrees, or None if it is no angle. usual: the unit of a coordinate that has none."""
-    unit = (text(variable, "units") or usual).lower()
-    if unit in ("rad", "radian", "radians"):
-        return numpy.degrees(numbers_of(variable))
-    return numbers_of(variable) if unit.startswith("degree") else None
+_SURFACES, _SURFACE_NAMES, _SURFACE_ENDS = ("sea_surface_height", "water_surface_height"), ("zeta", "elevation", "elev"), ("_s1",)
+_BEDS, _BED_NAMES, _BED_ENDS = ("sea_floor_depth",), ("h", "depth", "bathymetry", "dv", "bottomDepth"), ("_flowelem_bl", "_node_z")
 
 
 def _length(variable):
     """Values of a length in metres; without a unit they are metres."""
     return numbers_of(variable) * _earth._LENGTHS.get(text(variable, "units"), 1.0)
-
-
-def _is(variable, kind):
-    east = kind == "longitude"
-    named = axis_of("", variable) == ("x" if east else "y") and text(variable, "units").lower().startswith("degree")
-    return named or text(variable, "standard_name") == kind
-
-
-def variables_of(data):
-    """The variables of a Dataset by name. A DataArray does not have the mesh: xarray gives it no coordinate of other dimensions."""
-    return {name: data[name] for name in data.variables}
-
-
-class Faces:
-    """Nodes and faces of a Dataset.
-
-    degrees      float64 (nodes, 2): longitude and latitude
-    node, face   names of the dimensions of nodes and of faces; None: there is none
-    description  where nodes and faces are from
-    """
-
-    def __init__(self, variables):
-        self._variables, self.context = variables, context_of("host", 1)
-        of = self._find()
-        if of is None:
-            raise ValueError("there is no mesh: no variable of cf_role mesh_topology and topology_dimension 2, no 'cellsOnVertex' or 'verticesOnCell' "
-                             "of MPAS, and no longitudes and latitudes with bounds of three or more corners")
-        of()
-        unknown = numpy.nonzero(~numpy.isfinite(self.degrees))[0]
-        if len(unknown):
-            raise ValueError(f"the {self.description} have no longitude or latitude at number {unknown[0]}")
-        self._call(library.stratus_faces_turn, ctypes.byref(self.struct), address(self.degrees), 1)
-
-    @classmethod
-    def are_in(cls, variables):
-        """Whether the variables describe a mesh, whatever else is wrong with it."""
-        own = cls.__new__(cls)
-        own._variables = variables
-        return own._find() is not None
-
-    def _find(self):
-        """The function that makes faces of the variables, or None."""
-        for name, one in self._variables.items():
-            if text(one, "cf_role") == "mesh_topology" and text(one, "topology_dimension") in ("", "2"):
-                return lambda: self._of_topology(name, one)
-        for name in ("cellsOnVertex", "verticesOnCell"):
-            if name in self._variables and len(self._variables[name].dims) == 2:
-                return lambda: self._of_mpas(name)
-        found = [self._bounds(kind) for kind in ("longitude", "latitude")]
-        for own in found[0]:
-            for other in found[1]:
-                if own[1].dims == other[1].dims:
-                    return lambda: self._of_bounds(own, other)
-        return None
-
-    def _bounds(self, kind):
-        """Longitudes or latitudes of cells whose bounds are corners: lists of the coordinate and its bounds."""
-        result = []
-        for one in self._variables.values():
-            bounds = self._variables.get(text(one, "bounds"))
-            if len(one.dims) == 1 and bounds is not None and _is(one, kind) and len(bounds.dims) == 2 and bounds.dims[0] == one.dims[0] and \
-                    3 <= bounds.shape[1] <= _MOST:
-                result.append((one, bounds))
-        return result
-
-    def _named(self, name, what):
-        if name not in self._variables:
-            raise ValueError(f"the mesh has no {what}: there is no variable {name!r}")
-        return self._variables[name]
-
-    def _call(self, function, *arguments):
-        with self.context.lock:
-            self.context.call(function, self.context.pointer, *arguments)
-
-    def _make(self, numbers, first, nodes, faces, what, rows_are_nodes=False, fewest=0):
-        numbers = numpy.ascontiguousarray(numbers, numpy.float64)
-        self.offsets, self.absent = numpy.zeros(faces + 1, numpy.int64), numpy.zeros(faces, numpy.uint8)
-        self.nodes = numpy.zeros(numbers.size + 3 * faces, numpy.int32)
-        self.struct = c.stratus_faces(node_count=nodes, face_count=faces, offsets=address(self.offsets), nodes=address(self.nodes),
-                                      absent=address(self.absent))
-        table = c.stratus_face_table(numbers=address(numbers), rows=numbers.shape[0], columns=numbers.shape[1], first=first,
-                                     rows_are_nodes=int(rows_are_nodes), fewest=fewest)
-        try:
-            self._call(library.stratus_faces_from_table, ctypes.byref(table), ctypes.byref(self.struct))
-        except ValueError as error:
-            raise ValueError(f"{what!r}: {error}") from None
-
-    def _of_topology(self, name, topology):
-        at = [self._named(each, f"node_coordinates of two variables, its own are {text(topology, 'node_coordinates')!r}")
-              for each in (*text(topology, "node_coordinates").split(), "", "")[:2]]
-        if _is(at[0], "latitude"):
-            at.reverse()
-        degrees = [_degrees(each) for each in at]
-        if any(each is None or each.ndim != 1 for each in degrees) or degrees[0].shape != degrees[1].shape:
-            raise ValueError(f"the mesh {name!r} has no longitudes and latitudes of nodes in degrees, so that it has no place on a sphere")
-        self.degrees, self.node = numpy.stack(degrees, axis=1), at[0].dims[0]
-        connectivity = text(topology, "face_node_connectivity")
-        table = self._named(connectivity, "face_node_connectivity")
-        if len(table.dims) != 2:
-            raise ValueError(f"the faces' nodes {connectivity!r} have the dimensions {tuple(table.dims)}, they must have two")
-        turned = table.shape[1] > _MOST >= table.shape[0]
-        numbers = numbers_of(table).T if turned else numbers_of(table)
-        self.face = table.dims[1 if turned else 0]
-        self._make(numbers, float(text(table, "start_index") or 0), len(self.degrees), len(numbers), connectivity)
-        self.description = f"nodes of the mesh {name!r}"
-
-    def _of_mpas(self, name):
-        if text(self._variables[name], "on_a_sphere").lower() == "no":
-            raise ValueError("the mesh of MPAS is not on a sphere")
-        lon, lat = (self._named(each, "middles of cells") for each in ("lonCell", "latCell"))
-        self.degrees, self.node = numpy.stack([_degrees(lon, "radian"), _degrees(lat, "radian")], axis=1), lon.dims[0]
-        table = self._variables[name]
-        numbers, by_vertex = numbers_of(table), name == "cellsOnVertex"
-        numbers[numbers == 0] = numpy.nan
-        faces, self.face = len(numbers), table.dims[0]
-        if not by_vertex:
-            corners = self._named("lonVertex", "corners of cells")
-            faces, self.face = corners.shape[0], corners.dims[0]
-            if "nEdgesOnCell" in self._variables:
-                numbers[numpy.arange(numbers.shape[1]) >= numbers_of(self._variables["nEdgesOnCell"])[:, None]] = numpy.nan
-        fewest = numbers.shape[1] if by_vertex else 3  # a corner at the border of a region has fewer cells
-        self._make(numbers, 1, len(self.degrees), faces, name, not by_vertex, fewest)
-        self.description = "middles of the cells of MPAS"
-
-    def _of_bounds(self, *both):
-        usual = "degree"
-        at = [_degrees(bounds, text(bounds, "units") or text(one, "units") or usual) for one, bounds in both]
-        corners = numpy.ascontiguousarray(numpy.stack([each.reshape(-1) for each in at], axis=1))
-        numbers, first, count = numpy.zeros(len(corners), numpy.int32), numpy.zeros(len(corners), numpy.int64), ctypes.c_int64()
-        self._call(library.stratus_faces_join_corners, len(corners), address(corners), address(numbers), address(first), ctypes.byref(count))
-        self.degrees = numpy.ascontiguousarray(corners[first[:count.value]])
-        self.node, self.face = None, both[0][0].dims[0]
-        self._make(numbers.reshape(at[0].shape), 0, count.value, len(at[0]), "bounds", fewest=3)
-        self.description = "corners of cells"
-
-    def to_nodes(self, of_faces):
-        """Values (n, faces) at nodes: means over the faces around each that have one."""
-        faces = numpy.repeat(numpy.arange(len(self.absent)), numpy.diff(self.offsets))
-        nodes, count = self.nodes[:self.offsets[-1]], len(self.degrees)
-        result = numpy.full((len(of_faces), count), numpy.nan)
-        for level, values in zip(result, of_faces):
-            known = numpy.isfinite(values) & (self.absent == 0)
-            around = numpy.bincount(nodes, known[faces], count)
-            total = numpy.bincount(nodes, numpy.where(known, values, 0.0)[faces], count)
-            level[around > 0] = total[around > 0] / around[around > 0]
-        return result
 
 
 class Layers:
@@ -202,9 +39,10 @@ class Layers:
         own, self.on_nodes = self._ordered(name)
         self._layer = own.dims_of_layers
         self._none, self.top_first = numpy.zeros(len(self.faces.degrees), numpy.uint8), False
-        if not (self._by_heights() or self._by_thicknesses() or self._by_levels()):
-            raise ValueError(f"the layers of {name!r} have no heights: no variable is one at nodes or faces, and its dimension of layers, "
-                             f"{self._layer!r}, has no coordinate in a unit of length or pressure")
+        if not (self._by_heights() or self._by_thicknesses() or self._by_sigma() or self._by_levels() or self._by_surfaces()):
+            raise ValueError(f"the layers of {name!r} have no heights: no variable is one at nodes or faces, there is no sigma coordinate with a bottom "
+                             f"and a free surface, and its dimension of layers, {self._layer!r}, has no coordinate in a unit of length or pressure")
+        self._hide_dry()
         self.values = self._at(own)
 
     def _ordered(self, name):
@@ -290,11 +128,103 @@ class Layers:
             borders = self._borders(name, one, middles)
         else:
             return False
-        borders = self._take(borders, True)
-        from_borders = c.stratus_layer_borders(node_count=len(self.faces.degrees), layer_count=self.count, borders=address(borders))
-        self._core(library.stratus_layers_from_borders, ctypes.byref(from_borders))
+        self._between_surfaces(self._take(borders, True), stretched=int(name.endswith(("_layer_z", "_interface_z"))))
         self.description = f"{self.count} layers by levels {name!r}"
         return True
+
+    def _by_sigma(self):
+        """Sigma at the borders of layers, if the Dataset has it there, otherwise in the middles."""
+        places, found = (self.faces.node, self.faces.face), []
+        for name, one in self._variables.items():
+            named = text(one, "standard_name") == "ocean_sigma_coordinate" or name in ("siglev", "siglay") or name.endswith("_sigma")
+            if named and (len(one.dims) == 1 and one.dims[0] not in places or len(one.dims) == 2 and one.dims[1] == self.faces.node):
+                found.append((len(one.values), name))
+        if not found or self._bed()[1] is None or self._surface()[1] is None:
+            return False
+        found.sort()
+        name = found[-1][1] if len(found) > 1 and found[-1][0] == found[0][0] + 1 else found[0][1]
+        levels = numbers_of(self._variables[name])
+        borders = name != found[0][1] or len(levels) > 1 and abs(numpy.ravel(levels[0] - levels[-1])[0]) > 1 - 1e-6
+        levels = self._take(levels, borders)
+        if not borders:
+            ends = numpy.zeros_like(levels[:1])
+            levels = numpy.concatenate([ends - 1, 0.5 * (levels[:-1] + levels[1:]), ends])
+        if not (numpy.diff(levels, axis=0) >= 0).all():
+            raise ValueError(f"layers are upside down: {name!r} must increase or decrease all along")
+        self._between_surfaces(levels, of_nodes=levels.ndim - 1, sigma=1)
+        self.description = f"{self.count} layers by sigma {name!r}"
+        return True
+
+    def _by_surfaces(self):
+        """One layer between the bottom and the free surface."""
+        if self._layer is not None or self._bed()[1] is None or self._surface()[1] is None:
+            return False
+        self.count = 1
+        self._between_surfaces(numpy.array([-1.0, 0.0]), sigma=1)
+        self.description = "1 layer"
+        return True
+
+    def _between_surfaces(self, borders, **more):
+        borders = numpy.ascontiguousarray(borders)
+        surface, bottom = self._surface()[1], self._bottom()
+        struct = c.stratus_layer_borders(node_count=len(self.faces.degrees), layer_count=self.count, borders=address(borders), bottom=address(bottom),
+                                         surface=address(surface), **more)
+        self._core(library.stratus_layers_from_borders, ctypes.byref(struct))
+
+    # ---- the bottom and the free surface
+
+    def _flat(self, terms, standard, names, ends):
+        """The name and the lengths in metres at nodes of a variable without layers that formula_terms, a standard_name or its name tell of, or
+        (None, None)."""
+        def lies_flat(name):
+            one = self._variables.get(name)
+            dims = () if one is None else [each for each, n in zip(one.dims, one.shape) if n != 1]
+            return len(dims) == 1 and dims[0] in (self.faces.node, self.faces.face)
+        for term in terms:
+            for one in self._variables.values():
+                words = text(one, "formula_terms").split()
+                for key, name in zip(words[::2], words[1::2]):
+                    if key == term + ":" and lies_flat(name):
+                        return name, self._at_nodes(name)
+        for name, one in self._variables.items():
+            if lies_flat(name) and (text(one, "standard_name").startswith(standard) or name in names or str(name).endswith(ends)):
+                return name, self._at_nodes(name)
+        return None, None
+
+    def _at_nodes(self, name):
+        found, on_nodes = self._ordered(name)
+        lengths = numpy.ma.filled(numpy.ma.asarray(found.values, numpy.float64), numpy.nan) * _earth._LENGTHS.get(text(self._variables[name], "units"), 1.0)
+        return numpy.ascontiguousarray((lengths if on_nodes else self.faces.to_nodes(lengths))[0])
+
+    def _surface(self):
+        return self._flat(("eta",), _SURFACES, _SURFACE_NAMES, _SURFACE_ENDS)
+
+    def _bed(self):
+        return self._flat(("bedlevel", "depth"), _BEDS, _BED_NAMES, _BED_ENDS)
+
+    def _bottom(self):
+        """Heights of the bottom at nodes, or None."""
+        name, bed = self._bed()
+        if bed is None:
+            return None
+        one = self._variables[name]
+        standard = text(one, "standard_name")
+        if standard == "altitude" or text(one, "positive") == "up" or str(name).endswith(("_bl", "_node_z")):
+            return bed
+        surface = self._surface()[1] if standard == "sea_floor_depth_below_sea_surface" else None
+        return -bed if surface is None else surface - bed
+
+    def _hide_dry(self):
+        """Marks faces that are dry by the Dataset's flags, and those on which the free surface has no value."""
+        surface = self._surface()[0]
+        for name, one in self._variables.items():
+            own = [each for each, n in zip(one.dims, one.shape) if n != 1]
+            if own != [self.faces.face]:
+                continue
+            if name in ("wet_cells", "wetdry_elem") or str(name).endswith("_wet_cells"):
+                self.faces.absent |= (numbers_of(one).reshape(-1) == 1) != (name != "wetdry_elem")
+            elif name == surface:
+                self.faces.absent |= ~numpy.isfinite(numbers_of(one).reshape(-1))
 
     def _borders(self, name, one, middles):
         for other, own in self._variables.items():

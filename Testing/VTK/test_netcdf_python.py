@@ -97,4 +97,31 @@ for name, place in (("node", len(points)), ("face", len(triangles))):
         faces=("face corner", faces.astype("i4"), {"start_index": numpy.int32(0), "fill": numpy.int32(-1)}),
         layer=("layer", numpy.array([-3000.0, -1000.0]), {"units": "m", "positive": "up", "axis": "Z"}),
         q=(f"layer {name}", values, {"mesh": "mesh", "location": name})), "q", 100)
+
+# Layers between a bottom and a free surface: FVCOM's sigma, sigma in UGRID with a dry face, levels that are cut off, and one layer
+wet = points[:, 2] > 0.3
+near = wet[triangles].all(axis=1)
+number = numpy.cumsum(wet) - 1
+nodes, faces = int(wet.sum()), number[triangles[near]]
+east, north = at_lon[wet], at_lat[wet]
+depth, surface = 50 + 40 * numpy.sin(numpy.radians(3 * east)), 2 * numpy.cos(numpy.radians(2 * east))
+sigma = -numpy.linspace(0, 1, 5)[:, None] ** (1 + 0.5 * (north[None] > 40))
+values = numpy.arange(4.0 * nodes, dtype="f4").reshape(4, nodes)
+lonlat = dict(lon=("node", east, {"units": "degrees_east", "standard_name": "longitude"}), lat=("node", north, {"units": "degrees_north", "standard_name": "latitude"}))
+zeta, bed = ("node", surface, {"units": "m", "standard_name": "sea_surface_height_above_geoid"}), ("node", depth, {"units": "m", "standard_name": "sea_floor_depth"})
+compare(write("python fvcom", {"node": nodes, "nele": len(faces), "three": 3, "siglev": 5, "siglay": 4}, **lonlat,
+    nv=("three nele", (faces + 1).T.astype("i4"), {}), siglev=("siglev node", sigma, {"standard_name": "ocean_sigma_coordinate"}),
+    siglay=("siglay node", 0.5 * (sigma[1:] + sigma[:-1]), {"standard_name": "ocean_sigma_coordinate"}), zeta=zeta, h=bed,
+    wet_cells=("nele", (numpy.arange(len(faces)) % 5 > 0).astype("i4"), {}), temp=("siglay node", values, {})), "temp", 1000)
+mesh = dict(mesh=("", numpy.int32(0), {"cf_role": "mesh_topology", "topology_dimension": numpy.int32(2), "node_coordinates": "lon lat",
+    "face_node_connectivity": "faces"}), faces=("face corner", faces.astype("i4"), {"start_index": numpy.int32(0)}), **lonlat)
+of_faces = surface[faces].mean(axis=1)
+of_faces[7] = -999
+terms = {"standard_name": "ocean_sigma_coordinate", "formula_terms": "sigma: lev eta: eta depth: deep", "positive": "up"}
+sizes = {"node": nodes, "face": len(faces), "corner": 3, "lev": 4}
+compare(write("python sigma", sizes, **mesh, lev=("lev", numpy.array([-0.875, -0.625, -0.375, -0.125]), terms), deep=bed,
+    eta=("face", of_faces, {"units": "m", "fill": -999.0}), q=("lev node", values, {})), "q", 1000)
+compare(write("python levels", sizes, **mesh, lev=("lev", numpy.array([5.0, 20, 40, 80]), {"units": "m", "positive": "down", "axis": "Z"}),
+    elev=zeta, depth=bed, q=("lev node", values, {})), "q", 1000)
+compare(write("python one layer", {key: sizes[key] for key in ("node", "face", "corner")}, **mesh, elev=zeta, depth=bed, q=("node", values[0], {})), "q", 1000)
 finish()

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Nodes and faces of meshes of an xarray.Dataset: UGRID, FVCOM, MPAS, and cells with bounds as ICON has them. This file finds the variables; the
+core makes faces of their tables, as it does for the readers of files."""
+import ctypes
+
+import numpy
+
+from . import _declarations as c
+from ._core import address, context as context_of, library
+from ._dimensions import axis_of, values_of
+
+_MOST = c.CONSTANTS["STRATUS_FACE_NODES_MAX"]
+
+
+def text(variable, key):
+    """An attribute of a variable, which xarray may have moved to its encoding."""
+    found = variable.attrs.get(key)
+    return str((getattr(variable, "encoding", None) or {}).get(key, "") if found is None else found).strip()
+
+
+def numbers_of(variable):
+    """Values as float64, NaN where there is none."""
+    return numpy.ma.filled(numpy.ma.asarray(values_of(variable), numpy.float64), numpy.nan)
+
+
+def _degrees(variable, usual=""):
+    """Values of a coordinate in degrees, or None if it is no angle. usual: the unit of a coordinate that has none."""
+    unit = (text(variable, "units") or usual).lower()
+    if unit in ("rad", "radian", "radians"):
+        return numpy.degrees(numbers_of(variable))
+    return numbers_of(variable) if unit.startswith("degree") else None
+
+
+def _is(variable, kind):
+    east = kind == "longitude"
+    named = axis_of("", variable) == ("x" if east else "y") and text(variable, "units").lower().startswith("degree")
+    return named or text(variable, "standard_name") == kind
+
+
+def variables_of(data):
+    """The variables of a Dataset by name. A DataArray does not have the mesh: xarray gives it no coordinate of other dimensions."""
+    return {name: data[name] for name in data.variables}
+
+
+class Faces:
+    """Nodes and faces of a Dataset.
+
+    degrees      float64 (nodes, 2): longitude and latitude
+    node, face   names of the dimensions of nodes and of faces; None: there is none
+    description  where nodes and faces are from
+    """
+
+    def __init__(self, variables):
+        self._variables, self.context = variables, context_of("host", 1)
+        of = self._find()
+        if of is None:
+            raise ValueError("there is no mesh: no variable of cf_role mesh_topology and topology_dimension 2, no 'nv' of FVCOM, no 'cellsOnVertex' or "
+                             "'verticesOnCell' of MPAS, and no longitudes and latitudes with bounds of three or more corners")
+        of()
+        unknown = numpy.nonzero(~numpy.isfinite(self.degrees))[0]
+        if len(unknown):
+            raise ValueError(f"the {self.description} have no longitude or latitude at number {unknown[0]}")
+        self._call(library.stratus_faces_turn, ctypes.byref(self.struct), address(self.degrees), 1)
+
+    @classmethod
+    def are_in(cls, variables):
+        """Whether the variables describe a mesh, whatever else is wrong with it."""
+        own = cls.__new__(cls)
+        own._variables = variables
+        return own._find() is not None
+
+    def _find(self):
+        """The function that makes faces of the variables, or None."""
+        for name, one in self._variables.items():
+            if text(one, "cf_role") == "mesh_topology" and text(one, "topology_dimension") in ("", "2"):
+                return lambda: self._of_topology(name, one)
+        if "nv" in self._variables and len(self._variables["nv"].dims) == 2:
+            return self._of_fvcom
+        for name in ("cellsOnVertex", "verticesOnCell"):
+            if name in self._variables and len(self._variables[name].dims) == 2:
+                return lambda: self._of_mpas(name)
+        found = [self._bounds(kind) for kind in ("longitude", "latitude")]
+        for own in found[0]:
+            for other in found[1]:
+                if own[1].dims == other[1].dims:
+                    return lambda: self._of_bounds(own, other)
+        return None
+
+    def _bounds(self, kind):
+        """Longitudes or latitudes of cells whose bounds are corners: lists of the coordinate and its bounds."""
+        result = []
+        for one in self._variables.values():
+            bounds = self._variables.get(text(one, "bounds"))
+            if len(one.dims) == 1 and bounds is not None and _is(one, kind) and len(bounds.dims) == 2 and bounds.dims[0] == one.dims[0] and \
+                    3 <= bounds.shape[1] <= _MOST:
+                result.append((one, bounds))
+        return result
+
+    def _named(self, name, what):
+        if name not in self._variables:
+            raise ValueError(f"the mesh has no {what}: there is no variable {name!r}")
+        return self._variables[name]
+
+    def _call(self, function, *arguments):
+        with self.context.lock:
+            self.context.call(function, self.context.pointer, *arguments)
+
+    def _make(self, numbers, first, nodes, faces, what, rows_are_nodes=False, fewest=0):
+        numbers = numpy.ascontiguousarray(numbers, numpy.float64)
+        self.offsets, self.absent = numpy.zeros(faces + 1, numpy.int64), numpy.zeros(faces, numpy.uint8)
+        self.nodes = numpy.zeros(numbers.size + 3 * faces, numpy.int32)
+        self.struct = c.stratus_faces(node_count=nodes, face_count=faces, offsets=address(self.offsets), nodes=address(self.nodes),
+                                      absent=address(self.absent))
+        table = c.stratus_face_table(numbers=address(numbers), rows=numbers.shape[0], columns=numbers.shape[1], first=first,
+                                     rows_are_nodes=int(rows_are_nodes), fewest=fewest)
+        try:
+            self._call(library.stratus_faces_from_table, ctypes.byref(table), ctypes.byref(self.struct))
+        except ValueError as error:
+            raise ValueError(f"{what!r}: {error}") from None
+
+    def _of_topology(self, name, topology):
+        at = [self._named(each, f"node_coordinates of two variables, its own are {text(topology, 'node_coordinates')!r}")
+              for each in (*text(topology, "node_coordinates").split(), "", "")[:2]]
+        if _is(at[0], "latitude"):
+            at.reverse()
+        self._place(name, *at)
+        connectivity = text(topology, "face_node_connectivity")
+        table = self._named(connectivity, "face_node_connectivity")
+        if len(table.dims) != 2:
+            raise ValueError(f"the faces' nodes {connectivity!r} have the dimensions {tuple(table.dims)}, they must have two")
+        turned = table.shape[1] > _MOST >= table.shape[0]
+        numbers = numbers_of(table).T if turned else numbers_of(table)
+        self.face = table.dims[1 if turned else 0]
+        self._make(numbers, float(text(table, "start_index") or 0), len(self.degrees), len(numbers), connectivity)
+        self.description = f"nodes of the mesh {name!r}"
+
+    def _place(self, name, *at):
+        degrees = [_degrees(each) for each in at]
+        if any(each is None or each.ndim != 1 for each in degrees) or degrees[0].shape != degrees[1].shape:
+            raise ValueError(f"the mesh {name!r} has no longitudes and latitudes of nodes in degrees, so that it has no place on a sphere")
+        self.degrees, self.node = numpy.stack(degrees, axis=1), at[0].dims[0]
+
+    def _of_fvcom(self):
+        self._place("nv", self._named("lon", "longitudes"), self._named("lat", "latitudes"))
+        table = self._variables["nv"]
+        turned = table.shape[0] <= 4
+        numbers = numbers_of(table).T if turned else numbers_of(table)
+        self.face = table.dims[1 if turned else 0]
+        self._make(numbers, float(text(table, "start_index") or 1), len(self.degrees), len(numbers), "nv")
+        self.description = "nodes of FVCOM"
+
+    def _of_mpas(self, name):
+        if text(self._variables[name], "on_a_sphere").lower() == "no":
+            raise ValueError("the mesh of MPAS is not on a sphere")
+        lon, lat = (self._named(each, "middles of cells") for each in ("lonCell", "latCell"))
+        self.degrees, self.node = numpy.stack([_degrees(lon, "radian"), _degrees(lat, "radian")], axis=1), lon.dims[0]
+        table = self._variables[name]
+        numbers, by_vertex = numbers_of(table), name == "cellsOnVertex"
+        numbers[numbers == 0] = numpy.nan
+        faces, self.face = len(numbers), table.dims[0]
+        if not by_vertex:
+            corners = self._named("lonVertex", "corners of cells")
+            faces, self.face = corners.shape[0], corners.dims[0]
+            if "nEdgesOnCell" in self._variables:
+                numbers[numpy.arange(numbers.shape[1]) >= numbers_of(self._variables["nEdgesOnCell"])[:, None]] = numpy.nan
+        fewest = numbers.shape[1] if by_vertex else 3  # a corner at the border of a region has fewer cells
+        self._make(numbers, 1, len(self.degrees), faces, name, not by_vertex, fewest)
+        self.description = "middles of the cells of MPAS"
+
+    def _of_bounds(self, *both):
+        usual = "degree"
+        at = [_degrees(bounds, text(bounds, "units") or text(one, "units") or usual) for one, bounds in both]
+        corners = numpy.ascontiguousarray(numpy.stack([each.reshape(-1) for each in at], axis=1))
+        numbers, first, count = numpy.zeros(len(corners), numpy.int32), numpy.zeros(len(corners), numpy.int64), ctypes.c_int64()
+        self._call(library.stratus_faces_join_corners, len(corners), address(corners), address(numbers), address(first), ctypes.byref(count))
+        self.degrees = numpy.ascontiguousarray(corners[first[:count.value]])
+        self.node, self.face = None, both[0][0].dims[0]
+        self._make(numbers.reshape(at[0].shape), 0, count.value, len(at[0]), "bounds", fewest=3)
+        self.description = "corners of cells"
+
+    def to_nodes(self, of_faces):
+        """Values (n, faces) at nodes: means over the faces around each that have one."""
+        faces = numpy.repeat(numpy.arange(len(self.absent)), numpy.diff(self.offsets))
+        nodes, count = self.nodes[:self.offsets[-1]], len(self.degrees)
+        result = numpy.full((len(of_faces), count), numpy.nan)
+        for level, values in zip(result, of_faces):
+            known = numpy.isfinite(values) & (self.absent == 0)
+            around = numpy.bincount(nodes, known[faces], count)
+            total = numpy.bincount(nodes, numpy.where(known, values, 0.0)[faces], count)
+            level[around > 0] = total[around > 0] / around[around > 0]
+        return result
