@@ -99,9 +99,7 @@ foreach (kernel IN LISTS kernels)
 endforeach ()
 
 # ---- what a ray needs in a GPU's registers and private memory, by clang's compiler for AMD's
-stratus_add_test(gpu_registers kernels "${PROJECT_SOURCE_DIR}/Testing/gpu-registers" "${CLANG}")
-stratus_test_needs(gpu_registers NOTHING)
-set_tests_properties(gpu_registers PROPERTIES SKIP_RETURN_CODE 77)
+stratus_add_kernel_test(gpu_registers "${PROJECT_SOURCE_DIR}/Testing/gpu-registers" "${CLANG}")
 
 # ---- the kernels on tiny volumes in Oclgrind's simulator: no invalid access, no data race
 stratus_add_test(kernels_under_oclgrind kernels "${PROJECT_SOURCE_DIR}/Testing/under-oclgrind" "${OCLGRIND}"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Heights of the borders of layers, from what files have of them. */
+ * Heights of the borders of layers, from the numbers that files have. */
 #include "faces.h"
 
 static stratus_status check(stratus_context* context, int64_t node_count, int64_t layer_count)
@@ -75,7 +75,7 @@ stratus_status stratus_layers_from_borders(stratus_context* context, const strat
   return STRATUS_OK;
 }
 
-/* Returns the height of a border from those of the middles of `layers` layers. */
+/* Returns the height of a border from the heights of the middles of `layers` layers. */
 static double border_of(const double* middles, int64_t layers, int64_t border)
 {
   if (border > 0 && border < layers) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files are written under a temporary name and renamed when complete, so that a reader finds the old file or the new one, never half of it.
-// What is no regular file (a pipe, a device) is written in place, because a rename would replace it by a file.
+// A pipe or a device is written in place, because a rename would replace it by a file.
 // Private to the modules, never installed.
 #ifndef vtkStratusTemporaryFile_h
 #define vtkStratusTemporaryFile_h
@@ -124,6 +124,12 @@ public:
       this->Part.clear();
     }
     return error.value();
+  }
+
+  int Finish(const void* bytes, size_t size) // writes all that the file has
+  {
+    const int writing = std::fwrite(bytes, 1, size, this->File) == size ? 0 : errno, closing = this->Close();
+    return writing != 0 ? writing : closing != 0 ? closing : this->Rename();
   }
 
 private:

@@ -115,10 +115,7 @@ void Store(const std::vector<unsigned char>& bytes, const std::string& path)
   if (const int reason = file.Open(path)) {
     Fail("can't open " + path + ": " + std::strerror(reason), vtkErrorCode::CannotOpenFileError);
   }
-  int reason = std::fwrite(bytes.data(), 1, bytes.size(), file.Get()) == bytes.size() ? 0 : errno;
-  const int closing = file.Close();
-  reason = reason != 0 ? reason : closing != 0 ? closing : file.Rename();
-  if (reason != 0) {
+  if (const int reason = file.Finish(bytes.data(), bytes.size())) {
     Fail("can't write " + path + ": " + std::strerror(reason),
       reason == ENOSPC ? vtkErrorCode::OutOfDiskSpaceError : vtkErrorCode::UnknownError);
   }

@@ -89,12 +89,7 @@ void add_rows(const std::string& scene, const floor_result& f, std::vector<row>&
 void save_file(const std::string& path, const void* bytes, size_t size)
 {
   vtkStratusReplacingFile file;
-  int reason = file.Open(path);
-  if (reason == 0) {
-    reason = std::fwrite(bytes, 1, size, file.Get()) == size ? 0 : errno;
-    const int closing = file.Close();
-    reason = reason != 0 ? reason : closing != 0 ? closing : file.Rename();
-  }
+  const int opening = file.Open(path), reason = opening != 0 ? opening : file.Finish(bytes, size);
   if (reason != 0) {
     throw failure("cannot write " + path + ": " + std::strerror(reason));
   }
