@@ -19,6 +19,7 @@ const char* const help = R"(stratus-bench tree [options]
 
   --scene NAME,...   17K 24K 30K 35K u225 u367 u571 u640 1M 10M, and cloud: the values > 0 of the volume (default: all)
                      archipelago, archipelago-1024 (the values > 0 of that volume) and islets take much memory: only where named
+                     clusters:NUMBER, a generated set of clusters apart from each other, whose random rays begin among them: likewise
   --method M,...     stratus:hybrid|hybrid-paper|hybrid-paper-raw|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans|wide|
                      auto, all but distance, octant, wide and auto with :N behind it, bricks (the first three) or voxels in a leaf;
                      embree:low|medium|high, embree:packet and embree:bricks with :low or :high behind it or neither (medium),
@@ -36,8 +37,10 @@ const char* const help = R"(stratus-bench tree [options]
 
 build_ms                  wall clock from the list of voxels to a tree that rays can use, 2 threads, median
 primary_ns, random_ns     processor time a ray, one thread, median; 512 x 512 rays of record each
+away_ns                   the same for the primary rays turned round, which miss the whole set: reading rays and writing hits
 bytes                     the tree's memory (Embree: as its monitor reports after the build, without the list of voxels that its
                           callbacks read)
+primary_visits, random_visits  ours: nodes and steps in distance fields a ray; a beam's rays share its visits
 wrong_hits                among both kinds of rays, against a walk from voxel to voxel in double precision
 grazing_hits              hits that differ where a ray meets a voxel for less than 1e-9 of the numbers around, or two at once
 missed_hits, late_hits    in place of wrong_hits of stratus:hybrid-paper-raw, whose leaves keep raw flooded distances: the wrong hits
@@ -73,10 +76,11 @@ double thread_ms()
 struct tree_scene {
   context_pointer context = host_context(0);
   voxel_set set;
-  std::vector<int32_t> own; // positions of a set that is not built in
+  std::vector<int32_t> own;       // positions of a set that is not built in
+  std::vector<cluster_box> boxes; // of a generated set
   int32_t* listed = nullptr;
   stratus_voxels* voxels = nullptr;
-  voxel_rays rays[2];
+  voxel_rays rays[2], away; // away: the primary rays turned round
   std::vector<stratus_hit> walk[2];
 
   explicit tree_scene(const std::string& name);
@@ -115,6 +119,10 @@ tree_scene::tree_scene(const std::string& name)
   this->set.name = name;
   if (name == "cloud" || name == "archipelago-1024") {
     this->list_volume(name);
+  } else if (is_cluster_scene(name)) {
+    make_cluster_set(name, this->set.dimensions, this->own, this->boxes);
+    this->set.positions = this->own.data();
+    this->set.count = this->own.size() / 3;
   } else {
     check_status(c, stratus_voxel_scene_create(c, name.c_str(), this->set.dimensions, &this->listed, &this->set.count));
     this->set.positions = this->listed;
@@ -129,16 +137,36 @@ void tree_scene::walk_plainly()
     this->rays[kind].coherent = kind == 0;
     this->rays[kind].rays.resize(width * width);
     this->walk[kind].resize(width * width);
-    check_status(c, stratus_voxel_scene_rays(c, this->voxels, kind, this->rays[kind].rays.data()));
+    if (kind == 1 && !this->boxes.empty()) {
+      make_cluster_rays(this->voxels, this->boxes, this->rays[kind].rays);
+    } else {
+      check_status(c, stratus_voxel_scene_rays(c, this->voxels, kind, this->rays[kind].rays.data()));
+    }
     check_status(c, stratus_voxels_first_hit(c, this->voxels, this->rays[kind].rays.data(), width * width, this->walk[kind].data()));
+  }
+  this->away = this->rays[0];
+  for (stratus_ray& ray : this->away.rays) {
+    for (double& d : ray.direction) {
+      d = -d;
+    }
   }
 }
 
 struct measured {
-  std::vector<double> build_ms, trace_ns[2];
+  std::vector<double> build_ms, trace_ns[2], away_ns;
+  double visits[2] = { -1.0, -1.0 };
   tree_numbers numbers;
   wrong_count count;
 };
+
+// The time of a ray.
+double trace_ns(first_hits& hits, const voxel_rays& rays)
+{
+  hits.prepare(rays);
+  const double start = thread_ms();
+  hits.trace();
+  return (thread_ms() - start) * 1e6 / static_cast<double>(rays.rays.size());
+}
 
 void run_round(const tree_scene& scene, const std::string& method, bool first, measured& m)
 {
@@ -154,11 +182,9 @@ void run_round(const tree_scene& scene, const std::string& method, bool first, m
   } while (spent < build_budget_ms);
   m.numbers = hits->numbers();
   for (int kind = 0; kind < 2; ++kind) {
-    hits->prepare(scene.rays[kind]);
-    const double start = thread_ms();
-    hits->trace();
-    m.trace_ns[kind].push_back((thread_ms() - start) * 1e6 / static_cast<double>(scene.rays[kind].rays.size()));
+    m.trace_ns[kind].push_back(trace_ns(*hits, scene.rays[kind]));
     if (first) {
+      m.visits[kind] = hits->visits();
       const wrong_count count = count_wrong(scene.voxels, scene.rays[kind], scene.walk[kind], hits->hits());
       m.count.wrong += count.wrong;
       m.count.grazing += count.grazing;
@@ -166,6 +192,7 @@ void run_round(const tree_scene& scene, const std::string& method, bool first, m
       m.count.late += count.late;
     }
   }
+  m.away_ns.push_back(trace_ns(*hits, scene.away));
 }
 
 void add_rows(const std::string& scene, const std::string& method, const measured& m, std::vector<row>& rows)
@@ -181,6 +208,9 @@ void add_rows(const std::string& scene, const std::string& method, const measure
   add("build_ms", median(m.build_ms), "ms");
   add("primary_ns", median(m.trace_ns[0]), "ns");
   add("random_ns", median(m.trace_ns[1]), "ns");
+  add("away_ns", median(m.away_ns), "ns");
+  add("primary_visits", m.visits[0], "1");
+  add("random_visits", m.visits[1], "1");
   add("bytes", m.numbers.bytes, "B");
   add("nodes", m.numbers.nodes, "1");
   add("depth", m.numbers.depth, "1");
@@ -293,7 +323,10 @@ options parse(int argc, char* argv[])
     scenes.push_back(stratus_voxel_scene_name(s));
   }
   scenes.insert(scenes.end(), { "cloud", "archipelago-1024" });
-  check_names(o.scenes, scenes, "scene");
+  std::vector<std::string> named;
+  std::copy_if(
+    o.scenes.begin(), o.scenes.end(), std::back_inserter(named), [](const std::string& name) { return !is_cluster_scene(name); });
+  check_names(named, scenes, "scene");
   for (const std::string& method : o.methods) {
     if (!is_tree_method(method)) {
       throw failure("unknown method " + method + "; --help lists them");

@@ -41,6 +41,7 @@ public:
   virtual void prepare(const voxel_rays& rays) = 0; // converts rays to the method's own form; not timed
   virtual void trace() = 0;
   virtual std::vector<voxel_hit> hits() const = 0; // of the last trace(), in the rays' order
+  virtual double visits() const { return -1.0; }   // nodes and steps a ray of the last trace(), in the mean; -1: unknown
 };
 
 // ---- tree_names.cxx: ours, and the names of all
@@ -66,6 +67,14 @@ std::unique_ptr<first_hits> make_hits(const voxel_set& set, const std::string& m
 std::unique_ptr<first_hits> make_embree_hits(const voxel_set& set, const std::string& kind);
 // ---- openvdb_tree.cxx
 std::unique_ptr<first_hits> make_openvdb_hits(const voxel_set& set);
+// ---- tree_clusters.cxx: generated sets, clusters:NUMBER
+struct cluster_box {
+  int32_t lo[3], hi[3]; // voxels, [lo, hi)
+};
+bool is_cluster_scene(const std::string& name);
+void make_cluster_set(const std::string& name, int64_t dimensions[3], std::vector<int32_t>& positions, std::vector<cluster_box>& boxes);
+// Fills rays that begin in empty voxels in and about the boxes.
+void make_cluster_rays(const stratus_voxels* voxels, const std::vector<cluster_box>& boxes, std::vector<stratus_ray>& rays);
 // ---- tree_judge.cxx: counts hits that differ from the plain walk's. grazing: decided by rounding; wrong: all others; missed, late: wrong
 // hits that find no voxel, or one behind the walk's
 struct wrong_count {

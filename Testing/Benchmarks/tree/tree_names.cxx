@@ -88,6 +88,14 @@ public:
     }
     return result;
   }
+  double visits() const override
+  {
+    double sum = 0.0;
+    for (const stratus_hit& hit : this->found) {
+      sum += hit.visited;
+    }
+    return sum / static_cast<double>(this->found.size());
+  }
 
 private:
   const voxel_set& set;

@@ -243,7 +243,7 @@ std::vector<std::string> curve_methods(bool quick)
   add("stratus:auto", { "~0.01@device", "~0.001@device", "~0.0001@device" });
   add("vtk:fixedpoint", { ":2", "", ":0.5", ":0.25" });
   add("vtk:fixedpoint/2", { ":2", "", ":0.5", ":0.25" });
-  add("vtk:gpu", { ":2", "", ":0.5", ":0.25" });
+  add("vtk:gpu", { ":2", "", ":0.5" });
   add("openvdb", { ":2", "", ":0.5", ":0.25" });
   return methods;
 }
