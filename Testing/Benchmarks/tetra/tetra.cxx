@@ -29,7 +29,7 @@ const char* const help = R"(stratus-bench tetra [options]
                             sorters: stratus:sort (8 leaves), stratus:sort-1|2|4, stratus:sort-fifo (in layers), -fifo-2|4|8 (leaves by the
                             paper's rule), vtk:depthsort (default: all but @device, resample and
                             vtk:zsweep, which takes tens of seconds a frame)
-  --curves, --quick-curves  mappers over their settings
+  --curves, --quick-curves  mappers over their settings, but vtk:zsweep
   --size N                  N x N pixels (default 512)
   --repeats N               most frames a view and method (default 7): fewer if the middle half of their times is within 3 % of the
                             median, or they took .4 s; rounds of sorters (at most 3)
@@ -111,7 +111,8 @@ options parse(int argc, char* argv[])
       continue;
     }
     if (word == "--curves" || word == "--quick-curves") {
-      o.methods = tetra_curve_methods(word == "--quick-curves");
+      const std::vector<std::string> more = tetra_curve_methods(word == "--quick-curves");
+      o.methods.insert(o.methods.end(), more.begin(), more.end());
       continue;
     }
     if (i + 1 == argc) {
@@ -124,7 +125,8 @@ options parse(int argc, char* argv[])
     std::map<std::string, std::string*> files = { { "--csv", &o.csv }, { "--chart", &o.chart }, { "--cache", &o.cache },
       { "--reference-cache", &o.reference_cache }, { "--pictures", &o.pictures } };
     if (lists.count(word) > 0) {
-      *lists[word] = split(value);
+      const std::vector<std::string> more = split(value);
+      lists[word]->insert(lists[word]->end(), more.begin(), more.end());
     } else if (numbers.count(word) > 0) {
       *numbers[word] = std::atoi(value.c_str());
     } else if (files.count(word) > 0) {

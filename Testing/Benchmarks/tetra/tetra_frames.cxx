@@ -354,11 +354,9 @@ std::vector<std::string> tetra_curve_methods(bool quick)
   if (quick) {
     return { "stratus:auto~0.1", "stratus:auto~0.001", "stratus:auto~0.00001", "vtk:projected", "vtk:raycast:2", "vtk:raycast" };
   }
-  // Of z-sweep there is one point: a frame takes tens of seconds whatever the distance of its rays.
   return { "stratus:auto~0.1", "stratus:auto~0.01", "stratus:auto~0.001", "stratus:auto~0.0001", "stratus:auto~0.00001",
     "stratus:march~0.01", "stratus:march~0.001", "stratus:march~0.0001", "stratus:project~0.01", "stratus:project~0.001",
-    "stratus:project~0.0001", "vtk:projected", "vtk:projected+stratus-sort", "vtk:raycast:4", "vtk:raycast:2", "vtk:raycast",
-    "vtk:zsweep" };
+    "stratus:project~0.0001", "vtk:projected", "vtk:projected+stratus-sort", "vtk:raycast:4", "vtk:raycast:2", "vtk:raycast" };
 }
 
 bool is_tetra_mapper(const std::string& method)
