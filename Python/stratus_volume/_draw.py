@@ -3,7 +3,7 @@
 from ._annotation import flag
 from ._core import Progress, whole
 from ._globe import OnGlobe
-from ._globe_layers import check_variable, on_globe
+from ._mesh_layers import PlaneLayers, check_variable, is_on_mesh, on_globe
 from ._picture import Film, paint
 from ._tetrahedra import Tetrahedra
 from ._values import background_color, number, positive
@@ -27,6 +27,11 @@ def drawn_of(data, spacing=None, origin=None, axes=None, scalars=None, component
         if memory is not None:
             raise ValueError(f"memory is {memory!r}, but on a globe all values are read at once: leave it out")
         return on_globe(data, scalars, exaggerate, device, threads)
+    if is_dataset and is_on_mesh(data, scalars):
+        for name, value in dict(spacing=spacing, origin=origin, axes=axes, component=component, memory=memory).items():
+            if value is not None:
+                raise ValueError(f"{name} is {value!r}, but a mesh of a Dataset has its own places and values: leave it out")
+        return PlaneLayers(data, scalars, exaggerate, device, threads, matrix)
     if is_dataset:
         data, scalars = data[scalars], None
     if isinstance(data, (Volume, Tetrahedra)):
@@ -48,7 +53,8 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
            device=None, threads=None, matrix=None, exaggerate=None, globe=False, memory=None, **options):
     """Draws a volume and returns a Rendering: rgba, depth, counters.
 
-    data           a NumPy array, an xarray.DataArray, an xarray.Dataset, whose variable `scalars` names, a lazy array such as zarr's, a
+    data           a NumPy array, an xarray.DataArray, an xarray.Dataset, whose variable `scalars` names, with a mesh of UGRID, FVCOM, MPAS or ICON
+                   in layers or without, a lazy array such as zarr's, a
                    vtkImageData or vtkRectilinearGrid, a vtkUnstructuredGrid or vtkStructuredGrid, pyvista's too; or a Volume or Tetrahedra, which
                    are drawn again without building anew. See `Volume` and `Tetrahedra` for the accepted data, and for spacing, origin, axes,
                    scalars, component, device, threads, matrix, exaggerate and memory
@@ -118,7 +124,7 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
     progress       function of a stage's name and a fraction in 0..1; a true result, an exception, or Ctrl+C ends the call.
                    Or a bar of tqdm's protocol
 
-    Cells of unstructured and structured grids have no interpolation, structure, sampling, sample_distance, jitter, audit, labels, looks,
+    Cells of unstructured and structured grids, and of meshes, have no interpolation, structure, sampling, sample_distance, jitter, audit, labels, looks,
     and function_2d, but a method: auto, march or project. A picture that shows nothing gives one warning, NothingShown, that names the reason.
     """
     drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, globe, memory)

@@ -6,6 +6,8 @@ import ctypes
 import numpy
 
 from . import _declarations as c
+from . import _earth
+from ._annotation import Axis
 from ._core import address, context as context_of, library
 from ._dimensions import axis_of, values_of
 
@@ -45,22 +47,35 @@ def variables_of(data):
 class Faces:
     """Nodes and faces of a Dataset.
 
-    degrees      float64 (nodes, 2): longitude and latitude
+    places       float64 (nodes, 2): longitude and latitude in degrees on a sphere, x and y in metres on a plane
+    axes         on a plane: two Axis, the data's own numbers along x and y
     node, face   names of the dimensions of nodes and of faces; None: there is none
     description  where nodes and faces are from
     """
 
-    def __init__(self, variables):
-        self._variables, self.context = variables, context_of("host", 1)
-        of = self._find()
-        if of is None:
+    def __init__(self, variables, on_sphere=True):
+        self._variables, self._on_sphere, self.context = variables, on_sphere, context_of("host", 1)
+        found = self._find()
+        if found is None:
             raise ValueError("there is no mesh: no variable of cf_role mesh_topology and topology_dimension 2, no 'nv' of FVCOM, no 'cellsOnVertex' or "
                              "'verticesOnCell' of MPAS, and no longitudes and latitudes with bounds of three or more corners")
-        of()
-        unknown = numpy.nonzero(~numpy.isfinite(self.degrees))[0]
+        self.axes = [Axis("x", "m"), Axis("y", "m")]
+        found[0]()
+        unknown = numpy.nonzero(~numpy.isfinite(self.places))[0]
         if len(unknown):
-            raise ValueError(f"the {self.description} have no longitude or latitude at number {unknown[0]}")
-        self._call(library.stratus_faces_turn, ctypes.byref(self.struct), address(self.degrees), 1)
+            what = "longitude or latitude" if self._in_degrees else "x or y"
+            raise ValueError(f"the {self.description} have no {what} at number {unknown[0]}")
+        if not on_sphere and self._in_degrees:
+            self._flatten()
+        self._call(library.stratus_faces_turn, ctypes.byref(self.struct), address(self.places), int(on_sphere))
+
+    @classmethod
+    def dimensions(cls, variables):
+        """Names of dimensions that the variables of a mesh have, none if there is no mesh."""
+        own = cls.__new__(cls)
+        own._variables = variables
+        found = own._find()
+        return set() if found is None else {dimension for name in found[1] if name in variables for dimension in variables[name].dims}
 
     @classmethod
     def are_in(cls, variables):
@@ -70,30 +85,31 @@ class Faces:
         return own._find() is not None
 
     def _find(self):
-        """The function that makes faces of the variables, or None."""
+        """The function that makes faces of the variables, and names of variables that have the dimensions of the mesh; or None."""
         for name, one in self._variables.items():
             if text(one, "cf_role") == "mesh_topology" and text(one, "topology_dimension") in ("", "2"):
-                return lambda: self._of_topology(name, one)
+                names = (*text(one, "node_coordinates").split(), text(one, "face_node_connectivity"))
+                return lambda: self._of_topology(name, one), names
         if "nv" in self._variables and len(self._variables["nv"].dims) == 2:
-            return self._of_fvcom
+            return self._of_fvcom, ("nv", "lon", "x")
         for name in ("cellsOnVertex", "verticesOnCell"):
             if name in self._variables and len(self._variables[name].dims) == 2:
-                return lambda: self._of_mpas(name)
+                return lambda: self._of_mpas(name), (name, "lonCell", "lonVertex", "xCell", "xVertex")
         found = [self._bounds(kind) for kind in ("longitude", "latitude")]
         for own in found[0]:
             for other in found[1]:
                 if own[1].dims == other[1].dims:
-                    return lambda: self._of_bounds(own, other)
+                    return lambda: self._of_bounds(own, other), (own[2],)
         return None
 
     def _bounds(self, kind):
-        """Longitudes or latitudes of cells whose bounds are corners: lists of the coordinate and its bounds."""
+        """Longitudes or latitudes of cells whose bounds are corners: lists of the coordinate, its bounds and its name."""
         result = []
-        for one in self._variables.values():
+        for name, one in self._variables.items():
             bounds = self._variables.get(text(one, "bounds"))
             if len(one.dims) == 1 and bounds is not None and _is(one, kind) and len(bounds.dims) == 2 and bounds.dims[0] == one.dims[0] and \
                     3 <= bounds.shape[1] <= _MOST:
-                result.append((one, bounds))
+                result.append((one, bounds, name))
         return result
 
     def _named(self, name, what):
@@ -131,49 +147,74 @@ class Faces:
         turned = table.shape[1] > _MOST >= table.shape[0]
         numbers = numbers_of(table).T if turned else numbers_of(table)
         self.face = table.dims[1 if turned else 0]
-        self._make(numbers, float(text(table, "start_index") or 0), len(self.degrees), len(numbers), connectivity)
+        self._make(numbers, float(text(table, "start_index") or 0), len(self.places), len(numbers), connectivity)
         self.description = f"nodes of the mesh {name!r}"
 
-    def _place(self, name, *at):
-        degrees = [_degrees(each) for each in at]
-        if any(each is None or each.ndim != 1 for each in degrees) or degrees[0].shape != degrees[1].shape:
-            raise ValueError(f"the mesh {name!r} has no longitudes and latitudes of nodes in degrees, so that it has no place on a sphere")
-        self.degrees, self.node = numpy.stack(degrees, axis=1), at[0].dims[0]
+    def _place(self, name, *at, usual=""):
+        """usual: the unit of coordinates that have none."""
+        places, self._in_degrees = [_degrees(each, usual) for each in at], True
+        if not self._on_sphere and all(each is None for each in places):
+            units = [text(each, "units") or usual for each in at]
+            if all(unit in _earth._LENGTHS for unit in units):
+                places, self._in_degrees = [numbers_of(each) * _earth._LENGTHS[unit] for each, unit in zip(at, units)], False
+        if any(each is None or each.ndim != 1 for each in places) or places[0].shape != places[1].shape:
+            what = "in degrees, so that it has no place on a sphere" if self._on_sphere else "in degrees, nor x and y in a unit of length"
+            raise ValueError(f"the mesh {name!r} has no longitudes and latitudes of nodes {what}")
+        self.places, self.node = numpy.stack(places, axis=1), at[0].dims[0]
+
+    def _flatten(self):
+        """Makes places of degrees metres at the middle latitude. The plane is cut where the longitudes have their widest gap."""
+        sorted_, north = numpy.unique(self.places[:, 0] % 360.0), self.places[:, 1]
+        gaps = numpy.diff(sorted_, append=sorted_[0] + 360.0)
+        west = sorted_[(numpy.argmax(gaps) + 1) % len(sorted_)]
+        east = west + (self.places[:, 0] - west) % 360.0
+        east -= 360.0 * (east.min() + east.max() > 360.0)
+        at = east[self.nodes[:self.offsets[-1]]]
+        wide = numpy.maximum.reduceat(at, self.offsets[:-1]) - numpy.minimum.reduceat(at, self.offsets[:-1])
+        if (wide[self.absent == 0] >= 180.0).any():
+            raise ValueError("the mesh goes round the Earth or over a pole, which a plane has no place for: draw it with globe=True")
+        degree = numpy.radians(_earth._RADIUS)
+        metres = degree * numpy.cos(numpy.radians(0.5 * (north.min() + north.max()))), degree
+        self.places = numpy.ascontiguousarray(numpy.stack([east, north], axis=1) * metres)
+        self.axes = [Axis(kind, "degrees", 1 / scale, kind) for kind, scale in zip(("longitude", "latitude"), metres)]
 
     def _of_fvcom(self):
-        self._place("nv", self._named("lon", "longitudes"), self._named("lat", "latitudes"))
+        flat = not self._on_sphere and "lon" not in self._variables
+        self._place("nv", *(self._named(*each) for each in ((("x", "x"), ("y", "y")) if flat else (("lon", "longitudes"), ("lat", "latitudes")))),
+                    usual="m" if flat else "degrees")
         table = self._variables["nv"]
         turned = table.shape[0] <= 4
         numbers = numbers_of(table).T if turned else numbers_of(table)
         self.face = table.dims[1 if turned else 0]
-        self._make(numbers, float(text(table, "start_index") or 1), len(self.degrees), len(numbers), "nv")
+        self._make(numbers, float(text(table, "start_index") or 1), len(self.places), len(numbers), "nv")
         self.description = "nodes of FVCOM"
 
     def _of_mpas(self, name):
-        if text(self._variables[name], "on_a_sphere").lower() == "no":
+        flat = text(self._variables[name], "on_a_sphere").lower() == "no"
+        if flat and self._on_sphere:
             raise ValueError("the mesh of MPAS is not on a sphere")
-        lon, lat = (self._named(each, "middles of cells") for each in ("lonCell", "latCell"))
-        self.degrees, self.node = numpy.stack([_degrees(lon, "radian"), _degrees(lat, "radian")], axis=1), lon.dims[0]
+        self._place(name, *(self._named(each, "middles of cells") for each in (("xCell", "yCell") if flat else ("lonCell", "latCell"))),
+                    usual="m" if flat else "radian")
         table = self._variables[name]
         numbers, by_vertex = numbers_of(table), name == "cellsOnVertex"
         numbers[numbers == 0] = numpy.nan
         faces, self.face = len(numbers), table.dims[0]
         if not by_vertex:
-            corners = self._named("lonVertex", "corners of cells")
+            corners = self._named("xVertex" if flat else "lonVertex", "corners of cells")
             faces, self.face = corners.shape[0], corners.dims[0]
             if "nEdgesOnCell" in self._variables:
                 numbers[numpy.arange(numbers.shape[1]) >= numbers_of(self._variables["nEdgesOnCell"])[:, None]] = numpy.nan
         fewest = numbers.shape[1] if by_vertex else 3  # a corner at the border of a region has fewer cells
-        self._make(numbers, 1, len(self.degrees), faces, name, not by_vertex, fewest)
+        self._make(numbers, 1, len(self.places), faces, name, not by_vertex, fewest)
         self.description = "middles of the cells of MPAS"
 
     def _of_bounds(self, *both):
         usual = "degree"
-        at = [_degrees(bounds, text(bounds, "units") or text(one, "units") or usual) for one, bounds in both]
+        at = [_degrees(bounds, text(bounds, "units") or text(one, "units") or usual) for one, bounds, _ in both]
         corners = numpy.ascontiguousarray(numpy.stack([each.reshape(-1) for each in at], axis=1))
         numbers, first, count = numpy.zeros(len(corners), numpy.int32), numpy.zeros(len(corners), numpy.int64), ctypes.c_int64()
         self._call(library.stratus_faces_join_corners, len(corners), address(corners), address(numbers), address(first), ctypes.byref(count))
-        self.degrees = numpy.ascontiguousarray(corners[first[:count.value]])
+        self.places, self._in_degrees = numpy.ascontiguousarray(corners[first[:count.value]]), True
         self.node, self.face = None, both[0][0].dims[0]
         self._make(numbers.reshape(at[0].shape), 0, count.value, len(at[0]), "bounds", fewest=3)
         self.description = "corners of cells"
@@ -181,7 +222,7 @@ class Faces:
     def to_nodes(self, of_faces):
         """Values (n, faces) at nodes: means over the faces around each that have one."""
         faces = numpy.repeat(numpy.arange(len(self.absent)), numpy.diff(self.offsets))
-        nodes, count = self.nodes[:self.offsets[-1]], len(self.degrees)
+        nodes, count = self.nodes[:self.offsets[-1]], len(self.places)
         result = numpy.full((len(of_faces), count), numpy.nan)
         for level, values in zip(result, of_faces):
             known = numpy.isfinite(values) & (self.absent == 0)

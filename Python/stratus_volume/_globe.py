@@ -84,20 +84,9 @@ class OnGlobe(Tetrahedra):
 
     def _finish(self, data, description):
         """Sets what a picture needs besides the mesh. data: the DataArray."""
-        self.about = _earth.About(data)
-        self.bar_title = tuple(str(text or "") for text in (getattr(data, "name", None), data.attrs.get("units")))
+        self._name(data)
         self.innermost = float(numpy.sqrt((self.points ** 2).sum(axis=-1).min()))
         self.description = "on a sphere of 6371 km" + description
-
-    def _box(self, dimensions):
-        """A box about the data, of values in cells."""
-        volume = library.stratus_volume_default()
-        volume.values, volume.type, volume.value_stride = address(self.values), self._mesh().type, 1
-        volume.dimensions[:], volume.cell_centered = dimensions, 1
-        for axis in range(3):
-            volume.origin[axis] = self.bounds[2 * axis]
-            volume.spacing[axis] = (self.bounds[2 * axis + 1] - self.bounds[2 * axis]) / volume.dimensions[axis]
-        return volume
 
     def camera_of(self, camera):
         """The default camera, and the ones about the data, look from above the middle of the data, unless they go round."""

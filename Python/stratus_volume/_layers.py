@@ -33,12 +33,12 @@ class Layers:
     values   (count + 1, nodes) or (count, faces) from the bottom up; masked and NaN: none
     """
 
-    def __init__(self, variables, name):
+    def __init__(self, variables, name, on_sphere=True):
         self._variables, self._name = variables, name
-        self.faces = Faces(variables)
+        self.faces = Faces(variables, on_sphere)
         own, self.on_nodes = self._ordered(name)
         self._layer = own.dims_of_layers
-        self._none, self.top_first = numpy.zeros(len(self.faces.degrees), numpy.uint8), False
+        self._none, self.top_first = numpy.zeros(len(self.faces.places), numpy.uint8), False
         if not (self._by_heights() or self._by_thicknesses() or self._by_sigma() or self._by_levels() or self._by_surfaces()):
             raise ValueError(f"the layers of {name!r} have no heights: no variable is one at nodes or faces, there is no sigma coordinate with a bottom "
                              f"and a free surface, and its dimension of layers, {self._layer!r}, has no coordinate in a unit of length or pressure")
@@ -66,7 +66,7 @@ class Layers:
         return _Ordered(values if others else values[None], others[0] if others else None), places[0] == self.faces.node
 
     def _core(self, function, *arguments):
-        self.heights = numpy.empty((self.count + 1, len(self.faces.degrees)))
+        self.heights = numpy.empty((self.count + 1, len(self.faces.places)))
         self.faces._call(function, *arguments, address(self.heights), address(self._none))
 
     def _take(self, levels, borders):
@@ -95,7 +95,7 @@ class Layers:
                 levels = numpy.ma.filled(numpy.ma.asarray(found.values, numpy.float64), numpy.nan)
                 levels *= _earth._LENGTHS.get(text(one, "units"), 1.0)
                 levels = self._take(levels if on_nodes else self.faces.to_nodes(levels), borders)
-                self._core(library.stratus_layers_from_heights, len(self.faces.degrees), self.count, int(borders), address(levels))
+                self._core(library.stratus_layers_from_heights, len(self.faces.places), self.count, int(borders), address(levels))
                 self.description = f"{self.count} layers by heights {name!r}"
                 return True
         return False
@@ -167,7 +167,7 @@ class Layers:
     def _between_surfaces(self, borders, **more):
         borders = numpy.ascontiguousarray(borders)
         surface, bottom = self._surface()[1], self._bottom()
-        struct = c.stratus_layer_borders(node_count=len(self.faces.degrees), layer_count=self.count, borders=address(borders), bottom=address(bottom),
+        struct = c.stratus_layer_borders(node_count=len(self.faces.places), layer_count=self.count, borders=address(borders), bottom=address(bottom),
                                          surface=address(surface), **more)
         self._core(library.stratus_layers_from_borders, ctypes.byref(struct))
 
@@ -259,7 +259,7 @@ class Layers:
         if not self.on_nodes:
             return 0.5 * (values[:-1] + values[1:])
         result = numpy.empty(self.heights.shape)
-        self.faces._call(library.stratus_layers_to_borders, len(self.faces.degrees), self.count, address(self.heights), address(values),
+        self.faces._call(library.stratus_layers_to_borders, len(self.faces.places), self.count, address(self.heights), address(values),
                          address(result))
         return result.astype(own.values.dtype) if own.values.dtype.kind == "f" else result
 

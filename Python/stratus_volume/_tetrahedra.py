@@ -6,7 +6,7 @@ import math
 import numpy
 
 from . import _declarations as c
-from . import _view
+from . import _earth, _view
 from ._annotation import Annotation
 from ._core import Owned, address, as_dict, choice, context as context_of, library, type_of
 from ._grid import affine, chosen, of_package
@@ -45,6 +45,8 @@ class Tetrahedra:
     Memory is not copied if types are the named ones and arrays are contiguous.
     """
     innermost = None  # of data on a globe: the least distance of a point from the middle of the Earth
+    earth = False  # whether the data are on the Earth's plane
+    axes = None  # the data's numbers along x, y and z of the world: three Axis. None: the world's own
     bar_title = ("", "")  # of the colour bar: title and unit
 
     def __init__(self, points, tetrahedra=None, values=None, scalars=None, device=None, threads=None, matrix=None, component=None):
@@ -147,7 +149,22 @@ class Tetrahedra:
         mesh.hidden = address(self.hidden)
         return mesh
 
-    def _earth(self, image, opaque_depth, coast, ink):
+    def _name(self, data):
+        """Sets what an xarray.DataArray says of its variable."""
+        self.about = _earth.About(data)
+        self.bar_title = tuple(str(text or "") for text in (getattr(data, "name", None), data.attrs.get("units")))
+
+    def _box(self, dimensions):
+        """A box about the data, of values in cells."""
+        volume = library.stratus_volume_default()
+        volume.values, volume.type, volume.value_stride = address(self.values), self._mesh().type, 1
+        volume.dimensions[:], volume.cell_centered = dimensions, 1
+        for axis in range(3):
+            volume.origin[axis] = self.bounds[2 * axis]
+            volume.spacing[axis] = (self.bounds[2 * axis + 1] - self.bounds[2 * axis]) / volume.dimensions[axis]
+        return volume
+
+    def _globe(self, image, opaque_depth, coast, ink):
         """The Earth in a picture, None for data that are not on a globe."""
         if self.innermost is None:
             return None
@@ -175,18 +192,18 @@ class Tetrahedra:
         """
         size = pixels(size)
         image, report = Image(size, opaque_depth), c.stratus_tetra_report()
-        earth, camera = self._earth(image, opaque_depth, coast, ink), self.camera_of(camera)
+        globe, camera = self._globe(image, opaque_depth, coast, ink), self.camera_of(camera)
         numbers = Quantities(quantities, threshold, image, self._units)
-        around = Annotation(show_axes, color_bar, caption, coast and not earth, ink)
+        around = Annotation(show_axes, color_bar, caption, coast and not globe, ink)
         with self.context.lock:
             asked = AskedOfCells(self, opacity, color, unit_distance, mode, method, tolerance, shade, gradient_opacity, contours, crop, clip_planes,
                                  average_range, dependent, weights, mean_components, surface, extinction)
             if not self.nothing:
-                around.set_box(self.bounds)
+                around.set_box(self.bounds, self.axes)
                 around.set_bar(asked.transfers[0], self.spread, self.power, *self.bar_title)
-                room = None if _view.is_placed(camera) else around.room(self.context, size, False)
-                view = _view.make(self.context, camera, self.bounds, size, room=room)
-                view = earth.end_rays(self.context, view) if earth else view
+                room = None if _view.is_placed(camera) else around.room(self.context, size, self.earth and camera is None)
+                view = _view.make(self.context, camera, self.bounds, size, self.earth, room)
+                view = globe.end_rays(self.context, view) if globe else view
                 self.context.call(library.stratus_tetra_caster_render, self._caster.pointer, ctypes.byref(asked.mesh), asked.functions,
                                   ctypes.byref(view), ctypes.byref(asked.options), ctypes.byref(image.struct), ctypes.byref(report), progress=progress)
                 own = c.stratus_ray_cast_input(tetra=self._caster.pointer, mesh=ctypes.addressof(asked.mesh), transfer=asked.functions,
@@ -195,8 +212,8 @@ class Tetrahedra:
         asked.explain(image.rgba, report.rays)
         if not self.nothing:
             with self.context.lock:
-                if earth:
-                    earth.draw(self.context, view, image)
+                if globe:
+                    globe.draw(self.context, view, image)
                 around.draw(self.context, view, image)
         return image.rendering(as_dict(report), numbers.result(0 if self.nothing else self.power))
 

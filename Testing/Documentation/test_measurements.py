@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every figure in the tables of docs/measurements.md, docs/measurements/, docs/install.md and README.md equals a value of a committed CSV.
 
-Usage: test_measurements.py [ROOT-OF-THE-REPOSITORY]
+Usage: test_measurements.py [--write] [ROOT-OF-THE-REPOSITORY]
+
+--write replaces cells that differ, with three significant digits, and the index's commits. What a table says in words stays.
 
 A comment before each table says where its cells come from:
 
@@ -36,6 +38,7 @@ docs/measurements/ must lead to files.
 """
 import fnmatch
 import glob
+import math
 import os
 import re
 import sys
@@ -144,6 +147,13 @@ def judge(text, value):
     return None
 
 
+def written(value):
+    """A number as a new cell has it."""
+    if value == int(value) or abs(value) >= 1000:
+        return f"{round(value):,}"
+    return format(value, f".{max(0, 2 - math.floor(math.log10(abs(value))))}f")
+
+
 def template_parts(template):
     """Expressions of a template, and the pattern of a cell."""
     if template == "text":
@@ -212,13 +222,14 @@ def tables_of(lines):
 
 
 class Document:
-    def __init__(self, root, name, strict):
-        self.root, self.name, self.strict = root, name, strict
+    def __init__(self, root, name, strict, write=False):
+        self.root, self.name, self.strict, self.write = root, name, strict, write
         with open(os.path.join(root, name), encoding="utf-8") as file:
             self.lines = file.read().splitlines()
         self.errors, self.checked, self.tables, self.numbers = [], 0, 0, []
         self.csv = {}
         self.anchors = []
+        self.changed = False
 
     def fail(self, line, what):
         self.errors.append(f"{self.name}:{line}: {what}")
@@ -284,10 +295,12 @@ class Document:
             if not table:
                 continue
             self.anchors.append(f"{target[1]}#{target[2]}")
-            self.check_cell(number, header[1], cells[1], source[3], table, source[2] or "*", used, methods)
+            self.check_cell(number, header[1], cells, 1, source[3], table, source[2] or "*", used, methods)
             commits = ", ".join(dict.fromkeys(run["commit"] for run in table.origins if used & set(run["scenes"].split(","))))
             self.checked += 2
-            if cells[2] != commits:
+            if cells[2] != commits and self.write:
+                self.replace(number, cells, 2, commits)
+            elif cells[2] != commits:
                 self.fail(number, f"{header[2]}: '{cells[2]}' is not '{commits}'")
         for name in answers:
             self.fail(line, f"there is no row {name}")
@@ -312,8 +325,8 @@ class Document:
             scene, row = scene_of(cells[0], scenes)
             met.add(row)
             before = self.checked
-            for name, cell, template in zip(header, cells, templates[0]):
-                self.check_cell(number, name, cell, template, table, scene, used, methods)
+            for column, (name, template) in enumerate(zip(header, templates[0])):
+                self.check_cell(number, name, cells, column, template, table, scene, used, methods)
             if self.checked == before:
                 self.fail(number, f"no figure of this row is checked ('{scene}' may be no scene)")
         for label in scenes.keys() - met:
@@ -321,7 +334,29 @@ class Document:
         if self.strict:
             self.check_origins(line, f"{RESULTS}/{path}", table, used)
 
-    def check_cell(self, number, name, cell, template, table, scene, used, methods=None):
+    def replace(self, number, cells, column, text):
+        cells[column] = text
+        self.lines[number - 1] = "| " + " | ".join(cells) + " |"
+        self.changed = True
+
+    def fill_cell(self, number, cells, column, template, table, scene, methods):
+        """Writes the cell anew if it differs from its template's values."""
+        expressions, pattern = template_parts(template)
+        values = [evaluate(expression, table, scene, set(), methods) for expression in expressions]
+        match = pattern.fullmatch(cells[column].replace("`", ""))
+        texts = match.groups() if match and "" not in match.groups() else ["-"] * len(expressions)
+        if None in values:
+            if cells[column] != "-":
+                self.replace(number, cells, column, "-")
+        elif any(judge(text, value) for text, value in zip(texts, values)) and "{text}" not in template:
+            pieces = re.split(r"\{[^{}]*\}", re.sub(r"\{span ([^{}]*)\}", r"{\1} to {\1}", template))
+            numbers = [written(value) for value in values] + [""]
+            self.replace(number, cells, column, "".join(piece + text for piece, text in zip(pieces, numbers)))
+
+    def check_cell(self, number, name, cells, column, template, table, scene, used, methods=None):
+        if self.write:
+            self.fill_cell(number, cells, column, template, table, scene, methods)
+        cell = cells[column]
         expressions, pattern = template_parts(template)
         if cell == "-" and expressions:  # all of the cell's figures are missing
             texts = ["-"] * len(expressions)
@@ -362,6 +397,9 @@ def check_judge():
     for text, value, right in [(*pair, True) for pair in alike] + [(*pair, False) for pair in apart]:
         if (judge(text, value) is None) != right:
             return f"'{text}' next to {value} was judged wrongly"
+    for text, value in (("5.18", 5.1849), ("0.0567", 0.05673), ("66", 66.0), ("12,346", 12345.6), ("120", 120.4), ("0", 0.0), ("1.00", 1.0001)):
+        if written(value) != text:
+            return f"{value} was written as '{written(value)}', not as '{text}'"
     return None
 
 
@@ -371,14 +409,19 @@ def change_digit(text):
 
 
 def main():
-    root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+    write = "--write" in sys.argv[1:]
+    arguments = [word for word in sys.argv[1:] if word != "--write"]
+    root = arguments[0] if arguments else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
     errors = [error for error in (check_judge(),) if error]
     pages = sorted(os.path.relpath(path, root) for path in glob.glob(os.path.join(root, "docs", "measurements", "*.md")))
     indexed, sections = [], []
     for name in [INDEX, *pages, "README.md", "docs/install.md"]:
         strict = name not in ("README.md", "docs/install.md")
-        document = Document(root, name, strict)
+        document = Document(root, name, strict, write)
         document.check()
+        if document.changed:
+            with open(os.path.join(root, name), "w", encoding="utf-8") as file:
+                file.write("\n".join(document.lines) + "\n")
         errors += document.errors
         if name == INDEX:
             indexed = document.anchors

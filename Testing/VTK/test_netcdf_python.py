@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes in layers of files, as the reader and as the Python package place them on a sphere: the same points, cells and values."""
+"""Meshes in layers of files, as the reader and as the Python package place them on a sphere and on a plane: the same points, cells and values."""
 import os
 import sys
 
@@ -27,18 +27,21 @@ def prisms_of(grid):
     return shown, 3 * (corners - 2)
 
 
-def compare(path, name, factor=0.0):
+def compare(path, name, factor=0.0, on_sphere=True):
     def prepare(reader):
-        reader.SetCoordinatesToSphere()
+        if on_sphere:
+            reader.SetCoordinatesToSphere()
+        reader.SetExaggerateHeights(not on_sphere)
         reader.SetHeightFactor(factor)
 
     got = Read(path, name, cls="vtkStratusUgridReader", prepare=prepare)
     check(not got.error, f"{path}: {got.error}")
     if got.error:
         return
-    own = drawn_of(datasets.of_file(path), scalars=name, globe=True, exaggerate=factor or None, device="host")
+    own = drawn_of(datasets.of_file(path), scalars=name, globe=on_sphere, exaggerate=factor or None, device="host")
     points = vtk_to_numpy(got.data.GetPoints().GetData())
-    check(own.points.shape == points.shape and abs(own.points - points).max() < 1e-3, f"{path}: points {own.points.shape}, the reader's {points.shape}")
+    placed = own.points if own.matrix is None else own.points * own.matrix.reshape(4, 4).diagonal()[:3]
+    check(own.points.shape == points.shape and abs(placed - points).max() < 1e-3, f"{path}: points {own.points.shape}, the reader's {points.shape}")
     check(abs(own.exaggeration / got.reader.GetUsedHeightFactor() - 1) < 1e-12, f"{path}: heights x {own.exaggeration}")
     shown, pieces = prisms_of(got.data)
     check(len(own.cells) == pieces.sum(), f"{path}: {len(own.cells)} tetrahedra, of the reader's cells {pieces.sum()}")
@@ -124,4 +127,20 @@ compare(write("python sigma", sizes, **mesh, lev=("lev", numpy.array([-0.875, -0
 compare(write("python levels", sizes, **mesh, lev=("lev", numpy.array([5.0, 20, 40, 80]), {"units": "m", "positive": "down", "axis": "Z"}),
     elev=zeta, depth=bed, q=("lev node", values, {})), "q", 1000)
 compare(write("python one layer", {key: sizes[key] for key in ("node", "face", "corner")}, **mesh, elev=zeta, depth=bed, q=("node", values[0], {})), "q", 1000)
+
+# A region on the plane
+near = (points @ numpy.array([0.36, 0.48, 0.8]) > 0.8)[triangles].all(axis=1)
+wet = numpy.zeros(len(points), bool)
+wet[triangles[near]] = True
+number = numpy.cumsum(wet) - 1
+nodes, faces = int(wet.sum()), number[triangles[near]]
+sizes = {"node": nodes, "face": len(faces), "corner": 3, "lev": 4}
+lonlat = dict(lon=("node", at_lon[wet], {"units": "degrees_east", "standard_name": "longitude"}),
+    lat=("node", at_lat[wet], {"units": "degrees_north", "standard_name": "latitude"}))
+mesh = dict(mesh=mesh["mesh"], faces=("face corner", faces.astype("i4"), {"start_index": numpy.int32(0)}), **lonlat)
+level = ("lev", numpy.array([5.0, 20, 40, 80]), {"units": "m", "positive": "down", "axis": "Z"})
+for place, count in (("node", nodes), ("face", len(faces))):
+    for factor in (0.0, 1000.0):
+        compare(write(f"python plane {place} {factor}", sizes, **mesh, lev=level, q=(f"lev {place}", numpy.arange(4.0 * count).reshape(4, count), {})), "q",
+            factor, on_sphere=False)
 finish()
