@@ -84,10 +84,12 @@ STRATUS_API double stratus_screen_level(double linear);
  * - temperature: K, 100 to 400 */
 STRATUS_API stratus_status stratus_air_density(stratus_context* context, double pressure, double temperature, double* density);
 
-/* Compute pressure (Pa) and temperature (K) of the standard atmosphere (ICAO Doc 7488, ISO 2533) at a height above the sea, -5000 to 32000
- * m.
- */
+/* Compute pressure (Pa) and temperature (K) of the standard atmosphere (ICAO Doc 7488, ISO 2533) at a height above the sea, -5000 to 80000
+ * m. */
 STRATUS_API stratus_status stratus_air_standard(stratus_context* context, double height, double* pressure, double* temperature);
+/* Compute heights above the sea (m) of pressures (Pa) in the standard atmosphere, and temperatures (K) there. Pressures below that at 80000
+ * m, 1.05 Pa, are at 80000 m. NaN where a pressure is below 0 or NaN. heights, temperatures: NULL: not wanted. */
+STRATUS_API void stratus_air_heights(int64_t count, const double* pressures, double* heights, double* temperatures);
 
 /* Read a moment: "2024-06-01", "2024-06-01 09:00", "2024-06-01T09:00:30.5Z", "2024-06-01_09:00:00", "2024-06-01 09:00 +02:00". Without a
  * zone it is in UTC. Seconds are counted from 1970-01-01 00:00 UTC in days of 86400 s, by the Gregorian calendar. Years 1 to 9999. */

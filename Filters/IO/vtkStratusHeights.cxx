@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkStratusHeights.h"
 #include "vtkStratusText.h"
+#include "stratus/cloud.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace {
-constexpr double SeaLevelPressure = 101325.0, SeaLevelTemperature = 288.15; // of the standard atmosphere, in Pa and K
-constexpr double GasConstant = 287.05;                                      // of dry air, J kg-1 K-1
-constexpr double SeaDensity = 1025.0;                                       // kg m-3
-constexpr double Exponent = 0.190263;
+constexpr double GasConstant = 287.05; // of dry air, J kg-1 K-1
+constexpr double SeaDensity = 1025.0;  // kg m-3
 
 using Quantity = vtkStratusQuantity;
 
@@ -160,12 +159,16 @@ bool vtkStratusIsDown(const vtkStratusNetCDFModel& file, const vtkStratusNetCDFM
 
 double vtkStratusHeightOfPressure(double pressure)
 {
-  return 44330.77 * (1.0 - std::pow(pressure / SeaLevelPressure, Exponent));
+  double height = 0.0;
+  stratus_air_heights(1, &pressure, &height, nullptr);
+  return height;
 }
 
 double vtkStratusTemperatureOfPressure(double pressure)
 {
-  return SeaLevelTemperature * std::pow(pressure / SeaLevelPressure, Exponent);
+  double temperature = 0.0;
+  stratus_air_heights(1, &pressure, nullptr, &temperature);
+  return temperature;
 }
 
 double vtkStratusThickness(double temperature, double below, double above)

@@ -27,28 +27,25 @@ def is_down(name, coordinate):
     return positive == "down" if positive else str(coordinate.attrs.get("standard_name", name)).lower() in _DOWN
 
 
-def _heights_of_pressures(context, pressures):
+def _heights_of_pressures(pressures):
     """Heights in metres of pressures in Pa, in the standard atmosphere."""
-    heights, logarithms = numpy.linspace(-2000, 32000, 341), numpy.empty(341)
-    pressure, temperature = ctypes.c_double(), ctypes.c_double()
-    with context.lock:
-        for n, height in enumerate(heights):
-            context.call(library.stratus_air_standard, context.pointer, float(height), ctypes.byref(pressure), ctypes.byref(temperature))
-            logarithms[n] = numpy.log(pressure.value)
-    return numpy.interp(numpy.log(numpy.maximum(pressures, 1e-300)), logarithms[::-1], heights[::-1])
+    pressures = numpy.ascontiguousarray(pressures)
+    heights = numpy.empty(pressures.shape)
+    library.stratus_air_heights(pressures.size, address(pressures), address(heights), None)
+    return heights
 
 
-def heights_of(context, name, coordinate):
+def heights_of(name, coordinate):
     """Heights in metres of a vertical coordinate, a length or a pressure; None for another. Depths are below 0."""
     values, units = numpy.asarray(coordinate.values, numpy.float64), _units(coordinate)
     if units in _PRESSURES:
-        return _heights_of_pressures(context, values * _PRESSURES[units])
+        return _heights_of_pressures(values * _PRESSURES[units])
     if units in _LENGTHS:
         return values * _LENGTHS[units] * (-1.0 if is_down(name, coordinate) else 1.0)
     return None
 
 
-def places_of(context, names, coordinates):
+def places_of(names, coordinates):
     """Places along x, y and z, and the metres of their unit; or None if the coordinates are not on the Earth: degrees of longitude and latitude,
     or lengths; and a height, a depth or a pressure. Places are in metres, but lengths that all have one unit keep it.
 
@@ -65,7 +62,7 @@ def places_of(context, names, coordinates):
         x, y = _LENGTHS[units[0]] * x, _LENGTHS[units[1]] * y
     elif one is None:
         return None
-    z = heights_of(context, names[2], coordinates[2])
+    z = heights_of(names[2], coordinates[2])
     return None if z is None else ((x, y, z / (one or 1.0)), one or 1.0)
 
 

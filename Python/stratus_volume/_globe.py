@@ -119,7 +119,7 @@ class Globe(OnGlobe):
         places, horizontal = _horizontal(data)
         vertical, = set(data.dims) - set(horizontal)
         context = context_of("host", 1)
-        heights = None if vertical not in data.coords else _earth.heights_of(context, vertical, data.coords[vertical])
+        heights = None if vertical not in data.coords else _earth.heights_of(vertical, data.coords[vertical])
         if heights is None:
             raise ValueError(f"globe is True, but the dimension {vertical!r} has no coordinate in a unit of length or pressure")
         values = values_of(data).transpose([data.dims.index(name) for name in (vertical, *horizontal)])

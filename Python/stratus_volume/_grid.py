@@ -298,7 +298,7 @@ def _of_xarray(data, spacing, origin, axes, memory, paged):
             places = [numpy.ascontiguousarray(place, numpy.float64) for place in places]
             ordered = ["".join(axes).index(axis) for axis in "xyz"]
             named = [str(data.dims[at]) for at in ordered], [own[at] for at in ordered]
-            earth = _earth.places_of(context_of("host", 1), *named)
+            earth = _earth.places_of(*named)
             if earth is not None:
                 for at, place in zip(ordered, earth[0]):
                     places[at] = numpy.ascontiguousarray(place)

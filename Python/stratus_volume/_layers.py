@@ -117,7 +117,7 @@ class Layers:
         """Fixed levels along the variable's dimension of layers: depths of lower borders, bounds, borders, or middles."""
         if self._layer is None:
             return False
-        found = [(name, one, _earth.heights_of(self.faces.context, name, one)) for name, one in self._variables.items()
+        found = [(name, one, _earth.heights_of(name, one)) for name, one in self._variables.items()
                  if tuple(one.dims) == (self._layer,) and text(one, "units") and name != "refBottomDepth"]
         found = [each for each in found if each[2] is not None]
         deep = self._variables.get("refBottomDepth")
@@ -228,13 +228,13 @@ class Layers:
 
     def _borders(self, name, one, middles):
         for other, own in self._variables.items():
-            heights = _earth.heights_of(self.faces.context, other, own) if len(own.dims) == 1 and own.shape[0] == len(middles) + 1 and \
+            heights = _earth.heights_of(other, own) if len(own.dims) == 1 and own.shape[0] == len(middles) + 1 and \
                 own.dims[0] not in (self.faces.node, self.faces.face) and text(own, "units") else None
             if heights is not None:
                 return heights
         bounds = self._variables.get(text(one, "bounds"))
         if bounds is not None and bounds.shape == (len(middles), 2):
-            heights = [_earth.heights_of(self.faces.context, name, _Like(numbers_of(bounds)[:, end], one)) for end in range(2)]
+            heights = [_earth.heights_of(name, _Like(numbers_of(bounds)[:, end], one)) for end in range(2)]
             if len(middles) > 1 and (heights[0][0] < heights[1][0]) != (heights[0][0] < heights[0][1]):
                 heights.reverse()
             if not numpy.allclose(heights[1][:-1], heights[0][1:], rtol=1e-5):

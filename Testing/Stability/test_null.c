@@ -402,6 +402,7 @@ static void clouds(void)
   GIVES(0.0, stratus_screen_level(NAN));
   IS_SILENT(stratus_air_density(NULL, 1e5, 280, &value));
   REFUSES(stratus_air_density(context, 1e5, 280, NULL));
+  TAKES(stratus_air_heights(1, NULL, NULL, NULL));
   IS_SILENT(stratus_air_standard(NULL, 0, &value, six));
   REFUSES(stratus_air_standard(context, 0, NULL, &value));
   REFUSES(stratus_air_standard(context, 0, &value, NULL));

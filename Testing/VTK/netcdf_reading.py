@@ -14,6 +14,23 @@ degree = 6371000 * numpy.pi / 180  # metres of a degree on the readers' sphere
 failures = 0
 
 
+def standard_height(pressure):
+    """Heights in metres of pressures in Pa in the standard atmosphere (ICAO Doc 7488): its layers' lower ends in geopotential metres, temperatures
+    and their change."""
+    base, result = 101325.0, numpy.full(numpy.shape(pressure), numpy.nan)
+    below = numpy.full(numpy.shape(pressure), True)
+    ends = ((0, 288.15, -0.0065), (11000, 216.65, 0.0), (20000, 216.65, 0.001), (32000, 228.65, 0.0028), (47000, 270.65, 0.0),
+            (51000, 270.65, -0.0028), (71000, 214.65, None))
+    for (low, kelvin, change), (high, _, _) in zip(ends, ends[1:]):
+        scale = 287.05287 * kelvin / 9.80665
+        with numpy.errstate(divide="ignore"):
+            up = -scale * numpy.log(pressure / base) if change == 0 else kelvin / change * ((pressure / base) ** (-change * 287.05287 / 9.80665) - 1)
+        result = numpy.where(below, low + up, result)
+        base *= numpy.exp((low - high) / scale) if change == 0 else (1 + change * (high - low) / kelvin) ** (-9.80665 / (287.05287 * change))
+        below = pressure < base
+    return 6356766.0 * result / (6356766.0 - result)
+
+
 def check(condition, what):
     global failures
     if not condition:

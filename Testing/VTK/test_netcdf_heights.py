@@ -7,7 +7,7 @@ import netCDF4
 import numpy
 
 import stratus
-from netcdf_reading import Read, check, degree, finish, near, write
+from netcdf_reading import Read, check, degree, finish, near, standard_height, write
 
 udunits = os.environ.get("STRATUS_UDUNITS", "1") == "1"  # whether the readers were built with UDUNITS
 nt, nz, ny, nx = 2, 6, 4, 5
@@ -23,10 +23,6 @@ k = numpy.arange(nz)[:, None, None]
 def surface(low, high, times=True):
     """A field over time, latitude and longitude, or the latter two."""
     return random.uniform(low, high, (nt, ny, nx) if times else (ny, nx))
-
-
-def standard(pressure):
-    return 44330.77 * (1 - (pressure / 101325) ** 0.190263)
 
 
 def column(array):
@@ -60,15 +56,15 @@ def scalar(value, units=None):
 
 ps, sigma = surface(9e4, 1.03e5), numpy.linspace(.05, .99, nz)
 xy, txy = "lat lon", "time lat lon"
-formula("atmosphere_ln_pressure_coordinate", lambda t: standard(1e5 * numpy.exp(-column(2 - 2 * sigma))), 2 - 2 * sigma,
+formula("atmosphere_ln_pressure_coordinate", lambda t: standard_height(1e5 * numpy.exp(-column(2 - 2 * sigma))), 2 - 2 * sigma,
     {"p0": "p0", "lev": "lev"}, positive="down", p0=scalar(1000, "hPa"))
-formula("atmosphere_sigma_coordinate", lambda t: standard(500 + column(sigma) * (ps[t] - 500)), sigma,
+formula("atmosphere_sigma_coordinate", lambda t: standard_height(500 + column(sigma) * (ps[t] - 500)), sigma,
     {"sigma": "lev", "ps": "ps", "ptop": "top"}, ps=(txy, ps, {"units": "Pa"}), top=scalar(5, "millibar"))
 a, b = 2e4 * sigma * (1 - sigma), sigma ** 2
 hybrid = {"ps": (txy, ps, {"units": "Pa"}), "bk": ("lev", b, {"units": "1"})}
-formula("atmosphere_hybrid_sigma_pressure_coordinate ap", lambda t: standard(column(a) + column(b) * ps[t]), numpy.arange(nz) + 1.0,
+formula("atmosphere_hybrid_sigma_pressure_coordinate ap", lambda t: standard_height(column(a) + column(b) * ps[t]), numpy.arange(nz) + 1.0,
     {"ap": "ak", "b": "bk", "ps": "ps"}, text="ap : ak b:bk  ps: ps", ak=("lev", a / 100, {"units": "hPa"}), **hybrid)
-formula("atmosphere_hybrid_sigma_pressure_coordinate a", lambda t: standard(column(a) + column(b) * ps[t]), sigma,
+formula("atmosphere_hybrid_sigma_pressure_coordinate a", lambda t: standard_height(column(a) + column(b) * ps[t]), sigma,
     {"b": "bk", "ps": "ps", "p0": "P0", "a": "ak"}, ak=("lev", a / 1e5, {}), P0=scalar(1e5, "Pa"), **hybrid)
 orog = surface(0, 2000, False)
 formula("atmosphere_hybrid_height_coordinate", lambda t: column(sigma) * 2e4 + column(1 - sigma) * orog, sigma,
@@ -141,7 +137,7 @@ for name, turn, ground, units in (("up", -1, "orog", "m"), ("geopotential", 1, "
     pressure = [column(a[::turn]) + column(b[::turn]) * ps[t] for t in range(nt)]
     extra = {ground: (xy, orog * (9.80665 if units == "m2 s-2" else 1), {"units": units})} if ground else {}
     formula("atmosphere_hybrid_sigma_pressure_coordinate hypsometric " + name,
-        lambda t: hypsometric(pressure[t], ps[t], orog if ground else standard(ps[t]), kelvin[t]), sigma[::turn], terms,
+        lambda t: hypsometric(pressure[t], ps[t], orog if ground else standard_height(ps[t]), kelvin[t]), sigma[::turn], terms,
         ps=hybrid["ps"], ak=("lev", a[::turn], {"units": "Pa"}), bk=("lev", b[::turn], {}),
         ta=("time lev lat lon", kelvin - 273.15, {"units": "degC", "standard_name": "air_temperature"}), **extra)
 
@@ -165,11 +161,11 @@ for name, values, attributes, expected in (
         "units": "m"}, -numbers), ("height", numbers, {"standard_name": "height", "units": "KILOMETERS"}, 1000 * numbers),
     ("symbol", numbers, {"units": "KM"}, 1000 * numbers), ("feet", numbers, {"units": "feet", "positive": "up"}, .3048 * numbers),
     ("scaled", numbers, {"units": "10 m"}, 10 * numbers), ("geopotential", numbers, {"units": "m**2 s**-2"}, numbers / 9.80665),
-    ("gpm", numbers, {"units": "gpm"}, numbers), ("hPa", pressures, {"units": "hPa"}, standard(100 * pressures)),
-    ("mb", pressures, {"units": "mb", "positive": "down"}, standard(100 * pressures)),
-    ("Millibars", pressures, {"units": "Millibars"}, standard(100 * pressures)), ("atm", pressures, {"units": "atm"},
-        standard(101325 * pressures)),
-    ("scaled pressure", pressures, {"units": "100 Pa"}, standard(100 * pressures)), ("PA", pressures, {"units": "PA"}, standard(pressures)),
+    ("gpm", numbers, {"units": "gpm"}, numbers), ("hPa", pressures, {"units": "hPa"}, standard_height(100 * pressures)),
+    ("mb", pressures, {"units": "mb", "positive": "down"}, standard_height(100 * pressures)),
+    ("Millibars", pressures, {"units": "Millibars"}, standard_height(100 * pressures)), ("atm", pressures, {"units": "atm"},
+        standard_height(101325 * pressures)),
+    ("scaled pressure", pressures, {"units": "100 Pa"}, standard_height(100 * pressures)), ("PA", pressures, {"units": "PA"}, standard_height(pressures)),
     ("dbar", numbers, {"units": "dbar"}, -1e4 * numbers / (1025 * 9.80665))):
     if not udunits and name in ("feet", "scaled", "geopotential", "atm", "scaled pressure"):
         continue

@@ -6,7 +6,7 @@ import itertools
 import numpy
 from vtk.util.numpy_support import vtk_to_numpy
 
-from netcdf_reading import Read, check, degree, finish, near, write
+from netcdf_reading import Read, check, degree, finish, near, standard_height, write
 
 columns, rows, layers, times = 4, 3, 5, 2
 grid_x, grid_y = (array.ravel() for array in numpy.meshgrid(numpy.linspace(0, 1000, columns + 1), numpy.linspace(0, 800, rows + 1)))
@@ -86,7 +86,7 @@ for start, on, order in itertools.product((0, 1), ("face", "node"), itertools.pe
 # Levels of other units, ways and kinds; upward: whether the file's first layer is the lowest.
 heights = numpy.array([2.0, 10, 50, 100, 400])
 pressures = numpy.array([1000.0, 900, 700, 500, 300])
-standard = 44330.77 * (1 - (pressures / 1013.25) ** 0.190263)
+standard = standard_height(100 * pressures)
 edges = numpy.array([0.0, 2, 6, 12, 20, 40])
 bounds = numpy.stack([edges[:-1], edges[1:]], axis=1)
 for name, level, extra, borders, upward in (

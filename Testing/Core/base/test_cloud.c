@@ -126,7 +126,7 @@ static void units_of_water_are_known(void** state)
   }
 }
 
-/* Table of the U.S. Standard Atmosphere 1976, which equals ICAO's up to 32 km: geometric height, K, Pa, kg/m3, as many digits as printed.
+/* Table of the U.S. Standard Atmosphere 1976, which equals ICAO's up to 80 km: geometric height, K, Pa, kg/m3, as many digits as printed.
  */
 static void standard_atmosphere_is_that_of_the_tables(void** state)
 {
@@ -134,7 +134,8 @@ static void standard_atmosphere_is_that_of_the_tables(void** state)
     double height, temperature, pressure, density;
   } rows[] = { { 0.0, 288.150, 101325.0, 1.2250 }, { 1000.0, 281.651, 89876.0, 1.1117 }, { 5000.0, 255.676, 54048.0, 0.73643 },
     { 10000.0, 223.252, 26500.0, 0.41351 }, { 15000.0, 216.650, 12111.0, 0.19476 }, { 20000.0, 216.650, 5529.3, 0.088910 },
-    { 30000.0, 226.509, 1197.0, 0.018410 } };
+    { 30000.0, 226.509, 1197.0, 0.018410 }, { 40000.0, 250.350, 287.14, 3.9957e-3 }, { 50000.0, 270.650, 79.779, 1.0269e-3 },
+    { 60000.0, 247.021, 21.958, 3.0968e-4 }, { 70000.0, 219.585, 5.2209, 8.2829e-5 }, { 80000.0, 198.639, 1.0524, 1.8458e-5 } };
   (void)state;
   double pressure = 0.0, temperature = 0.0, density = 0.0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
@@ -145,17 +146,37 @@ static void standard_atmosphere_is_that_of_the_tables(void** state)
     assert_within(density, rows[i].density, 1e-4 * rows[i].density);
   }
   /* without jumps where layers meet */
-  for (double meeting = 11019.0; meeting < 21000.0; meeting += 20063.0 - 11019.0) {
+  static const double meetings[] = { 11019.0, 20063.0, 32162.0, 47350.0, 51413.0, 71802.0 };
+  for (size_t i = 0; i < sizeof meetings / sizeof *meetings; ++i) {
+    const double meeting = meetings[i];
     double above = 0.0, below = 0.0;
     assert_int_equal(stratus_air_standard(context, meeting - 1.0, &below, &temperature), STRATUS_OK);
     assert_int_equal(stratus_air_standard(context, meeting + 1.0, &above, &temperature), STRATUS_OK);
     assert_true(above < below && above > below * (1.0 - 4.0 / 6000.0)); /* a scale height is above 6 km */
   }
-  refused(stratus_air_standard(context, 32001.0, &pressure, &temperature),
-    "height 32001 m in the standard atmosphere, must be in -5000..32000 m");
+  refused(stratus_air_standard(context, 80001.0, &pressure, &temperature),
+    "height 80001 m in the standard atmosphere, must be in -5000..80000 m");
   refused(stratus_air_standard(context, NAN, &pressure, &temperature), "height");
   refused(stratus_air_density(context, -1.0, 280.0, &density), "pressure of air -1 Pa");
   refused(stratus_air_density(context, 1e5, 15.0, &density), "temperature of air 15 K, must be in 100..400 K");
+}
+
+static void heights_of_pressures_are_those_of_the_standard_atmosphere(void** state)
+{
+  (void)state;
+  double pressure = 0.0, temperature = 0.0, back = 0.0, again = 0.0;
+  for (double height = -5000.0; height <= 80000.0; height += 97.0) {
+    assert_int_equal(stratus_air_standard(context, height, &pressure, &temperature), STRATUS_OK);
+    stratus_air_heights(1, &pressure, &back, &again);
+    assert_within(back, height, 1e-6);
+    assert_within(again, temperature, 1e-9);
+  }
+  const double outside[] = { 0.0, 0.5, -1.0, NAN };
+  double heights[4];
+  stratus_air_heights(4, outside, heights, NULL);
+  assert_within(heights[0], 80000.0, 1e-6);
+  assert_within(heights[1], 80000.0, 1e-6);
+  assert_true(isnan(heights[2]) && isnan(heights[3]));
 }
 
 static void moments_are_counted_from_1970(void** state)
@@ -293,6 +314,7 @@ int test_cloud(void)
     cmocka_unit_test(water_of_clouds_is_known_by_name),
     cmocka_unit_test(units_of_water_are_known),
     cmocka_unit_test(standard_atmosphere_is_that_of_the_tables),
+    cmocka_unit_test(heights_of_pressures_are_those_of_the_standard_atmosphere),
     cmocka_unit_test(moments_are_counted_from_1970),
     cmocka_unit_test(sun_is_where_an_ephemeris_has_it),
     cmocka_unit_test(direction_turns_from_north_to_east),
