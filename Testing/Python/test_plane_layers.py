@@ -93,7 +93,7 @@ rows, columns = numpy.nonzero(red)
 check(red.sum() > 300 and rows.mean() + 30 < 76 and columns.mean() > 84, f"the block is at {rows.mean() + 30}, {columns.mean()}")
 check("heights x" in picture.caption and (axes[..., :3].max(axis=2) > 180).sum() > 200, "the caption, and axes with text")
 
-# What has no place on a plane, or what a mesh has itself
+# Meshes without a place on a plane, and options that a mesh replaces
 _, mesh = mpas(sphere, faces)
 refuse(ValueError, "goes round the Earth or over a pole, which a plane has no place for: draw it with globe=True", drawn, Dataset(**mesh, **zgrid))
 refuse(ValueError, "spacing is (1, 1, 1), but a mesh of a Dataset has its own places", drawn, Dataset(**parts), spacing=(1, 1, 1))
