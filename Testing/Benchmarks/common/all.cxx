@@ -103,7 +103,7 @@ void add_light(const options& o, std::vector<unit>& units)
     unit u = { "light", scene, { "--scene", scene } };
     const std::vector<std::string> how = o.quick ? std::vector<std::string>{ "--light", "local,single", "--tolerance", ".0126,.005",
       "--size", "128", "--error-size", "32", "--seconds", "1" }
-                                                 : std::vector<std::string>{ "--seconds", "8" };
+                                                 : std::vector<std::string>{ "--seconds", "4" };
     u.words.insert(u.words.end(), how.begin(), how.end());
     units.push_back(u);
   }
@@ -153,7 +153,7 @@ std::vector<unit> units_of(const options& o)
   for (const std::string& scene : !has("tree") ? names()
       : o.quick                                ? names{ "17K", "35K", "u225", "u640" }
                                                : names{ "17K", "24K", "30K", "35K", "u225", "u367", "u571", "u640", "1M", "cloud" }) {
-    units.push_back({ "tree", scene, { "--scene", scene, o.quick ? "--quick-curves" : "--curves", "--rounds", o.quick ? "3" : "7" } });
+    units.push_back({ "tree", scene, { "--scene", scene, o.quick ? "--quick-curves" : "--curves", "--rounds", o.quick ? "3" : "5" } });
   }
   for (const std::string& name : has("distance") ? names{ "sparse", "clustered", "dense", "single", "plate", "shell" } : names()) {
     const std::string size = o.quick ? "64" : "128";

@@ -99,7 +99,7 @@ inline double now_ms()
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 double median(std::vector<double> values);
-// Whether repeated times suffice: the middle half of two or more is within 3 % of their median, they took .4 s, or there are `most`.
+// Whether repeated times suffice: the middle half of two or more is within 3 % of their median, they took .15 s, or there are `most`.
 bool settled(const std::vector<double>& ms, int most);
 
 // ---- methods.cxx, floor.cxx

@@ -283,7 +283,7 @@ double median(std::vector<double> values)
 
 bool settled(const std::vector<double>& ms, int most)
 {
-  constexpr double narrow = 0.03, long_ms = 400.0;
+  constexpr double narrow = 0.03, long_ms = 150.0;
   const size_t count = ms.size(), beyond = count / 4;
   if (count >= static_cast<size_t>(most) || std::accumulate(ms.begin(), ms.end(), 0.0) >= long_ms) {
     return count > 0;

@@ -32,7 +32,7 @@ const char* const help = R"(stratus-bench tetra [options]
   --curves, --quick-curves  mappers over their settings, but vtk:zsweep
   --size N                  N x N pixels (default 512)
   --repeats N               most frames a view and method (default 7): fewer if the middle half of their times is within 3 % of the
-                            median, or they took .4 s; rounds of sorters (at most 3)
+                            median, or they took .15 s; rounds of sorters (at most 3)
   --rays N                  N x N rays a view ask orders for wrong pairs, 24 views; 0: none (default 160)
   --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output)
                             the comments before them say where they come from, as in stratus-bench volume

@@ -20,7 +20,7 @@ namespace bench {
 namespace {
 
 constexpr int fewest_updates = 3;        // views
-constexpr double slow_update_ms = 400.0; // one such update is enough
+constexpr double slow_update_ms = 150.0; // one such update is enough
 const char* const structures[] = { "auto", "none", "block", "distance", "octant", "hybrid" };
 
 // Splits NAME+WINDOW into the name and the window's other contents. Returns false for other windows.

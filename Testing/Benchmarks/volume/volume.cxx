@@ -29,7 +29,7 @@ const char* const help = R"(stratus-bench volume [options]
                             (default: all methods, stratus:auto and vtk:fixedpoint in ordinary windows, too)
   --curves, --quick-curves  methods over their settings: ours over tolerances, peers over steps
   --repeats N               most frames of each view (default 7): fewer if the middle half of their times is within 3 % of the
-                            median, or they took .4 s
+                            median, or they took .15 s
   --csv FILE                tidy rows: benchmark,scene,method,metric,value,unit (default: the standard output); before them rows `#
                             name,value`: processor, cores, compiler, commit (+: with changes), date, and the scenes that these made
   --append                  rows of other scenes that the file has stay
@@ -42,7 +42,7 @@ Every frame is a whole Render() with WaitForCompletion(). A window is black, wit
 A method that cannot be measured has a row `failed`, and the exit status is 1. Needs a display; without one it starts itself under xvfb-run.
   frame_ms               median over the 8 views of record, each the median of its repeats; frame_ms/V: view V
   update_ms              from a change of the transfer function to the next picture, median over the views; over three or more of
-                         them if these agree, over one if it took .4 s
+                         them if these agree, over one if it took .15 s
   psnr_db, max_error     of float pixels, if the method has them
   psnr8_db               of the window read back in 8 bits
   samples                of a frame, median
