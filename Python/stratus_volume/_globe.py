@@ -80,12 +80,23 @@ class Earth:
 
 
 class OnGlobe(Tetrahedra):
-    """Data on a sphere of 6371 km, whose base is the core's."""
+    """Data on a sphere of 6371 km, whose base is the core's.
+
+    radius  of the sphere beneath the data
+    """
+
+    def on_scene(self):
+        """The scene has the Earth's sphere, so that pictures need none."""
+        self.innermost = None
+
+    def mean_cell(self):
+        radii = numpy.sqrt((self.points ** 2).sum(axis=-1))
+        return float(radii.max() - radii.min()) / max(1.0, numpy.cbrt(self.values.size / self.components))
 
     def _finish(self, data, description):
         """Sets what a picture needs besides the mesh. data: the DataArray."""
         self._name(data)
-        self.innermost = float(numpy.sqrt((self.points ** 2).sum(axis=-1).min()))
+        self.radius = self.innermost = float(numpy.sqrt((self.points ** 2).sum(axis=-1).min()))
         self.description = "on a sphere of 6371 km" + description
 
     def camera_of(self, camera):

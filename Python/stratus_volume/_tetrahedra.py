@@ -173,6 +173,15 @@ class Tetrahedra:
         from ._globe import Earth
         return Earth(self.innermost, image, coast, ink)
 
+    def mean_cell(self):
+        """The length of a cell of data on the Earth, in the mean of the depth, before the matrix as lengths in the mean of all directions; 0: the data
+        are not on the Earth."""
+        if not self.earth or self.nothing:
+            return 0.0
+        rows = numpy.eye(3) if self.matrix is None else self.matrix.reshape(4, 4)[:3, :3]
+        depth = numpy.linalg.norm(rows[:, 2]) * (self.points[:, 2].max() - self.points[:, 2].min())
+        return float(depth / abs(numpy.linalg.det(rows)) ** (1 / 3)) / max(1.0, numpy.cbrt(self.values.size / self.components))
+
     def camera_of(self, camera):
         """The camera of a picture, whose default data may define."""
         return camera

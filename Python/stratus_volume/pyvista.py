@@ -22,6 +22,8 @@ import pyvista.plotting.volume
 from . import _declarations as c
 from ._core import Unsupported, whole
 from ._dimensions import Steps
+from ._draw import drawn_of
+from ._globe import OnGlobe
 from ._grid import LazyGrid, of_package
 from ._lazy import lazy_of
 from ._picture import paint
@@ -45,6 +47,7 @@ _BLOCKS = ("Reds", "Greens", "Blues", "Greys", "Oranges", "Purples")
 _MOVES = 1.0  # frames in a second; a window that wants more is in the midst of an interaction
 _DRAFT_TOLERANCE = 0.02
 _SHADING = ("ambient", "diffuse", "specular", "specular_power")
+_EARTH = dict(color=(0.16, 0.18, 0.21), smooth_shading=True, pickable=False, show_scalar_bar=False)  # of the sphere beneath data on a globe
 
 
 def core_camera(camera, aspect):
@@ -119,10 +122,16 @@ def _window(renderer, algorithm):
     return actor
 
 
+def _is_laid(renderer, actor):
+    """Whether no geometry came after the actor, whose texture VTK requests in its turn among the props: depths of later ones would be missing."""
+    props = list(renderer.GetViewProps())
+    return actor in props and all(prop.IsA("vtkActor2D") for prop in props[props.index(actor):])
+
+
 def _lay_below(renderer, actor):
-    """Adds the actor so that it is drawn before all other annotations: VTK draws them in the order in which they came."""
-    others = [prop for prop in renderer.GetViewProps() if prop.IsA("vtkActor2D")]
-    for prop in others:
+    """Adds the actor so that it is drawn before all other annotations and after all geometry: VTK draws props in the order in which they came."""
+    others = [prop for prop in renderer.GetViewProps() if prop.IsA("vtkActor2D") and prop is not actor]
+    for prop in actor, *others:
         renderer.RemoveViewProp(prop)
     for prop in actor, *others:
         renderer.AddViewProp(prop)
@@ -138,10 +147,16 @@ class _Layer:
         self._algorithm = _Picture(self, renderer)
         self._actor = _window(renderer, self._algorithm)
         _lay_below(renderer, self._actor)
-        anew = weakref.ref(self._algorithm)
+        layer = weakref.ref(self)
         # VTK's commands are beyond Python's garbage collector: they hold nothing that holds the renderer.
-        self._observer = renderer.AddObserver("StartEvent", lambda caller, event: anew() and anew().Modified())
+        self._observer = renderer.AddObserver("StartEvent", lambda caller, event: layer() and layer()._begin())
         self._follows, self._timed = False, None  # an exact picture follows; the interactor whose timer draws it, and the observer
+
+    def _begin(self):
+        """Called as a frame begins."""
+        if not _is_laid(self.renderer, self._actor):
+            _lay_below(self.renderer, self._actor)
+        self._algorithm.Modified()
 
     @classmethod
     def of(cls, plotter):
@@ -278,6 +293,7 @@ class StratusVolume(pyvista.plotting.volume.Volume):
     # pyvista's classes refuse attributes that they do not know. title: of the scalar bar; called: the name that was given; shown: what the frame
     # draws, a coarse copy of a lazy array while the camera moves; comes_first: the next picture is the first one, which may be coarse
     drawn, shown, look, counters, plotter, renderer, title, called, comes_first, _layer, _box, _base, _known, _words, _kept = (None,) * 15
+    _earth = None  # the actor of the Earth beneath data on a globe
     steps, _step, _make = (None,) * 3
 
     def __init__(self, plotter, drawn, mapper, prop, look, user_matrix=None):
@@ -294,6 +310,9 @@ class StratusVolume(pyvista.plotting.volume.Volume):
         self._layer = _Layer.of(self.plotter)
         self._layer.volumes.append(self)
         self.comes_first = bool(render)  # without a frame of its own the first may be a screenshot
+        if isinstance(self.drawn, OnGlobe):
+            sphere = pyvista.Sphere(radius=self.drawn.radius, theta_resolution=360, phi_resolution=180)
+            self._earth = self.plotter.add_mesh(sphere, name=f"{name} on the Earth" if name else None, reset_camera=False, render=False, **_EARTH)
         # Its bounds count for the camera and its clipping range; it shows nothing.
         self._box = self.plotter.add_mesh(pyvista.Box(self.bounds), opacity=0.0, pickable=False, show_scalar_bar=False, reset_camera=reset_camera,
                                           render=render, name=name)
@@ -304,6 +323,8 @@ class StratusVolume(pyvista.plotting.volume.Volume):
         if self._known is None or not numpy.array_equal(matrix, self._known):
             self._known, whole = matrix, matrix @ self._base
             self.drawn._place(None if numpy.array_equal(whole, numpy.eye(4)) else whole)
+            if self._earth is not None:
+                self._earth.user_matrix = matrix
             if self._box is not None:
                 self._box.mapper.SetInputData(pyvista.Box(self.bounds))
 
@@ -386,12 +407,14 @@ class StratusVolume(pyvista.plotting.volume.Volume):
             layer.remove(self, plotter)
             if self.title in plotter.scalar_bars and not any(other.title == self.title for other in layer.volumes):
                 plotter.remove_scalar_bar(self.title, render=False)
+            if self._earth is not None:
+                plotter.remove_actor(self._earth, render=False)
             plotter.remove_actor(box, render=render)
             self._leave()
 
     def _leave(self):
         """Forgets the scene, which would else hold the volume that holds it."""
-        self.plotter, self.renderer, self._layer, self._box = None, None, None, None
+        self.plotter, self.renderer, self._layer, self._box, self._earth = (None,) * 5
 
 
 def _nodes(function, count):
@@ -495,12 +518,21 @@ def _grid(volume, scalars, preference, place):
 def _drawn(volume, scalars, resolution, preference, memory, progress, place):
     """What draws the data, the scalars' name and values where they are known, and the data as a grid of pyvista's or as they are."""
     spacing = None if resolution is None else numbers(resolution, 3, "resolution")
+    labelled = hasattr(volume, "dims") and hasattr(volume, "coords")
+    on_earth = {name: place.pop(name) for name in ("globe", "exaggerate")}
+    if hasattr(volume, "data_vars") or labelled and any(on_earth.values()):
+        drawn = drawn_of(volume, spacing=spacing, scalars=scalars, memory=memory, **place, **on_earth)
+        if isinstance(drawn, OnGlobe):
+            drawn.on_scene()
+        return drawn, scalars or getattr(volume, "name", None), None, volume
+    for name, value in on_earth.items():
+        if value:
+            raise ValueError(f"{name} is {value!r}, but only xarray's data have places on the Earth")
     if isinstance(volume, (Volume, Tetrahedra)):
         return volume, None, None, volume
     if isinstance(volume, numpy.ndarray) and scalars is None:
         return Volume(volume, axes="xyz", spacing=spacing, **place), None, volume, volume
     if scalars is None and lazy_of(volume) is not None:
-        labelled = hasattr(volume, "dims") and hasattr(volume, "coords")
         drawn = Volume(volume, axes=None if labelled else "xyz", spacing=spacing, memory=memory, **place)
         drawn.settle(progress)
         return drawn, volume.name if labelled else None, None if isinstance(drawn.grid, LazyGrid) else drawn.grid.values, volume
@@ -514,15 +546,16 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
                reset_camera=None, name=None, ambient=None, categories=False, culling=False, multi_colors=False, blending="composite", mapper=None,
                scalar_bar_args=None, show_scalar_bar=None, annotations=None, pickable=True, preference="point", opacity_unit_distance=None, shade=False,
                diffuse=0.7, specular=0.2, specular_power=10.0, render=True, user_matrix=None, log_scale=False, device=None, threads=None, memory=None,
-               **options):
+               globe=False, exaggerate=None, **options):
     """Adds a volume to a plotter's scene and returns a StratusVolume, or for a MultiBlock a list with one for each block. The arguments have the
     names of pyvista's own add_volume. Values between others are interpolated linearly by default, for which pyvista's own volumes need
     `prop.interpolation_type = "linear"`; values of cells are drawn as such. Several volumes of a renderer mix along its rays.
 
     volume    array (nx, ny, nz), as pyvista's own add_volume accepts it, or a lazy one; an xarray.DataArray; ImageData, RectilinearGrid,
-              UnstructuredGrid, StructuredGrid, or a MultiBlock of these; or a Volume or Tetrahedra. Or steps: an xarray.DataArray with a time
-              besides three dimensions of space, or a list of data. The first shows; its range and scalars are those of all
-    scalars   name of the array of a grid, or an array with one for each point or cell, or (n, 4) bytes: red, green, blue and opacity; default: the
+              UnstructuredGrid, StructuredGrid, or a MultiBlock of these; an xarray.Dataset, whose variable `scalars` names, with a mesh of UGRID,
+              FVCOM, MPAS or ICON or without; or a Volume or Tetrahedra. Or steps: an xarray.DataArray with a time besides three dimensions of
+              space, a variable of a Dataset with one, or a list of data. The first shows; its range and scalars are those of all
+    scalars   name of the array of a grid or variable of a Dataset, or an array with one for each point or cell, or (n, 4) bytes: red, green, blue and opacity; default: the
               active one. preference: "point" or "cell", where a name or a length fits both
     clim      least and greatest value of opacity and colours; one number c means (-c, c); default: the values' own
     resolution  of an array: its spacing
@@ -537,6 +570,7 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
     reset_camera, render, show_scalar_bar, scalar_bar_args  as pyvista's
     mapper, culling, pickable  are accepted and change nothing: the mapper is Stratus, it has no faces, and picking does not see it
     memory    of lazy arrays, as in `stratus_volume.Volume`
+    globe, exaggerate  of xarray's data, as in `stratus_volume.render`. A sphere beneath data on a globe is opaque geometry of the scene
     device, threads, and all other options of `stratus_volume.render`: tolerance, crop, clip_planes, contours, progress and so on
     """
     clim, cmap = options.pop("rng", clim), options.pop("colormap", cmap)
@@ -552,17 +586,18 @@ def add_volume(plotter, volume, scalars=None, clim=None, resolution=None, opacit
         look = dict(scalars=scalars, clim=clim, opacity=opacity, n_colors=n_colors, flip_scalars=flip_scalars, reset_camera=reset_camera, ambient=ambient,
                     categories=categories, blending=blending, scalar_bar_args=scalar_bar_args, show_scalar_bar=show_scalar_bar, annotations=annotations,
                     preference=preference, opacity_unit_distance=opacity_unit_distance, shade=shade, diffuse=diffuse, specular=specular,
-                    specular_power=specular_power, render=render, user_matrix=user_matrix, log_scale=log_scale, device=device, threads=threads, **options)
+                    specular_power=specular_power, render=render, user_matrix=user_matrix, log_scale=log_scale, device=device, threads=threads, globe=globe,
+                    exaggerate=exaggerate, **options)
         return [add_volume(plotter, block, cmap=_BLOCKS[n % len(_BLOCKS)] if multi_colors else cmap, name=f"{name}-{n}", **look)
                 for n, block in enumerate(volume) if block is not None]
     if show_scalar_bar is None:
         show_scalar_bar = plotter.theme.show_scalar_bar or bool(scalar_bar_args)
     _matrix(user_matrix)  # refuses an invalid matrix before anything changes
-    place = dict(device=device, threads=threads)
-    steps = Steps.of(volume)
+    place = dict(device=device, threads=threads, globe=globe, exaggerate=exaggerate)
+    steps = Steps.of(volume, scalars if isinstance(scalars, str) else None)
 
     def make(data):
-        return _drawn(data, scalars, resolution, preference, memory, options.get("progress"), place)
+        return _drawn(data, scalars, resolution, preference, memory, options.get("progress"), dict(place))
     drawn, title, values, volume = make(volume if steps is None else steps[0])
     of = drawn.grid if isinstance(drawn, Volume) else drawn
     low, high = (0.0, 1.0) if of.spread is None else (min(each.low for each in of.spreads), max(each.high for each in of.spreads))
@@ -627,9 +662,10 @@ def _stretch(matrix):
 
 
 def _unit(volume, drawn):
-    """pyvista's default of the length that opacities refer to, which no matrix enters."""
+    """pyvista's default of the length that opacities refer to, which no matrix enters. Data on the Earth, in metres, have the length of a cell in the
+    mean of the depth, which is not their box's on a globe."""
     if isinstance(drawn, Tetrahedra):
-        return 1.0
+        return drawn.mean_cell() or 1.0
     if isinstance(volume, pyvista.DataSet):
         length, counts = volume.length, volume.dimensions
     else:

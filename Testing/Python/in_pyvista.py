@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """stratus_volume in scenes of pyvista, compared with the volumes that VTK's own mapper draws there. `wheel` runs it where pyvista is installed."""
 import gc
+import os
+import sys
 import time
 import warnings
 import weakref
 
 from checking import Chunks, check, done, refuse
+from datasets import Dataset
 
 import numpy
 import pyvista
@@ -13,6 +16,9 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 
 import stratus_volume
 from stratus_volume.pyvista import add_volume
+
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "Python"))
+from geodesic import icosphere, mpas
 
 grid = pyvista.Wavelet(extent=(-12, 12, -12, 12, -12, 12))
 field = numpy.asarray(grid["RTData"]).reshape(25, 25, 25)
@@ -295,6 +301,38 @@ def lazily():
     check(numpy.array_equal(*pictures), "a lazy array")
 
 
+def earth():
+    """A mesh of a Dataset on the globe, whose Earth is geometry of the scene and hides what is behind it, and a part of the mesh on a plane."""
+    points, triangles = icosphere(3)
+    place = numpy.array([0.6, 0.48, 0.64])
+    near = points @ place > 0.9
+    spot = numpy.where(points @ place > 0.98, 1.0, 0.0)[:, None]
+    for globe in True, False:
+        _, mesh = mpas(points, triangles, None if globe else near)
+        own = slice(None) if globe else near
+        data = Dataset(**mesh, zgrid=("nCells levels", numpy.tile([[0.0, 5000]], (len(spot[own]), 1)), {"units": "m"}), q=("nCells layers", spot[own], {}))
+        plotter = pyvista.Plotter(off_screen=True, window_size=(120, 120))
+        plotter.background_color = "black"
+        before = set(plotter.actors)
+        volume = plotter.stratus.add_volume(data, "q", opacity=[0, 0, 1], cmap="Reds", show_scalar_bar=False, globe=globe)
+        middle = numpy.array(volume.bounds[::2]) / 2 + numpy.array(volume.bounds[1::2]) / 2
+        for side in 1, -1:
+            if globe:
+                plotter.camera_position = [tuple(3e7 * side * place), (0, 0, 0), (0, 0, 1)]
+            else:
+                plotter.camera_position = [(middle[0], middle[1], side * 1e7), tuple(middle), (0, 1, 0)]
+            plotter.renderer.reset_camera_clipping_range()
+            plotter.render()
+            picture = plotter.screenshot(return_img=True)[..., :3].astype(int)
+            red = (picture[..., 0] > 60) & (picture[..., 0] > 2 * picture[..., 1])
+            check(red[40:80, 40:80].any() == (side > 0 or not globe), f"globe {globe}, side {side}: {red.sum()} pixels")
+        volume.remove()
+        check(set(plotter.actors) == before, f"globe {globe}: nothing stays: {set(plotter.actors) - before}")
+        refuse(ValueError, "no variable 'p'", plotter.stratus.add_volume, data, "p", globe=globe)
+        plotter.close()
+    refuse(ValueError, "only xarray's data have places on the Earth", add_volume, pyvista.Plotter(off_screen=True), grid, globe=True)
+
+
 def refines():
     """In a window that takes events a still picture that has to read is coarse first, and exact as soon as the window has time."""
     plotter = pyvista.Plotter(off_screen=False, window_size=(120, 90))
@@ -332,5 +370,6 @@ data()
 drafts()
 steps()
 lazily()
+earth()
 refines()
 done()
