@@ -38,7 +38,7 @@ static void draw_tile(const void* data, int tile, uint64_t counts[STRATUS_TILE_C
 
 static stratus_status draw_on_host(stratus_context* context, const stratus_several_frame* frame, stratus_ray_counts* counts)
 {
-  static stratus_ray_cast_tile* const tiles[] = STRATUS_ISA_EACH(stratus_several_tile);
+  static stratus_ray_cast_tile* const tiles[] = STRATUS_ISA_EVERY(stratus_several_tile);
   const int width = frame->picture.arguments->picture.width, height = frame->picture.arguments->picture.height;
   const int columns = (width + STRATUS_RAY_TILE - 1) / STRATUS_RAY_TILE, rows = (height + STRATUS_RAY_TILE - 1) / STRATUS_RAY_TILE;
   stratus_several_frame mine = *frame;

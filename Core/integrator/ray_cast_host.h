@@ -50,7 +50,7 @@ typedef struct stratus_ray_cast_frame {
 /* Marches the rays of pixels [x0, x1) x [y0, y1); x0 and y0 are multiples of 8. */
 typedef void stratus_ray_cast_tile(const stratus_ray_cast_frame* frame, int x0, int y0, int x1, int y1, stratus_ray_counts* counts);
 
-/* Returns the traversal for stratus_type `type` (-1: generic), compiled for this machine's best instruction set or for `isa` (0..2),
+/* Returns the traversal for stratus_type `type` (-1: generic), compiled for this machine's highest instruction set or for `isa` (0..3),
  * whichever is lower. */
 stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_variant variant);
 
@@ -58,16 +58,23 @@ stratus_ray_cast_tile* stratus_ray_cast_tile_for(int isa, int type, stratus_ray_
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa0(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa1(int type, stratus_ray_variant variant);
 stratus_ray_cast_tile* stratus_ray_cast_tile_isa2(int type, stratus_ray_variant variant);
-stratus_ray_cast_tile stratus_ray_extremes_tile_isa0, stratus_ray_extremes_tile_isa1, stratus_ray_extremes_tile_isa2;
-stratus_ray_cast_tile stratus_ray_sums_tile_isa0, stratus_ray_sums_tile_isa1, stratus_ray_sums_tile_isa2;
-stratus_ray_cast_tile stratus_ray_isosurface_tile_isa0, stratus_ray_isosurface_tile_isa1, stratus_ray_isosurface_tile_isa2;
-stratus_ray_cast_tile stratus_ray_cells_tile_isa0, stratus_ray_cells_tile_isa1, stratus_ray_cells_tile_isa2;
-stratus_ray_cast_tile stratus_ray_local_tile_isa0, stratus_ray_local_tile_isa1, stratus_ray_local_tile_isa2;
-stratus_ray_cast_tile stratus_ray_lit_tile_isa0, stratus_ray_lit_tile_isa1, stratus_ray_lit_tile_isa2;
-stratus_ray_cast_tile stratus_ray_transfer_2d_tile_isa0, stratus_ray_transfer_2d_tile_isa1, stratus_ray_transfer_2d_tile_isa2;
-stratus_ray_cast_tile stratus_ray_slice_tile_isa0, stratus_ray_slice_tile_isa1, stratus_ray_slice_tile_isa2;
-stratus_ray_cast_tile stratus_ray_quantities_tile_isa0, stratus_ray_quantities_tile_isa1, stratus_ray_quantities_tile_isa2;
-stratus_ray_cast_tile stratus_ray_shading_tile_isa0, stratus_ray_shading_tile_isa1, stratus_ray_shading_tile_isa2;
-stratus_ray_cast_tile stratus_ray_shading_pre_tile_isa0, stratus_ray_shading_pre_tile_isa1, stratus_ray_shading_pre_tile_isa2;
+stratus_ray_cast_tile* stratus_ray_cast_tile_isa3(int type, stratus_ray_variant variant);
+stratus_ray_cast_tile stratus_ray_extremes_tile_isa0, stratus_ray_extremes_tile_isa1, stratus_ray_extremes_tile_isa2,
+  stratus_ray_extremes_tile_isa3;
+stratus_ray_cast_tile stratus_ray_sums_tile_isa0, stratus_ray_sums_tile_isa1, stratus_ray_sums_tile_isa2, stratus_ray_sums_tile_isa3;
+stratus_ray_cast_tile stratus_ray_isosurface_tile_isa0, stratus_ray_isosurface_tile_isa1, stratus_ray_isosurface_tile_isa2,
+  stratus_ray_isosurface_tile_isa3;
+stratus_ray_cast_tile stratus_ray_cells_tile_isa0, stratus_ray_cells_tile_isa1, stratus_ray_cells_tile_isa2, stratus_ray_cells_tile_isa3;
+stratus_ray_cast_tile stratus_ray_local_tile_isa0, stratus_ray_local_tile_isa1, stratus_ray_local_tile_isa2, stratus_ray_local_tile_isa3;
+stratus_ray_cast_tile stratus_ray_lit_tile_isa0, stratus_ray_lit_tile_isa1, stratus_ray_lit_tile_isa2, stratus_ray_lit_tile_isa3;
+stratus_ray_cast_tile stratus_ray_transfer_2d_tile_isa0, stratus_ray_transfer_2d_tile_isa1, stratus_ray_transfer_2d_tile_isa2,
+  stratus_ray_transfer_2d_tile_isa3;
+stratus_ray_cast_tile stratus_ray_slice_tile_isa0, stratus_ray_slice_tile_isa1, stratus_ray_slice_tile_isa2, stratus_ray_slice_tile_isa3;
+stratus_ray_cast_tile stratus_ray_quantities_tile_isa0, stratus_ray_quantities_tile_isa1, stratus_ray_quantities_tile_isa2,
+  stratus_ray_quantities_tile_isa3;
+stratus_ray_cast_tile stratus_ray_shading_tile_isa0, stratus_ray_shading_tile_isa1, stratus_ray_shading_tile_isa2,
+  stratus_ray_shading_tile_isa3;
+stratus_ray_cast_tile stratus_ray_shading_pre_tile_isa0, stratus_ray_shading_pre_tile_isa1, stratus_ray_shading_pre_tile_isa2,
+  stratus_ray_shading_pre_tile_isa3;
 
 #endif

@@ -34,6 +34,6 @@ typedef struct stratus_several_frame {
 } stratus_several_frame;
 
 /* One definition for each instruction set: a stratus_ray_cast_tile that takes the picture of a stratus_several_frame. */
-stratus_ray_cast_tile stratus_several_tile_isa0, stratus_several_tile_isa1, stratus_several_tile_isa2;
+stratus_ray_cast_tile stratus_several_tile_isa0, stratus_several_tile_isa1, stratus_several_tile_isa2, stratus_several_tile_isa3;
 
 #endif

@@ -107,8 +107,9 @@ INLINE vmask vi_zero(vint a) { return (vmask)(a == vi_set(0)); }
 
 #if !defined(STRATUS_DEVICE) && STRATUS_ISA > 0 && STRATUS_WIDTH > 1
 #define LANES_LOAD 1
-/* Where each lane loads from. Loads one by one are ahead of the gather instructions wherever a lane wants two or more neighbours:
- * processors carry a gather out as many loads, one gather after another, so that misses of the caches do not overlap. */
+/* Where each lane loads from. On some processors loads one by one are ahead of the gather instructions wherever a lane wants two or more
+ * neighbours: these carry a gather out as many loads, one gather after another, so that misses of the caches do not overlap. On others
+ * gathers are ahead (STRATUS_GATHERS, see instruction_set.h). */
 typedef struct lane_places {
   _Alignas(64) uint32_t at[STRATUS_WIDTH];
 } lane_places;
@@ -160,6 +161,23 @@ INLINE void transpose_quads(const vfloat joined[4], vfloat out[4])
 #undef QUAD_JOIN
 #endif
 
+#if !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
+/* out: the ints at base + scale * index, and those behind them; scale is a literal. */
+#define GATHER_TWO(base, index, mask, scale, out)                                                                                          \
+  gather_apart(_mm512_mask_i32gather_epi64(                                                                                                \
+                 _mm512_setzero_si512(), (__mmask8)(mask), _mm512_castsi512_si256((__m512i)(index)), (const void*)(base), scale),          \
+    _mm512_mask_i32gather_epi64(                                                                                                           \
+      _mm512_setzero_si512(), (__mmask8)((mask) >> 8), _mm512_extracti64x4_epi64((__m512i)(index), 1), (const void*)(base), scale),        \
+    out)
+INLINE void gather_apart(__m512i low, __m512i high, vint out[2])
+{
+  const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+  const __m512i odd = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+  out[0] = (vint)_mm512_permutex2var_epi32(low, even, high);
+  out[1] = (vint)_mm512_permutex2var_epi32(low, odd, high);
+}
+#endif
+
 /* The four floats from table[4 entry] on, bit by bit as they are. */
 INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloat out[4])
 {
@@ -174,6 +192,14 @@ INLINE void gather_four(GLOBAL const float* table, vint entry, vmask mask, vfloa
                 high = STRATUS_GATHER_LONG(table + c, twice.hi, (uchar)(mask >> 8), 8);
     out[c] = as_float16((int16)(low.even, high.even));
     out[c + 1] = as_float16((int16)(low.odd, high.odd));
+  }
+#elif defined(STRATUS_GATHERS)
+  const vint twice = entry + entry;
+  for (int c = 0; c < 4; c += 2) {
+    vint two[2];
+    GATHER_TWO(table + c, twice, mask, 8, two);
+    out[c] = v_from_bits(two[0]);
+    out[c + 1] = v_from_bits(two[1]);
   }
 #elif defined(LANES_LOAD)
   lane_places places;
@@ -252,6 +278,11 @@ INLINE vint gather_int32(GLOBAL const int* table, vint index, vmask mask)
 #define GATHER_FLOAT(base, index, mask) as_float16(STRATUS_GATHER(base, index, mask, 4))
 #define LOGICAL_RIGHT(a, n) as_int16(as_uint16(a) >> as_uint16(n))
 #elif !defined(STRATUS_DEVICE) && STRATUS_ISA == 2 && STRATUS_WIDTH == 16
+#ifdef STRATUS_GATHERS
+#define GATHER_DWORD(base, index, mask, scale_log2)                                                                                        \
+  ((vint)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), (mask), (__m512i)(index), (base), 1 << (scale_log2)))
+#define LOGICAL_RIGHT(a, n) ((vint)_mm512_srlv_epi32((__m512i)(a), (__m512i)(n)))
+#endif
 #define GATHER_FLOAT(base, index, mask) _mm512_mask_i32gather_ps(_mm512_setzero_ps(), (mask), (__m512i)(index), (base), 4)
 #endif
 

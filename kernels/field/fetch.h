@@ -215,7 +215,7 @@ INLINE vfloat RAY_NAME(fetch_nearest)(CONSTANT stratus_ray_cast_arguments* a, GL
 
 #define VALUES ((GLOBAL const VALUE*)values)
 
-#if defined(LANES_LOAD) && (STRATUS_TYPE <= 3 || STRATUS_TYPE >= 8)
+#if defined(LANES_LOAD) && (STRATUS_TYPE <= 3 || STRATUS_TYPE >= 8) && (!defined(STRATUS_GATHERS) || STRATUS_TYPE == 9)
 #define SQUARES 1
 /* The floats of at[0], at[1], at[row] and at[row + 1]. */
 INLINE __m128 RAY_NAME(load_square)(CONSTANT stratus_ray_cast_arguments* a, const VALUE* at, size_t row)
@@ -239,7 +239,7 @@ INLINE void RAY_NAME(load_squares)(
 }
 #endif
 
-#if STRATUS_WIDTH == 16 && STRATUS_TYPE <= 3 && defined(STRATUS_DEVICE_AVX512)
+#if STRATUS_WIDTH == 16 && STRATUS_TYPE <= 3 && (defined(STRATUS_DEVICE_AVX512) || defined(STRATUS_GATHERS))
 #define FETCH_DWORD 1 /* values of one or two bytes: one gather of four bytes loads a pair */
 #endif
 
@@ -323,6 +323,13 @@ INLINE void RAY_NAME(fetch_pair)(
               high = STRATUS_GATHER_LONG(VALUES, index.hi, (uchar)(mask >> 8), 4);
   *v0 = as_float16((int16)(low.even, high.even));
   *v1 = as_float16((int16)(low.odd, high.odd));
+  (void)a;
+  (void)end;
+#elif STRATUS_TYPE == 8 && defined(STRATUS_GATHERS)
+  vint two[2];
+  GATHER_TWO(values, index, mask, 4, two);
+  *v0 = v_from_bits(two[0]);
+  *v1 = v_from_bits(two[1]);
   (void)a;
   (void)end;
 #else

@@ -38,12 +38,7 @@ INLINE void gather_pair(GLOBAL const int* base, vint at, vmask mask, vint out[2]
   out[0] = (int16)(low.even, high.even);
   out[1] = (int16)(low.odd, high.odd);
 #elif !defined(STRATUS_DEVICE) && STRATUS_WIDTH == 16
-  const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-  const __m512i odd = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31), zero = _mm512_setzero_si512();
-  const __m512i low = _mm512_mask_i32gather_epi64(zero, (__mmask8)mask, _mm512_castsi512_si256((__m512i)at), base, 4);
-  const __m512i high = _mm512_mask_i32gather_epi64(zero, (__mmask8)(mask >> 8), _mm512_extracti64x4_epi64((__m512i)at, 1), base, 4);
-  out[0] = (vint)_mm512_permutex2var_epi32(low, even, high);
-  out[1] = (vint)_mm512_permutex2var_epi32(low, odd, high);
+  GATHER_TWO(base, at, mask, 4, out);
 #else
   out[0] = v_gather_ints(base, at, mask);
   out[1] = v_gather_ints(base, at + vi_set(1), mask);

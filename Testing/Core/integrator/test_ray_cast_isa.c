@@ -16,7 +16,7 @@ static void every_instruction_set_gives_the_same_bits(void** state)
 {
   (void)state;
   stratus_context* context = case_context("host", 2);
-  const int best_isa = stratus_isa_best();
+  const int best_isa = stratus_isa_highest();
   int lit = 0;
   for (uint32_t seed = 700; seed < 760; ++seed) {
     picture_case c;
@@ -46,7 +46,7 @@ static void every_instruction_set_mixes_several_volumes_alike(void** state)
 {
   (void)state;
   stratus_context* context = case_context("host", 2);
-  const int best_isa = stratus_isa_best();
+  const int best_isa = stratus_isa_highest();
   for (uint32_t seed = 0; seed < 20; ++seed) {
     several_case m;
     several_create(context, &m, 2 + (int)(seed % 4), 500 + seed);
@@ -69,7 +69,7 @@ static void every_instruction_set_mixes_several_volumes_alike(void** state)
 
 int test_ray_cast_isa(void)
 {
-  if (stratus_isa_best() == 0) {
+  if (stratus_isa_highest() == 0) {
     return test_skip("the baseline is the only instruction set here");
   }
   const struct CMUnitTest tests[] = {

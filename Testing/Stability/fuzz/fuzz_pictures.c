@@ -184,7 +184,7 @@ static void compare(fuzz* f, const picture_case* c, const stratus_image* image, 
   /* Neither rule local nor a distance that follows the voxels can be set by hand. */
   const bool structures = fuzz_chance(f, 0.5) && !report->follows_voxels && report->sampling != STRATUS_SAMPLING_LOCAL;
   if (!stratus_context_on_device(context)) {
-    context->isa = (int)fuzz_below(f, (uint64_t)stratus_isa_best() + 1);
+    context->isa = (int)fuzz_below(f, (uint64_t)stratus_isa_highest() + 1);
   }
   if (structures) {
     options.skipping.structure = (stratus_structure)fuzz_below(f, STRATUS_STRUCTURE_HYBRID + 1);
