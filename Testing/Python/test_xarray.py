@@ -66,7 +66,7 @@ def meshes():
     check(numpy.array_equal(data.stratus.show("q", globe=True, **host), wanted), "show of a Dataset with a mesh")
     check(numpy.array_equal(data.stratus.render("q", globe=True, **host).rgba, render(data, scalars="q", globe=True, **host).rgba), "render")
     refuse(ValueError, "no variable 'p', it must be one of ['clat_bnds', 'clon_bnds', 'q', 'z_ifc']", data.stratus.show, "p", globe=True)
-    refuse(ValueError, "it must have three", data.isel(time=0).stratus.show, "q")  # without globe=True it is no volume
+    refuse(ValueError, "goes round the Earth", data.isel(time=0).stratus.show, "q")  # a plane has no place for it
     lattice = xarray.Dataset(dict(t=array_of(dims=("z", "lat", "lon"))), dict(z=along("z", numpy.arange(12.0), units="m"),
         lat=along("lat", numpy.arange(20.0), units="degrees_north"), lon=along("lon", numpy.arange(24.0), units="degrees_east")))
     check(numpy.array_equal(lattice.stratus.show("t", globe=True, **host), show(lattice.t, globe=True, **host)), "a Dataset of a lattice")
