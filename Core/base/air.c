@@ -8,28 +8,21 @@
 #define GRAVITY 9.80665
 #define STANDARD_GAS 287.05287 /* J kg-1 K-1 */
 #define EARTH_RADIUS 6356766.0
-#define SEA_LEVEL 101325.0
 #define LOWEST (-5000.0)
 #define HIGHEST 80000.0
 
-/* Each layer's lower end: height, temperature, and its change with height, K/m. */
+/* Each layer's lower end: height, temperature, its change with height, K/m, and pressure, which follows from the layers below. */
 #define LAYERS 7
 static const struct {
-  double height, temperature, gradient;
-} layers[LAYERS] = { { 0.0, 288.15, -0.0065 }, { 11000.0, 216.65, 0.0 }, { 20000.0, 216.65, 0.001 }, { 32000.0, 228.65, 0.0028 },
-  { 47000.0, 270.65, 0.0 }, { 51000.0, 270.65, -0.0028 }, { 71000.0, 214.65, -0.002 } };
+  double height, temperature, gradient, pressure;
+} layers[LAYERS] = { { 0.0, 288.15, -0.0065, 101325.0 }, { 11000.0, 216.65, 0.0, 22632.040095007793 },
+  { 20000.0, 216.65, 0.001, 5474.877424281046 }, { 32000.0, 228.65, 0.0028, 868.0157766202153 },
+  { 47000.0, 270.65, 0.0, 110.9057733673104 }, { 51000.0, 270.65, -0.0028, 66.93852812117996 },
+  { 71000.0, 214.65, -0.002, 3.956392160396618 } };
 
 static double geopotential_of(double height)
 {
   return EARTH_RADIUS * height / (EARTH_RADIUS + height);
-}
-
-/* Return the pressure at a geopotential height of layer i over that at the layer's lower end. */
-static double pressure_share(int i, double height)
-{
-  const double up = height - layers[i].height, temperature = layers[i].temperature, gradient = layers[i].gradient;
-  return gradient != 0.0 ? pow((temperature + gradient * up) / temperature, -GRAVITY / (gradient * STANDARD_GAS))
-                         : exp(-GRAVITY * up / (STANDARD_GAS * temperature));
 }
 
 stratus_status stratus_air_density(stratus_context* context, double pressure, double temperature, double* density)
@@ -63,35 +56,32 @@ stratus_status stratus_air_standard(stratus_context* context, double height, dou
       context, STRATUS_INVALID_ARGUMENT, "height %g m in the standard atmosphere, must be in %g..%g m", height, LOWEST, HIGHEST);
   }
   const double geopotential = geopotential_of(height);
-  double p = SEA_LEVEL, t = layers[0].temperature;
-  for (int i = 0; i < LAYERS && (i == 0 || geopotential > layers[i].height); ++i) {
-    const double top = i + 1 < LAYERS ? fmin(geopotential, layers[i + 1].height) : geopotential;
-    t = layers[i].temperature + layers[i].gradient * (top - layers[i].height);
-    p *= pressure_share(i, top);
+  int i = 0;
+  while (i + 1 < LAYERS && geopotential > layers[i + 1].height) {
+    ++i;
   }
-  *pressure = p;
-  *temperature = t;
+  const double up = geopotential - layers[i].height, base = layers[i].temperature, gradient = layers[i].gradient;
+  const double share =
+    gradient != 0.0 ? pow((base + gradient * up) / base, -GRAVITY / (gradient * STANDARD_GAS)) : exp(-GRAVITY * up / (STANDARD_GAS * base));
+  *pressure = layers[i].pressure * share;
+  *temperature = base + gradient * up;
   return STRATUS_OK;
 }
 
 void stratus_air_heights(int64_t count, const double* pressures, double* heights, double* temperatures)
 {
-  double base[LAYERS] = { SEA_LEVEL };
   const double highest = geopotential_of(HIGHEST);
-  for (int i = 1; i < LAYERS; ++i) {
-    base[i] = base[i - 1] * pressure_share(i - 1, layers[i].height);
-  }
   for (int64_t n = 0; pressures && n < count; ++n) {
     const double p = pressures[n];
     int i = 0;
-    while (i + 1 < LAYERS && p < base[i + 1]) {
+    while (i + 1 < LAYERS && p < layers[i + 1].pressure) {
       ++i;
     }
     const double gradient = layers[i].gradient, temperature = layers[i].temperature;
     double up = NAN;
     if (p >= 0.0) {
-      up = gradient != 0.0 ? temperature * (pow(p / base[i], -gradient * STANDARD_GAS / GRAVITY) - 1.0) / gradient
-                           : -log(p / base[i]) * STANDARD_GAS * temperature / GRAVITY;
+      up = gradient != 0.0 ? temperature * (pow(p / layers[i].pressure, -gradient * STANDARD_GAS / GRAVITY) - 1.0) / gradient
+                           : -log(p / layers[i].pressure) * STANDARD_GAS * temperature / GRAVITY;
       up = fmin(up, highest - layers[i].height);
     }
     const double geopotential = layers[i].height + up;

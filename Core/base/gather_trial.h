@@ -3,7 +3,7 @@
 #ifndef STRATUS_GATHER_TRIAL_H
 #define STRATUS_GATHER_TRIAL_H
 
-/* Measures both, in a quarter of a millisecond. For machines with AVX-512, in builds that have it. */
+/* Measures both, in a tenth of a millisecond. For machines with AVX-512, in builds that have it. */
 int stratus_gathers_are_faster(void);
 
 /* Reads the table of STRATUS_GATHER_TRIAL floats at places that follow from `seed`, and returns a sum of them; for the same machines. */

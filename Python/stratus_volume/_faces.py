@@ -70,19 +70,21 @@ class Faces:
         self._call(library.stratus_faces_turn, ctypes.byref(self.struct), address(self.places), int(on_sphere))
 
     @classmethod
-    def dimensions(cls, variables):
-        """Names of dimensions that the variables of a mesh have, none if there is no mesh."""
+    def _found_in(cls, variables):
         own = cls.__new__(cls)
         own._variables = variables
-        found = own._find()
+        return own._find()
+
+    @classmethod
+    def dimensions(cls, variables):
+        """Names of dimensions that the variables of a mesh have, none if there is no mesh."""
+        found = cls._found_in(variables)
         return set() if found is None else {dimension for name in found[1] if name in variables for dimension in variables[name].dims}
 
     @classmethod
     def are_in(cls, variables):
         """Whether the variables describe a mesh, whatever else is wrong with it."""
-        own = cls.__new__(cls)
-        own._variables = variables
-        return own._find() is not None
+        return cls._found_in(variables) is not None
 
     def _find(self):
         """The function that makes faces of the variables, and names of variables that have the dimensions of the mesh; or None."""

@@ -89,9 +89,13 @@ class OnGlobe(Tetrahedra):
         """The scene has the Earth's sphere, so that pictures need none."""
         self.innermost = None
 
-    def mean_cell(self):
+    def depth(self):
+        """The length of the shell that the data fill, from the inside to the outside."""
         radii = numpy.sqrt((self.points ** 2).sum(axis=-1))
-        return float(radii.max() - radii.min()) / max(1.0, numpy.cbrt(self.values.size / self.components))
+        return float(radii.max() - radii.min())
+
+    def mean_cell(self):
+        return self.depth() / max(1.0, numpy.cbrt(self.values.size / self.components))
 
     def _finish(self, data, description):
         """Sets what a picture needs besides the mesh. data: the DataArray."""

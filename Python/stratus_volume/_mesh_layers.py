@@ -68,8 +68,7 @@ class GlobeLayers(_OfLayers, OnGlobe):
         self._finish(data[name], f"; {layers.faces.description}; {layers.description}")
 
     def _depth_of_columns(self):
-        radii = numpy.sqrt((self.points ** 2).sum(axis=-1))
-        return radii.max() - radii.min()
+        return self.depth()
 
 
 class PlaneLayers(_OfLayers):
@@ -108,8 +107,7 @@ def check_variable(data, name):
 
 def is_on_mesh(data, name):
     """Whether a variable of a Dataset is on nodes or faces of a mesh that the Dataset has."""
-    variables = variables_of(data)
-    return Faces.are_in(variables) and not Faces.dimensions(variables).isdisjoint(data[name].dims)
+    return not Faces.dimensions(variables_of(data)).isdisjoint(data[name].dims)
 
 
 def on_globe(data, scalars=None, exaggerate=None, device=None, threads=None):

@@ -19,7 +19,7 @@ const char* const help = R"(stratus-bench tree [options]
 
   --scene NAME,...   17K 24K 30K 35K u225 u367 u571 u640 1M 10M, and cloud: the values > 0 of the volume (default: all)
                      archipelago, archipelago-1024 (the values > 0 of that volume) and islets take much memory: only where named
-                     clusters:NUMBER, a generated set of clusters apart from each other, whose random rays begin among them: likewise
+                     clusters:NUMBER, generated clusters apart from each other, among which random rays begin: only where named
   --method M,...     stratus:hybrid|hybrid-paper|hybrid-paper-raw|distance|octant|sah|sweep|lbvh|ploc|ac|ac-edges|dpc|kmeans|wide|
                      auto, all but distance, octant, wide and auto with :N behind it, bricks (the first three) or voxels in a leaf;
                      embree:low|medium|high, embree:packet and embree:bricks with :low or :high behind it or neither (medium),
