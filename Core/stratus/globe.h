@@ -45,6 +45,18 @@ STRATUS_API int64_t stratus_globe_source(
  * - text: receives the text, cut to size - 1 bytes */
 STRATUS_API void stratus_globe_describe(const stratus_globe_lattice* lattice, char* text, size_t size);
 
+/* Add whole turns to longitudes of a lattice, so that neighbours differ by at most half a turn wherever this is possible. Around a pole it
+ * is impossible: where continuous longitudes meet again, neighbours differ by a turn. Neighbours that differ least are joined first, hence
+ * they meet where longitudes change fastest, near the pole. Places fall into parts if NaN, which stays, is between them: the first place of
+ * the widest part keeps its longitude, and other parts are as near to that part as whole turns allow. stratus_faces_flatten() does this
+ * with meshes.
+ * - lengths: places along each axis, 1..2^40
+ * - strides: from a place to the next along each axis, 0..2^40; 0: the axis has one place, whatever its length
+ * - degrees: longitudes; at most 2^40 numbers from the first to the last place
+ * - changed: receives 1 if any longitude changed, otherwise 0 */
+STRATUS_API stratus_status stratus_longitudes_unwrap(
+  stratus_context* context, const int64_t lengths[3], const int64_t strides[3], double* degrees, int* changed);
+
 /* Points of data on the sphere. The arrays are borrowed. */
 typedef struct stratus_globe_points {
   const stratus_globe_lattice* lattice; /* NULL: points are those of the data */

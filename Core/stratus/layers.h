@@ -52,6 +52,44 @@ STRATUS_API stratus_status stratus_faces_join_corners(
  * - on_sphere: 1: the places are on a sphere, seen from outside. 0: on a plane */
 STRATUS_API stratus_status stratus_faces_turn(stratus_context* context, const stratus_faces* faces, const double* places, int on_sphere);
 
+/* Find values at nodes from values of faces: means over the faces around each node that are there and have a value.
+ * - values: one for each face; NaN: none
+ * - at_nodes: receives one for each node; NaN: no face around it has a value */
+STRATUS_API stratus_status stratus_faces_to_nodes(
+  stratus_context* context, const stratus_faces* faces, const double* values, double* at_nodes);
+
+/* Faces on the plane of longitudes and latitudes. A place of the Earth is in one face at most, and no face reaches across the meridian of a
+ * cut. The arrays are the core's, until stratus_flat_faces_destroy(). */
+typedef struct stratus_flat_faces {
+  stratus_faces faces; /* first the mesh's nodes and faces in their order, then nodes of cuts and poles, and further parts of cut faces */
+  double* degrees;     /* longitude and latitude of each node */
+  int32_t* node_of;    /* two nodes of the mesh for each node: the same one twice, or the ends of the edge that it is on */
+  double* weights;     /* of the first of these, 0..1; the second has 1 - weight */
+  int32_t* face_of;    /* the face of the mesh that each face is a part of */
+  int unwrapped;       /* 1: whole turns were added to longitudes, so that they are continuous all over the mesh */
+  int cut;             /* 1: the mesh goes round the Earth or a pole. Longitudes are meridian to meridian + 360 */
+  double meridian;     /* of the cut, degrees: 0 if the mesh has longitudes above 180, otherwise -180. 0 without a cut */
+} stratus_flat_faces;
+
+/* Put faces of longitudes and latitudes on a plane.
+ * - If no edge jumps by more than 180 degrees of longitude, longitudes stay.
+ * - If whole turns make longitudes continuous, they are added. A part of the mesh that no edge joins to the widest part is as near to that
+ *   as whole turns allow.
+ * - Otherwise the mesh goes round the Earth, and faces are cut at a meridian. Values at a cut are between the edge's ends, by distance. If
+ *   the meridian crosses a concave face more than twice, its pieces on one side are one face, with edges along the meridian.
+ * - A corner within 10^-4 degrees of a pole becomes an edge at the longitudes of its neighbours, because a pole is a line on the plane.
+ * - A face around a pole becomes quadrangles between each of its edges and the pole, which must see all of these edges. Values at the pole
+ *   equal the values of the face's nearest node.
+ * - A part of more than STRATUS_FACE_NODES_MAX nodes becomes several faces.
+ *
+ * - faces: in any orientation. Edges are shorter than 180 degrees of longitude, unless they end at a pole
+ * - degrees: longitude, -10^6..10^6, and latitude, -90..90, of each node
+ * - flat: receives the faces, which keep their orientation; stratus_faces_turn() makes it counterclockwise */
+STRATUS_API stratus_status stratus_faces_flatten(
+  stratus_context* context, const stratus_faces* faces, const double* degrees, stratus_flat_faces* flat);
+/* Release the arrays of faces that stratus_faces_flatten() made, and clear the struct. NULL, and a cleared one, are allowed. */
+STRATUS_API void stratus_flat_faces_destroy(stratus_context* context, stratus_flat_faces* flat);
+
 /* Find the borders of layers from their middles: midway between these. The outermost ones are as far from the outermost middle as the next
  * border, but not beyond height 0 if all middles are on one side of it. A single layer is one metre thick.
  * - middles: layer_count heights, ascending

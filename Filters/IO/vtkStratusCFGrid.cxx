@@ -541,7 +541,7 @@ std::vector<double> vtkStratusCFGrid::ReadHorizontal(int axis, size_t step, std:
     strides = { { 1, this->GetLength(0), 0 } };
     std::vector<double> at = this->Places[static_cast<size_t>(axis)];
     if (axis == 0) {
-      vtkStratusLongitudes::Unwrap(at, vtkStratusLongitudes::LatticeEdges({ { this->GetLength(0), this->GetLength(1), 1 } }, strides));
+      vtkStratusLongitudes::Unwrap(at, { { this->GetLength(0), this->GetLength(1), 1 } }, strides);
     }
     return at;
   }
@@ -557,8 +557,7 @@ std::vector<double> vtkStratusCFGrid::ReadHorizontal(int axis, size_t step, std:
     }
   }
   if (axis == 0 && unit.IsAngle()) {
-    vtkStratusLongitudes::Unwrap(
-      at, vtkStratusLongitudes::LatticeEdges({ { this->GetLength(0), this->GetLength(1), this->GetLength(2) } }, strides));
+    vtkStratusLongitudes::Unwrap(at, { { this->GetLength(0), this->GetLength(1), this->GetLength(2) } }, strides);
   }
   return at;
 }

@@ -193,13 +193,64 @@ void vtkStratusUgridMesh::FindFaces(const std::vector<double>& numbers, stratus_
 void vtkStratusUgridMesh::Finish()
 {
   if (this->Degrees && !this->Sphere) {
-    this->JoinLongitudes();
+    this->Flatten();
   }
   for (size_t node = 0; node < this->X.size(); ++node) {
     this->X[node] *= this->Factors[0];
     this->Y[node] *= this->Factors[1];
   }
   this->TurnFaces();
+}
+
+// Makes longitudes continuous, or cuts faces at a meridian.
+void vtkStratusUgridMesh::Flatten()
+{
+  std::vector<double> degrees;
+  degrees.reserve(2 * this->GetNodes());
+  for (size_t node = 0; node < this->GetNodes(); ++node) {
+    degrees.insert(degrees.end(), { this->X[node], this->Y[node] });
+  }
+  const vtkStratusReaderCore core;
+  const stratus_faces view = this->ViewFaces(this->Absent);
+  stratus_flat_faces flat = {};
+  core.Check(stratus_faces_flatten(core, &view, degrees.data(), &flat),
+    this->File.GetPath() + ": '" + this->XName + "' and '" + this->YName + "': ");
+  const size_t nodes = static_cast<size_t>(flat.faces.node_count), faces = static_cast<size_t>(flat.faces.face_count);
+  this->X.resize(nodes);
+  this->Y.resize(nodes);
+  this->NodeOf.resize(nodes);
+  for (size_t node = 0; node < nodes; ++node) {
+    this->X[node] = flat.degrees[2 * node];
+    this->Y[node] = flat.degrees[2 * node + 1];
+    this->NodeOf[node] = { static_cast<size_t>(flat.node_of[2 * node]), static_cast<size_t>(flat.node_of[2 * node + 1]),
+      flat.weights[node] };
+  }
+  this->FaceOf.resize(faces);
+  for (size_t face = 0; face < faces; ++face) {
+    this->FaceOf[face] = { static_cast<size_t>(flat.face_of[face]), static_cast<size_t>(flat.face_of[face]), 1.0 };
+  }
+  this->FileOffsets.assign(flat.faces.offsets, flat.faces.offsets + faces + 1);
+  this->FileCorners.assign(flat.faces.nodes, flat.faces.nodes + this->FileOffsets.back());
+  this->FileOffsets.swap(this->Offsets);
+  this->FileCorners.swap(this->Corners);
+  this->Absent.assign(flat.faces.absent, flat.faces.absent + faces);
+  this->Description += flat.unwrapped ? ", longitudes made continuous where they jump" : "";
+  this->Description += flat.cut ? ", faces cut at longitude " + vtkStratusNumberText(flat.meridian) : "";
+  stratus_flat_faces_destroy(core, &flat);
+}
+
+// Turns faces so that their corners are counterclockwise, seen from above.
+void vtkStratusUgridMesh::TurnFaces()
+{
+  const bool sphere = this->Sphere && this->Degrees;
+  std::vector<double> places;
+  places.reserve(2 * this->GetNodes());
+  for (size_t node = 0; node < this->GetNodes(); ++node) { // longitudes and latitudes, or x and y
+    places.insert(places.end(), { this->X[node] / (sphere ? this->Factors[0] : 1.0), this->Y[node] / (sphere ? this->Factors[1] : 1.0) });
+  }
+  const vtkStratusReaderCore core;
+  const stratus_faces view = this->ViewFaces(this->Absent);
+  core.Check(stratus_faces_turn(core, &view, places.data(), sphere ? 1 : 0));
 }
 
 bool vtkStratusUgridMesh::IsPart(const Variable& variable) const
@@ -330,24 +381,22 @@ std::vector<double> vtkStratusUgridMesh::ToNodes(const vtkStratusUgridValues& va
     }
     return result;
   }
-  std::vector<int> around(this->GetNodes(), 0);
-  for (size_t face = 0; face < this->GetFaces(); ++face) {
-    const double value = this->IsAbsent(face) ? NAN : values.At(face, layer);
-    int count = 0;
-    const int* corners = this->GetFace(face, count);
-    for (int c = 0; c < count && std::isfinite(value); ++c) {
-      const vtkStratusUgridPlace& of = this->NodeOf[static_cast<size_t>(corners[c])];
-      for (const size_t node : { of.First, of.Second }) {
-        result[node] += value;
-        ++around[node];
-      }
-    }
+  // means over the file's faces, before nodes that are between others
+  stratus_faces view = this->ViewFaces(this->Absent);
+  if (!this->FileOffsets.empty()) {
+    view.face_count = static_cast<int64_t>(this->FileOffsets.size() - 1);
+    view.offsets = const_cast<int64_t*>(this->FileOffsets.data());
+    view.nodes = const_cast<int32_t*>(this->FileCorners.data());
   }
+  std::vector<double> of_faces(static_cast<size_t>(view.face_count));
+  for (size_t face = 0; face < of_faces.size(); ++face) {
+    of_faces[face] = values.AtFile(face, layer);
+  }
+  const vtkStratusReaderCore core;
+  core.Check(stratus_faces_to_nodes(core, &view, of_faces.data(), result.data()));
   for (size_t node = 0; node < result.size(); ++node) {
     const vtkStratusUgridPlace& of = this->NodeOf[node];
-    result[node] = of.First != node ? of.Weight * result[of.First] + (1.0 - of.Weight) * result[of.Second]
-      : around[node] > 0            ? result[node] / around[node]
-                                    : NAN;
+    result[node] = of.First == of.Second ? result[of.First] : of.Weight * result[of.First] + (1.0 - of.Weight) * result[of.Second];
   }
   return result;
 }

@@ -10,10 +10,8 @@
 #include "stratus/layers.h"
 
 #include <array>
-#include <map>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <vector>
 
 // The file's nodes or faces of one of the mesh's: one twice, or two between which it is.
@@ -55,9 +53,7 @@ public:
 
   size_t GetNodes() const { return this->X.size(); }
   size_t GetFaces() const { return this->Offsets.size() - 1; }
-  // Nodes are the file's. Behind these are, on the plane around the Earth, nodes where faces are cut at the meridian at which longitudes
-  // jump, and copies of a pole at the longitudes of its neighbours. Faces are the file's, and behind these further parts of those that are
-  // cut.
+  // Nodes and faces are the file's. Behind these are, on the plane around the Earth, those that stratus_faces_flatten() adds.
   const std::vector<double>& GetX() const { return this->X; }
   const std::vector<double>& GetY() const { return this->Y; }
   // The nodes of a face, counterclockwise from above.
@@ -104,12 +100,6 @@ public:
   const vtkStratusNetCDFModel& GetFile() const { return this->File; }
 
 private:
-  struct Corner {
-    int Node;
-    double Longitude;
-  };
-  using Polygon = std::vector<Corner>;
-
   bool IsTime(int dimension) const;
   bool IsPlace(int dimension) const { return dimension == this->NodeDimension || dimension == this->FaceDimension; }
   std::vector<int> FindOthers(const Variable& variable) const;
@@ -125,13 +115,7 @@ private:
   void ReadCells();
   void FindFaces(const std::vector<double>& numbers, stratus_face_table table, size_t faces, const std::string& name);
   void Finish();
-  // On the plane, in vtkStratusUgridLongitudes.cxx:
-  void JoinLongitudes();
-  int CopyOf(const Corner& corner);
-  int NodeBetween(Corner a, Corner b, double meridian, double longitude);
-  bool IsPole(int node) const;
-  std::vector<Polygon> Unfold(const std::vector<int>& face);
-  void Cut(const Polygon& polygon, bool around, double west, std::vector<std::vector<int>>& parts);
+  void Flatten();
   void TurnFaces();
 
   const vtkStratusNetCDFModel& File;
@@ -142,13 +126,12 @@ private:
   const Variable* Topology = nullptr;
   std::vector<double> X, Y; // in the file's units or degrees until faces are read, then in metres if they can be
   std::vector<vtkStratusUgridPlace> NodeOf, FaceOf;
-  std::map<std::tuple<int, int, double>, int> Copies; // of nodes and of edges' points, by longitude
-  std::vector<uint8_t> Absent;                        // of each face
+  std::vector<uint8_t> Absent; // of each face
   std::array<double, 2> Factors = { { 1.0, 1.0 } };
   bool Degrees = false, Mpas = false;
   const bool Sphere;
-  std::vector<int64_t> Offsets = { 0 };
-  std::vector<int32_t> Corners;
+  std::vector<int64_t> Offsets = { 0 }, FileOffsets;
+  std::vector<int32_t> Corners, FileCorners; // the file's faces if those on the plane are others, otherwise empty
   std::string Description;
   bool Metres = false;
 };

@@ -17,7 +17,7 @@
 
 #include <cmocka.h>
 
-#define CALLS_MOST 512
+#define CALLS_MOST 1024
 
 static char called[CALLS_MOST][64];
 static int calls;
@@ -468,6 +468,14 @@ static void globes(const small_scene* scene)
   TAKES(stratus_globe_describe(NULL, text, sizeof text));
   TAKES(stratus_globe_describe(&lattice, NULL, 8));
   TAKES(stratus_globe_height_factor(0, 1)); /* which has no pointer */
+  const int64_t lengths[3] = { 2, 1, 1 }, strides[3] = { 1, 2, 2 };
+  double longitudes[2] = { 0, 1 };
+  int changed;
+  IS_SILENT(stratus_longitudes_unwrap(NULL, lengths, strides, longitudes, &changed));
+  REFUSES(stratus_longitudes_unwrap(context, NULL, strides, longitudes, &changed));
+  REFUSES(stratus_longitudes_unwrap(context, lengths, NULL, longitudes, &changed));
+  REFUSES(stratus_longitudes_unwrap(context, lengths, strides, NULL, &changed));
+  REFUSES(stratus_longitudes_unwrap(context, lengths, strides, longitudes, NULL));
   IS_SILENT(stratus_globe_place(NULL, &from, points));
   REFUSES(stratus_globe_place(context, NULL, points));
   REFUSES(stratus_globe_place(context, &from, NULL));
@@ -682,6 +690,18 @@ static void layers(void)
   IS_SILENT(stratus_faces_turn(NULL, &faces, degrees, 1));
   REFUSES(stratus_faces_turn(context, NULL, degrees, 1));
   REFUSES(stratus_faces_turn(context, &faces, NULL, 1));
+  IS_SILENT(stratus_faces_to_nodes(NULL, &faces, heights, z));
+  REFUSES(stratus_faces_to_nodes(context, NULL, heights, z));
+  REFUSES(stratus_faces_to_nodes(context, &faces, NULL, z));
+  REFUSES(stratus_faces_to_nodes(context, &faces, heights, NULL));
+  stratus_flat_faces flat = { .cut = 0 };
+  IS_SILENT(stratus_faces_flatten(NULL, &faces, degrees, &flat));
+  REFUSES(stratus_faces_flatten(context, NULL, degrees, &flat));
+  REFUSES(stratus_faces_flatten(context, &faces, NULL, &flat));
+  REFUSES(stratus_faces_flatten(context, &faces, degrees, NULL));
+  TAKES(stratus_flat_faces_destroy(NULL, &flat));
+  TAKES(stratus_flat_faces_destroy(context, NULL));
+  TAKES(stratus_flat_faces_destroy(context, &flat));
   IS_SILENT(stratus_layers_between(NULL, 1, heights, z));
   REFUSES(stratus_layers_between(context, 1, NULL, z));
   REFUSES(stratus_layers_between(context, 1, heights, NULL));
