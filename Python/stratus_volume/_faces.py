@@ -44,8 +44,20 @@ def variables_of(data):
     return {name: data[name] for name in data.variables}
 
 
+def _copy(where, kind, count):
+    """An array of numbers of the core, which may release its own."""
+    return numpy.array((kind * int(count)).from_address(where))
+
+
+class _Own:
+    """Faces as the Dataset has them, and the arrays that the struct points to."""
+
+    def __init__(self, faces):
+        self.struct, self._arrays = faces.struct, (faces.offsets, faces.nodes, faces.absent)
+
+
 class Faces:
-    """Nodes and faces of a Dataset.
+    """Nodes and faces of a Dataset. On a plane around the Earth there are nodes and parts of faces behind these, where the core cuts faces at a meridian.
 
     places       float64 (nodes, 2): longitude and latitude in degrees on a sphere, x and y in metres on a plane
     axes         on a plane: two Axis, the data's own numbers along x and y
@@ -65,6 +77,7 @@ class Faces:
         if len(unknown):
             what = "longitude or latitude" if self._in_degrees else "x or y"
             raise ValueError(f"the {self.description} have no {what} at number {unknown[0]}")
+        self._own, self._node_of = _Own(self), None
         if not on_sphere and self._in_degrees:
             self._flatten()
         self._call(library.stratus_faces_turn, ctypes.byref(self.struct), address(self.places), int(on_sphere))
@@ -165,19 +178,25 @@ class Faces:
         self.places, self.node = numpy.stack(places, axis=1), at[0].dims[0]
 
     def _flatten(self):
-        """Makes places of degrees metres at the middle latitude. The plane is cut where the longitudes have their widest gap."""
-        sorted_, north = numpy.unique(self.places[:, 0] % 360.0), self.places[:, 1]
-        gaps = numpy.diff(sorted_, append=sorted_[0] + 360.0)
-        west = sorted_[(numpy.argmax(gaps) + 1) % len(sorted_)]
-        east = west + (self.places[:, 0] - west) % 360.0
-        east -= 360.0 * (east.min() + east.max() > 360.0)
-        at = east[self.nodes[:self.offsets[-1]]]
-        wide = numpy.maximum.reduceat(at, self.offsets[:-1]) - numpy.minimum.reduceat(at, self.offsets[:-1])
-        if (wide[self.absent == 0] >= 180.0).any():
-            raise ValueError("the mesh goes round the Earth or over a pole, which a plane has no place for: draw it with globe=True")
+        """Makes places of degrees metres at the middle latitude. The core makes longitudes continuous, or cuts faces at a meridian."""
+        flat, north = c.stratus_flat_faces(), self.places[:, 1]
+        self._call(library.stratus_faces_flatten, ctypes.byref(self.struct), address(self.places), ctypes.byref(flat))
+        try:
+            nodes, faces = flat.faces.node_count, flat.faces.face_count
+            self.offsets = _copy(flat.faces.offsets, ctypes.c_int64, faces + 1)
+            self.nodes, self.absent = _copy(flat.faces.nodes, ctypes.c_int32, self.offsets[-1]), _copy(flat.faces.absent, ctypes.c_uint8, faces)
+            degrees = _copy(flat.degrees, ctypes.c_double, 2 * nodes).reshape(-1, 2)
+            self._node_of, self._weights = _copy(flat.node_of, ctypes.c_int32, 2 * nodes).reshape(-1, 2), _copy(flat.weights, ctypes.c_double, nodes)
+            self._face_of = _copy(flat.face_of, ctypes.c_int32, faces)
+            self.description += f", faces cut at longitude {flat.meridian:g}" if flat.cut else ""
+        finally:
+            with self.context.lock:
+                library.stratus_flat_faces_destroy(self.context.pointer, ctypes.byref(flat))
+        self.struct = c.stratus_faces(node_count=nodes, face_count=faces, offsets=address(self.offsets), nodes=address(self.nodes),
+                                      absent=address(self.absent))
         degree = numpy.radians(_earth._RADIUS)
         metres = degree * numpy.cos(numpy.radians(0.5 * (north.min() + north.max()))), degree
-        self.places = numpy.ascontiguousarray(numpy.stack([east, north], axis=1) * metres)
+        self.places = numpy.ascontiguousarray(degrees * metres)
         self.axes = [Axis(kind, "degrees", 1 / scale, kind) for kind, scale in zip(("longitude", "latitude"), metres)]
 
     def _of_fvcom(self):
@@ -221,14 +240,23 @@ class Faces:
         self._make(numbers.reshape(at[0].shape), 0, count.value, len(at[0]), "bounds", fewest=3)
         self.description = "corners of cells"
 
-    def to_nodes(self, of_faces):
-        """Values (n, faces) at nodes: means over the faces around each that have one."""
-        faces = numpy.repeat(numpy.arange(len(self.absent)), numpy.diff(self.offsets))
-        nodes, count = self.nodes[:self.offsets[-1]], len(self.places)
-        result = numpy.full((len(of_faces), count), numpy.nan)
-        for level, values in zip(result, of_faces):
-            known = numpy.isfinite(values) & (self.absent == 0)
-            around = numpy.bincount(nodes, known[faces], count)
-            total = numpy.bincount(nodes, numpy.where(known, values, 0.0)[faces], count)
-            level[around > 0] = total[around > 0] / around[around > 0]
+    def spread(self, values, on_nodes):
+        """Values (..., nodes or faces of the Dataset) at all nodes or faces: those of a cut edge are between the values at its ends."""
+        if self._node_of is None:
+            return values
+        if not on_nodes:
+            return values[..., self._face_of]
+        between = self._node_of[:, 0] != self._node_of[:, 1]
+        result = values[..., self._node_of[:, 0]]
+        ends, weights = self._node_of[between], self._weights[between]
+        result[..., between] = weights * values[..., ends[:, 0]] + (1 - weights) * values[..., ends[:, 1]]
         return result
+
+    def at_nodes(self, values, on_nodes):
+        """Values (levels, nodes or faces of the Dataset) at all nodes, those of faces as means over the faces around each that have one; NaN: none."""
+        values = numpy.ascontiguousarray(numpy.ma.filled(numpy.ma.asarray(values, numpy.float64), numpy.nan))
+        if not on_nodes:
+            of_faces, values = values, numpy.empty((len(values), self._own.struct.node_count))
+            for level, own in zip(values, of_faces):
+                self._call(library.stratus_faces_to_nodes, ctypes.byref(self._own.struct), address(own), address(level))
+        return self.spread(values, True)

@@ -43,6 +43,7 @@ class Layers:
             raise ValueError(f"the layers of {name!r} have no heights: no variable is one at nodes or faces, there is no sigma coordinate with a bottom "
                              f"and a free surface, and its dimension of layers, {self._layer!r}, has no coordinate in a unit of length or pressure")
         self._hide_dry()
+        own.values = self.faces.spread(own.values, self.on_nodes)
         self.values = self._at(own)
 
     def _ordered(self, name):
@@ -92,9 +93,7 @@ class Layers:
                 found, on_nodes = self._ordered(name)
                 if found.dims_of_layers is None:
                     continue
-                levels = numpy.ma.filled(numpy.ma.asarray(found.values, numpy.float64), numpy.nan)
-                levels *= _earth._LENGTHS.get(text(one, "units"), 1.0)
-                levels = self._take(levels if on_nodes else self.faces.to_nodes(levels), borders)
+                levels = self._take(self.faces.at_nodes(found.values, on_nodes) * _earth._LENGTHS.get(text(one, "units"), 1.0), borders)
                 self._core(library.stratus_layers_from_heights, len(self.faces.places), self.count, int(borders), address(levels))
                 self.description = f"{self.count} layers by heights {name!r}"
                 return True
@@ -105,10 +104,10 @@ class Layers:
         if own[0] is None or own[1] is None or self.faces.node not in own[0].dims:
             return False
         found, _ = self._ordered("layerThickness")
-        thicknesses = numpy.ma.filled(numpy.ma.asarray(found.values, numpy.float64), numpy.nan)
+        thicknesses = self.faces.at_nodes(found.values, True)
         self.count, self.top_first = len(thicknesses), True
-        thicknesses, bottom = numpy.ascontiguousarray(thicknesses[::-1]), -_length(own[1])
-        present = None if own[2] is None else numbers_of(own[2])
+        thicknesses, bottom = numpy.ascontiguousarray(thicknesses[::-1]), -self.faces.spread(_length(own[1]), True)
+        present = None if own[2] is None else self.faces.spread(numbers_of(own[2]), True)
         self._core(library.stratus_layers_from_thicknesses, len(bottom), self.count, address(thicknesses), address(bottom), address(present))
         self.description = f"{self.count} layers by thicknesses 'layerThickness'"
         return True
@@ -144,6 +143,7 @@ class Layers:
         found.sort()
         name = found[-1][1] if len(found) > 1 and found[-1][0] == found[0][0] + 1 else found[0][1]
         levels = numbers_of(self._variables[name])
+        levels = self.faces.spread(levels, True) if levels.ndim == 2 else levels
         borders = name != found[0][1] or len(levels) > 1 and abs(numpy.ravel(levels[0] - levels[-1])[0]) > 1 - 1e-6
         levels = self._take(levels, borders)
         if not borders:
@@ -193,8 +193,7 @@ class Layers:
 
     def _at_nodes(self, name):
         found, on_nodes = self._ordered(name)
-        lengths = numpy.ma.filled(numpy.ma.asarray(found.values, numpy.float64), numpy.nan) * _earth._LENGTHS.get(text(self._variables[name], "units"), 1.0)
-        return numpy.ascontiguousarray((lengths if on_nodes else self.faces.to_nodes(lengths))[0])
+        return self.faces.at_nodes(found.values, on_nodes)[0] * _earth._LENGTHS.get(text(self._variables[name], "units"), 1.0)
 
     def _surface(self):
         return self._flat(("eta",), _SURFACES, _SURFACE_NAMES, _SURFACE_ENDS)
@@ -222,9 +221,9 @@ class Layers:
             if own != [self.faces.face]:
                 continue
             if name in ("wet_cells", "wetdry_elem") or str(name).endswith("_wet_cells"):
-                self.faces.absent |= (numbers_of(one).reshape(-1) == 1) != (name != "wetdry_elem")
+                self.faces.absent |= self.faces.spread((numbers_of(one).reshape(-1) == 1) != (name != "wetdry_elem"), False)
             elif name == surface:
-                self.faces.absent |= ~numpy.isfinite(numbers_of(one).reshape(-1))
+                self.faces.absent |= self.faces.spread(~numpy.isfinite(numbers_of(one).reshape(-1)), False)
 
     def _borders(self, name, one, middles):
         for other, own in self._variables.items():

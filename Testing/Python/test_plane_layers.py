@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Datasets with meshes in layers on a plane: places in metres from degrees, across the date line, from projected lengths and of MPAS off the sphere;
-heights, values, axes and pictures; meshes that go round the Earth are refused."""
+heights, values, axes and pictures; meshes that go round the Earth, cut at a meridian."""
 import os
 import sys
 import warnings
@@ -14,7 +14,7 @@ from stratus_volume import show
 from stratus_volume._draw import drawn_of
 
 sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "Python"))
-from geodesic import icosphere, mpas
+from geodesic import degrees_of, icosphere, mpas, rotation
 
 DEGREE = 6371000.0 * numpy.pi / 180
 borders = numpy.array([-3000.0, -1000.0, 0.0])
@@ -81,6 +81,29 @@ hill = drawn(Dataset(**dict(near, cellsOnVertex=(near["cellsOnVertex"][0], table
 check(0 < volume_of(hill) < numpy.pi * 1e6 * 100, "MPAS by xCell and yCell")
 refuse(ValueError, "not on a sphere", drawn, Dataset(**dict(near, **zgrid)), globe=True)
 
+# Round the Earth: faces are once over each place, and values where edges are cut are between the values at their ends
+for turned in (None, rotation(11, 23, 37)):  # with nodes at the poles, and with poles in faces
+    sphere, faces = icosphere(2, turned)
+    _, mesh = mpas(sphere, faces)
+    count = len(sphere)
+    at = degrees_of(sphere)[1]
+    levels = dict(zgrid=("nCells levels", numpy.tile([[0.0, 50, 100]], (count, 1)), {"units": "m"}), t=("nCells levels", at[:, None] + numpy.zeros(3), {}),
+                  part=("nCells levels", numpy.arange(3 * count).reshape(count, 3) % 9, {}), q=("nVertices layers", numpy.arange(2.0 * len(faces)).reshape(-1, 2), {}))
+    round_ = drawn(Dataset(**mesh, **levels), "t", exaggerate=1)
+    middle = numpy.cos(numpy.radians(0.5 * (at.min() + at.max())))
+    check(abs(volume_of(round_) / (360 * DEGREE * middle * 180 * DEGREE * 100) - 1) < 1e-9, "the map of the Earth is filled once")
+    north_of = round_.points[:, 1] / DEGREE
+    pole = abs(north_of) > 90 - 1e-6
+    check(abs(round_.points[:, 0].min()) < 1e-3 and abs(round_.points[:, 0].max() / DEGREE / middle - 360) < 1e-6, "longitudes of MPAS are 0 to 360")
+    wide = numpy.ptp(round_.points[round_.cells][(abs(north_of) < 60)[round_.cells].all(axis=1)][..., 0], axis=1) / DEGREE / middle
+    check(wide.max() < 50, f"no tetrahedron reaches across the map: {wide.max()} degrees")
+    check(abs(round_.values - north_of)[~pole].max() < 1e-9 and abs(round_.values - north_of)[pole].max() < 20, "values at nodes, at cuts and at poles")
+    small = drawn(Dataset(**mesh, **levels), "part")
+    check(small.values.min() == 0 and small.values.max() == 8, "values of integers")
+    cells = drawn(Dataset(**mesh, **levels))
+    check(cells.of_cells and set(cells.values.tolist()) == set(numpy.arange(2.0 * len(faces))), "each face and layer has its value")
+    check("faces cut at longitude 0" in round_.description, round_.description)
+
 # Pictures: a block in the north-east quarter is right of and above the middle from above
 block = numpy.where((east[triangles].mean(axis=1) > 181) & (north[triangles].mean(axis=1) > 5), 1.0, 0.0)
 data = Dataset(**dict(parts, q=("layer face", numpy.tile(block, (2, 1)), {"units": "K"})))
@@ -93,14 +116,13 @@ rows, columns = numpy.nonzero(red)
 check(red.sum() > 300 and rows.mean() + 30 < 76 and columns.mean() > 84, f"the block is at {rows.mean() + 30}, {columns.mean()}")
 check("heights x" in picture.caption and (axes[..., :3].max(axis=2) > 180).sum() > 200, "the caption, and axes with text")
 
-# Meshes without a place on a plane, and options that a mesh replaces
-_, mesh = mpas(sphere, faces)
-refuse(ValueError, "goes round the Earth or over a pole, which a plane has no place for: draw it with globe=True", drawn, Dataset(**mesh, **zgrid))
+# Places that are none, and options that a mesh replaces
 refuse(ValueError, "spacing is (1, 1, 1), but a mesh of a Dataset has its own places", drawn, Dataset(**parts), spacing=(1, 1, 1))
 refuse(ValueError, "nor x and y in a unit of length", drawn, Dataset(**dict(parts, lon=("node", east, {"units": "K"}), lat=("node", north, {"units": "K"}))))
 unknown = east.copy()
 unknown[3] = numpy.nan
 refuse(ValueError, "have no longitude or latitude at number 3", drawn, Dataset(**dict(parts, lon=("node", unknown, parts["lon"][2]))))
+refuse(ValueError, "node 3 is at ", drawn, Dataset(**dict(parts, lat=("node", numpy.where(numpy.arange(len(east)) == 3, 91.0, north), parts["lat"][2]))))
 refuse(ValueError, "exaggerate is 0", drawn, Dataset(**parts), exaggerate=0)
 
 # A variable of the same Dataset that is not on the mesh is drawn as it was

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes in layers of files, as the reader and as the Python package place them on a sphere and on a plane: the same points, cells and values."""
+"""Meshes in layers of files, as the reader and as the Python package place them on a sphere and on a plane: the same points, cells and values, also
+where faces that go round the Earth are cut at a meridian, and around poles."""
 import os
 import sys
 
@@ -16,14 +17,14 @@ from geodesic import degrees_of, dual, icosphere, middles, mpas, rotation
 
 from stratus_volume._draw import drawn_of
 
-VOLUME_CELLS = {13: 3, 12: 4, 15: 5, 16: 6}  # VTK's prisms, and their corners below
+VOLUME_CELLS = {13: 3, 12: 4, 15: 5, 16: 6}  # VTK's prisms, and their corners below; more corners make a polyhedron
 
 
 def prisms_of(grid):
     """The number of tetrahedra of each cell that is not hidden, and the numbers of these cells."""
     ghosts = grid.GetCellData().GetArray("vtkGhostType")
     shown = numpy.arange(grid.GetNumberOfCells()) if not ghosts else numpy.nonzero(vtk_to_numpy(ghosts) == 0)[0]
-    corners = numpy.array([VOLUME_CELLS[grid.GetCellType(int(cell))] for cell in shown])
+    corners = numpy.array([VOLUME_CELLS.get(grid.GetCellType(int(cell)), grid.GetCell(int(cell)).GetNumberOfPoints() // 2) for cell in shown])
     return shown, 3 * (corners - 2)
 
 
@@ -57,10 +58,19 @@ def compare(path, name, factor=0.0, on_sphere=True):
             check(set(own.cells[n]) <= {ids.GetId(i) for i in range(ids.GetNumberOfIds())}, f"{path}: tetrahedron {n} is in cell {cells[n]}")
 
 
+def compare_both(path, name, factor=0.0, cut=True):
+    """Compares a mesh on a sphere and on a plane. cut: it goes round the Earth, and is cut on the plane."""
+    compare(path, name, factor)
+    compare(path, name, factor, on_sphere=False)
+    own = {globe: drawn_of(datasets.of_file(path), scalars=name, globe=globe, exaggerate=1, device="host") for globe in (True, False)}
+    check(("faces cut at longitude" in own[False].description) == cut, f"{path}: {own[False].description}")
+    check((len(own[False].points) > len(own[True].points)) == cut, f"{path}: nodes of cuts and poles")
+
+
 for make, name in ((model_files.mpas_atmosphere, "qc"), (model_files.icon_atmosphere, "temp")):
     path = make(folder)
-    compare(path, name)
-    compare(path, name, 3.5)
+    compare_both(path, name)
+    compare_both(path, name, 3.5)
 
 points, triangles = icosphere(3, rotation(11, 23, 37))
 borders = numpy.array([0.0, 300, 1000, 2500, 6000])
@@ -71,7 +81,7 @@ wet = points @ numpy.array([0.6, 0.0, 0.8]) < 0.5
 count = int(wet.sum())
 dimensions, mesh = mpas(points, triangles, wet)
 deep = numpy.where(numpy.arange(layers)[None, :] < 1 + (numpy.arange(count) % layers)[:, None], thickness[::-1], -1e34)
-compare(write("python ocean", dict(dimensions, nVertLevels=layers), **mesh, layerThickness=("nCells nVertLevels", deep, {"units": "m"}),
+compare_both(write("python ocean", dict(dimensions, nVertLevels=layers), **mesh, layerThickness=("nCells nVertLevels", deep, {"units": "m"}),
     maxLevelCell=("nCells", (1 + numpy.arange(count) % layers).astype("i4"), {}),
     bottomDepth=("nCells", numpy.where(deep > 0, deep, 0).sum(axis=1), {"units": "m"}),
     salinity=("nCells nVertLevels", 30 + numpy.arange(1.0 * count * layers).reshape(count, layers) / 1000, {})), "salinity", 100)
@@ -80,7 +90,7 @@ compare(write("python ocean", dict(dimensions, nVertLevels=layers), **mesh, laye
 table, counts = dual(points, triangles)
 corner = table[numpy.arange(len(points))[:, None], numpy.minimum(numpy.arange(6), counts[:, None] - 1)]
 (lon, lat), (at_lon, at_lat) = degrees_of(middles(points, triangles)), degrees_of(points)
-compare(write("python hexagons", {"cell": len(points), "nv": 6, "lev": 3, "bnds": 2},
+compare_both(write("python hexagons", {"cell": len(points), "nv": 6, "lev": 3, "bnds": 2},
     lon=("cell", at_lon, {"units": "degrees_east", "bounds": "lon_bounds"}), lon_bounds=("cell nv", lon[corner] % 360, {}),
     lat=("cell", at_lat, {"units": "degrees_north", "bounds": "lat_bounds"}), lat_bounds=("cell nv", lat[corner], {}),
     lev=("lev", numpy.array([10.0, 300, 2000]), {"units": "m", "positive": "down", "bounds": "lev_bnds"}),
@@ -92,7 +102,7 @@ faces = numpy.concatenate([triangles, numpy.full((len(triangles), 1), -1)], axis
 faces[::2] = faces[::2, [2, 1, 0, 3]]  # in any orientation
 for name, place in (("node", len(points)), ("face", len(triangles))):
     values = numpy.arange(2.0 * place, dtype="f4").reshape(2, -1)
-    compare(write("python ugrid " + name, {"node": len(points), "face": len(triangles), "corner": 4, "layer": 2},
+    compare_both(write("python ugrid " + name, {"node": len(points), "face": len(triangles), "corner": 4, "layer": 2},
         mesh=("", numpy.int32(0), {"cf_role": "mesh_topology", "topology_dimension": numpy.int32(2), "node_coordinates": "lon lat",
                                    "face_node_connectivity": "faces"}),
         lon=("node", at_lon, {"units": "degrees_east", "standard_name": "longitude"}),
@@ -112,7 +122,7 @@ sigma = -numpy.linspace(0, 1, 5)[:, None] ** (1 + 0.5 * (north[None] > 40))
 values = numpy.arange(4.0 * nodes, dtype="f4").reshape(4, nodes)
 lonlat = dict(lon=("node", east, {"units": "degrees_east", "standard_name": "longitude"}), lat=("node", north, {"units": "degrees_north", "standard_name": "latitude"}))
 zeta, bed = ("node", surface, {"units": "m", "standard_name": "sea_surface_height_above_geoid"}), ("node", depth, {"units": "m", "standard_name": "sea_floor_depth"})
-compare(write("python fvcom", {"node": nodes, "nele": len(faces), "three": 3, "siglev": 5, "siglay": 4}, **lonlat,
+compare_both(write("python fvcom", {"node": nodes, "nele": len(faces), "three": 3, "siglev": 5, "siglay": 4}, **lonlat,
     nv=("three nele", (faces + 1).T.astype("i4"), {}), siglev=("siglev node", sigma, {"standard_name": "ocean_sigma_coordinate"}),
     siglay=("siglay node", 0.5 * (sigma[1:] + sigma[:-1]), {"standard_name": "ocean_sigma_coordinate"}), zeta=zeta, h=bed,
     wet_cells=("nele", (numpy.arange(len(faces)) % 5 > 0).astype("i4"), {}), temp=("siglay node", values, {})), "temp", 1000)
@@ -122,11 +132,11 @@ of_faces = surface[faces].mean(axis=1)
 of_faces[7] = -999
 terms = {"standard_name": "ocean_sigma_coordinate", "formula_terms": "sigma: lev eta: eta depth: deep", "positive": "up"}
 sizes = {"node": nodes, "face": len(faces), "corner": 3, "lev": 4}
-compare(write("python sigma", sizes, **mesh, lev=("lev", numpy.array([-0.875, -0.625, -0.375, -0.125]), terms), deep=bed,
+compare_both(write("python sigma", sizes, **mesh, lev=("lev", numpy.array([-0.875, -0.625, -0.375, -0.125]), terms), deep=bed,
     eta=("face", of_faces, {"units": "m", "fill": -999.0}), q=("lev node", values, {})), "q", 1000)
-compare(write("python levels", sizes, **mesh, lev=("lev", numpy.array([5.0, 20, 40, 80]), {"units": "m", "positive": "down", "axis": "Z"}),
+compare_both(write("python levels", sizes, **mesh, lev=("lev", numpy.array([5.0, 20, 40, 80]), {"units": "m", "positive": "down", "axis": "Z"}),
     elev=zeta, depth=bed, q=("lev node", values, {})), "q", 1000)
-compare(write("python one layer", {key: sizes[key] for key in ("node", "face", "corner")}, **mesh, elev=zeta, depth=bed, q=("node", values[0], {})), "q", 1000)
+compare_both(write("python one layer", {key: sizes[key] for key in ("node", "face", "corner")}, **mesh, elev=zeta, depth=bed, q=("node", values[0], {})), "q", 1000)
 
 # A region on the plane
 near = (points @ numpy.array([0.36, 0.48, 0.8]) > 0.8)[triangles].all(axis=1)
