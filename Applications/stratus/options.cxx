@@ -848,7 +848,8 @@ void check_complete(const options& o)
       throw usage("completion: of which shell? Give bash, zsh, fish or man");
     }
   } else if (o.command != "devices" && o.command != "version" && o.command != "help") {
-    throw usage(o.command.empty() ? "no command" : "unknown command '" + o.command + "'" + meant(o.command, commands()));
+    throw usage(
+      o.command.empty() ? "no command\n\n" + help_about("") : "unknown command '" + o.command + "'" + meant(o.command, commands()));
   }
 }
 } // namespace
@@ -899,7 +900,8 @@ options parse(int argc, char* argv[])
     }
     if (const auto* entry = find_word(with_value, word)) {
       if (i + 1 == words.size()) {
-        throw usage(word + " needs a value");
+        const std::string about = help_about(word);
+        throw usage(word + " needs a value, as in " + about.substr(0, about.find('\n')));
       }
       if (word == "--color" && words[i + 1] == "list") {
         o.command = "colors";

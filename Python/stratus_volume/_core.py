@@ -263,7 +263,7 @@ def _core_map(name):
     return points[:, 1:]
 
 
-_values.core_map = _core_map
+_values.core_map, _values.core_map_names = _core_map, color_maps
 
 
 def devices():

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One call for one picture of whatever it is."""
+import inspect
+
 from ._annotation import flag
 from ._core import Progress, whole
 from ._globe import OnGlobe
 from ._mesh_layers import PlaneLayers, check_variable, is_on_mesh, on_globe
 from ._picture import Film, paint
 from ._tetrahedra import Tetrahedra
-from ._values import background_color, number, positive
+from ._values import background_color, meant, number, positive
 from ._volume import Volume
 
 
@@ -47,6 +49,16 @@ def drawn_of(data, spacing=None, origin=None, axes=None, scalars=None, component
                 raise ValueError(f"{name} is {value!r}, but a {data.GetClassName()} has none")
         return Tetrahedra(data, scalars=scalars, device=device, threads=threads, matrix=matrix, component=component)
     return Volume(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, memory)
+
+
+def _render(function, drawn, *arguments, **options):
+    """Draws by the method `render`. An argument that it does not have is an error of the function that was called."""
+    known = inspect.signature(drawn.render).parameters
+    for name in options:
+        if name not in known:
+            of = f" for a {type(drawn).__name__}" if name in inspect.signature(Volume.render).parameters else ""
+            raise TypeError(f"{function.__name__}() has no argument {name!r}{of or meant(name, [*known, *inspect.signature(function).parameters, *_OF_DATA])}")
+    return drawn.render(*arguments, **options)
 
 
 def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing=None, origin=None, axes=None, scalars=None, component=None,
@@ -128,7 +140,7 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
     and function_2d, but a method: auto, march or project. A picture that shows nothing gives one warning, NothingShown, that names the reason.
     """
     drawn = drawn_of(data, spacing, origin, axes, scalars, component, device, threads, matrix, exaggerate, globe, memory)
-    return drawn.render(opacity, color, size, camera, **options)
+    return _render(render, drawn, opacity, color, size, camera, **options)
 
 
 def show(data, opacity=None, color=None, size=(640, 480), camera=None, background=(0.08, 0.1, 0.14), **options):
@@ -148,7 +160,7 @@ def show(data, opacity=None, color=None, size=(640, 480), camera=None, backgroun
     elif options.get("caption") and heights:
         options["caption"] += ", " + heights
     options.setdefault("ink", 0.5 if background is None else 0.1 if sum(background) > 1.2 else 0.9)
-    picture = paint(drawn.render(opacity, color, size, camera, **options).rgba, background)
+    picture = paint(_render(show, drawn, opacity, color, size, camera, **options).rgba, background)
     picture.caption = heights
     return picture
 
@@ -159,7 +171,8 @@ def render_tetrahedra(points, tetrahedra, values, opacity=None, color=None, size
     points, tetrahedra, values  see Tetrahedra
     Everything else is as in `render`.
     """
-    return Tetrahedra(points, tetrahedra, values, device=device, threads=threads).render(opacity, color, size, camera, **options)
+    drawn = Tetrahedra(points, tetrahedra, values, device=device, threads=threads)
+    return _render(render_tetrahedra, drawn, opacity, color, size, camera, **options)
 
 
 def turn(data, frames=36, opacity=None, color=None, size=(320, 240), elevation=25.0, zoom=1.15, background=(0.08, 0.1, 0.14), seconds=4.0,
@@ -181,7 +194,7 @@ def turn(data, frames=36, opacity=None, color=None, size=(320, 240), elevation=2
     for n in range(frames):
         part = None if report is None else lambda stage, fraction, n=n: report(stage, (n + fraction) / frames)
         camera = dict(azimuth=30 + 360 * n / frames, **view)
-        film.append(paint(drawn.render(opacity, color, size, camera, progress=part, **options).rgba, background))
+        film.append(paint(_render(turn, drawn, opacity, color, size, camera, progress=part, **options).rgba, background))
     if report is not None:
         report("done", 1.0)
     return film

@@ -29,9 +29,17 @@ class Picture(numpy.ndarray):
     text under it should say ("heights x 1400"), or ""."""
     caption = ""
 
+    @property
+    def _whole(self):
+        """Whether it is a picture. A slice may be none."""
+        return self.ndim == 3 and self.shape[2] in (3, 4) and self.dtype == numpy.uint8 and self.size > 0
+
+    def __repr__(self):
+        return f"<Picture of {self.shape[1]} x {self.shape[0]} pixels, which save(path) writes as PNG>" if self._whole else super().__repr__()
+
     def _repr_png_(self):
-        if self.ndim != 3 or self.shape[2] not in (3, 4) or self.dtype != numpy.uint8 or self.size == 0:
-            return None  # a slice may not be a picture
+        if not self._whole:
+            return None
         return _header(self) + _chunk(b"IDAT", _rows(self)) + _chunk(b"IEND", b"")
 
     def save(self, path):

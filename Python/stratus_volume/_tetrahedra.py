@@ -67,6 +67,10 @@ class Tetrahedra:
         with self.context.lock:
             self.context.call(library.stratus_tetra_caster_create, self.context.pointer, ctypes.byref(self._caster.pointer))
 
+    def __repr__(self):
+        cells = f"{int(numpy.prod(self.shapes[1]))} {'cells' if self.cells is None else 'tetrahedra'}"
+        return f"<{type(self).__name__} of {self.points.size // 3} points and {cells}>"
+
     def _set_points(self, points, tetrahedra):
         points = native(points, "points")
         self.lattice = points.shape[:3] if tetrahedra is None else None

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Arrays and functions of values as people give them, made into what the core takes. The packages stratus and stratus_volume share it."""
+import difflib
 import math
 import os
 import sys
@@ -223,13 +224,19 @@ def opacity_points(opacity, low, high, common, power):
     return pairs(opacity, 2, "opacity", "a number in 0..1, or pairs of a value and an opacity in 0..1", power)
 
 
+def meant(word, names):
+    """The end of a message about a word that is none of the names: the nearest one, if one is near."""
+    near = difflib.get_close_matches(str(word), list(names), 1)
+    return f": did you mean {near[0]}?" if near else ""
+
+
 def is_color_map(color):
     """Whether it is a name, or a function of 0..1, as matplotlib's colour maps are."""
     return isinstance(color, str) or callable(color)
 
 
-# Returns the rows (256, 3) of a colour map of the core, or None for another name. The package that this module is a part of sets it.
-core_map = None
+# Return the rows (256, 3) of a colour map of the core, or None for another name, and the names. The package that this module is a part of sets them.
+core_map = core_map_names = None
 
 
 def _color_map(name):
@@ -242,13 +249,15 @@ def _color_map(name):
         import matplotlib
         from matplotlib.colors import to_rgb
     except ImportError:
-        raise ValueError(f"color is {name!r}, which is no colour map of Stratus; more names need matplotlib, which is not installed") from None
+        raise ValueError(f"color is {name!r}, which is no colour map of Stratus"
+                         f"{meant(name, core_map_names())}; more names need matplotlib, which is not installed") from None
     if name in matplotlib.colormaps:
         return matplotlib.colormaps[name]
     try:
         return to_rgb(name)
     except ValueError:
-        raise ValueError(f"color is {name!r}, which is no colour map of Stratus or matplotlib, and no colour of matplotlib") from None
+        raise ValueError(f"color is {name!r}, which is no colour map of Stratus or matplotlib, and no colour of matplotlib"
+                         f"{meant(name, [*core_map_names(), *matplotlib.colormaps])}") from None
 
 
 def color_points(color, low, high, power):

@@ -67,6 +67,9 @@ class Volume:
         with self.context.lock:
             self.context.call(library.stratus_ray_caster_create, self.context.pointer, ctypes.byref(self._caster.pointer))
 
+    def __repr__(self):
+        return f"<Volume of {' x '.join(map(str, self.grid.values.shape))} {self.grid.values.dtype.name} values>"
+
     @property
     def bounds(self):
         """xmin, xmax, ymin, ymax, zmin, zmax in the world."""

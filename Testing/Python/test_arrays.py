@@ -51,6 +51,9 @@ def types():
     refuse(TypeError, "spacing", render, field, spacing=2)
     refuse(ValueError, "xyy", render, field, axes="xyy")
     refuse(ValueError, "scalars", render, field, scalars="density")
+    refuse(TypeError, "render() has no argument 'scalrs': did you mean scalars?", render, field, scalrs="density")
+    refuse(TypeError, "show() has no argument 'backgrund': did you mean background?", stratus_volume.show, field, backgrund=None)
+    refuse(TypeError, "turn() has no argument 'frame': did you mean frames?", stratus_volume.turn, field, frame=2)
 
 
 def orders():

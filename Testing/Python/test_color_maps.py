@@ -37,6 +37,7 @@ def without_matplotlib():
         expected = rows_of(name)[255]
         check(tuple(picture[15, 20]) == (*expected, 255), f"{name}: {picture[15, 20]}, not {expected}")
     refuse(ValueError, "no colour map of Stratus", stratus_volume.show, field, color="mud", device="host")
+    refuse(ValueError, "did you mean viridis?", stratus_volume.show, field, color="viridiss", device="host")
     for name, module in hidden.items():
         if module is None:
             del sys.modules[name]

@@ -55,6 +55,8 @@ def pictures():
     high = ball((20, 20, 20), (16, 10, 10), 3)
     up = show(high, opacity=[(0, 0), (0.5, 0.9)], background=None, camera=dict(elevation=0, zoom=1), size=(60, 60), device="host")[..., 3]
     check((up.astype(float).sum(1) * numpy.arange(60)).sum() / up.sum() < 25, "z points up, the first row is the top one")
+    whole = show(high, size=(60, 40), device="host")
+    check("Picture of 60 x 40 pixels" in repr(whole) and "Picture([" in repr(whole[0]), "a picture's text is its size")
     for option in dict(mode="maximum"), dict(mode="minimum", opacity=[(0, 0.5), (1, 0)]), dict(mode="first-hit"), dict(mode="isosurface", contours=[0.3, 0.6]), dict(shade=True), \
             dict(mode="additive"), dict(mode="average"), dict(interpolation="nearest"), dict(crop=(0, 12, 0, 22, 0, 20)), \
             dict(clip_planes=[(1, 0, 0, -12)]), dict(gradient_opacity=[(0, 0), (0.2, 1)]), dict(unit_distance=20), dict(shade=dict(specular=1)), \
@@ -66,6 +68,10 @@ def pictures():
     for drawn in stratus_volume.Volume(field, device="host"), stratus_volume.Tetrahedra(places, None, field, device="host"):
         denser = drawn.render(size=host["size"], extinction=2.5, unit_distance=10).rgba
         check(numpy.array_equal(denser, drawn.render(size=host["size"], unit_distance=4).rgba), "extinction multiplies optical depths")
+        count = " x ".join(map(str, field.shape)) if isinstance(drawn, stratus_volume.Volume) else f"{field.size} points"
+        check(f"{type(drawn).__name__} of {count}" in repr(drawn), repr(drawn))
+        refuse(TypeError, "has no argument 'metod'", stratus_volume.render, drawn, metod="auto")
+    refuse(TypeError, "show() has no argument 'sampling' for a Tetrahedra", show, drawn, sampling="cells")
     low, high = float(field.min()), float(field.max())
     ends, mapped = [(low, 0, 0.25, 1), (high, 1, 0.75, 0)], lambda place: (place, 0.25 + 0.5 * place, 1 - place, 1.0)  # as matplotlib's, with an alpha
     apart = numpy.abs(render(field, color=mapped, **host).rgba - render(field, color=ends, **host).rgba).max()
