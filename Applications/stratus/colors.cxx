@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "colors.h"
 
+#include "habits.h"
 #include "support.h"
 
 #include <cmath>
@@ -30,7 +31,13 @@ std::vector<double> parse_color(const std::string& text, double low, double high
   const context core("host", 1);
   std::vector<double> points(4 * STRATUS_COLOR_MAP_COLORS);
   if (stratus_color_map_points(core, text.c_str(), low, high, points.data()) != STRATUS_OK) {
-    throw usage("--color: " + std::string(stratus_context_message(core)) + "; or a list value:r:g:b,...");
+    std::vector<std::string> names;
+    while (const char* name = stratus_color_map_name(static_cast<int>(names.size()))) {
+      names.emplace_back(name);
+    }
+    const std::string near = meant(text, names);
+    throw usage(near.empty() ? "--color: " + std::string(stratus_context_message(core)) + "; or a list value:r:g:b,..."
+                             : "--color: no colour map '" + text + "'" + near);
   }
   return points;
 }

@@ -300,18 +300,30 @@ std::string manual()
 }
 } // namespace
 
+static std::string lower_case(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
 std::string cli::nearest(const std::string& word, const std::vector<std::string>& candidates)
 {
   std::string best;
   size_t least = std::min<size_t>(3, word.size() / 2 + 1); // a word of which half is wrong was meant otherwise
   for (const std::string& candidate : candidates) {
-    const size_t count = edits(word, candidate);
+    const size_t count = edits(lower_case(word), lower_case(candidate));
     if (count < least) {
       least = count;
       best = candidate;
     }
   }
   return best;
+}
+
+std::string cli::meant(const std::string& word, const std::vector<std::string>& candidates)
+{
+  const std::string near = nearest(word.substr(0, word.find('=')), candidates);
+  return near.empty() ? "" : ": did you mean " + near + "?";
 }
 
 const std::vector<std::string>& cli::commands()

@@ -11,6 +11,9 @@ namespace cli {
 // Returns the candidate that is nearest to a mistyped word; "" where none is near.
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
 
+// Returns ": did you mean CANDIDATE?" with the nearest one to a word, or to an option before its =; "" where none is near.
+std::string meant(const std::string& word, const std::vector<std::string>& candidates);
+
 // Returns the part of help() about a command (render), a topic (camera) or an option (--opacity); without a topic an overview. Throws usage
 // for any other topic.
 std::string help_about(const std::string& topic);

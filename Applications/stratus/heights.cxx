@@ -46,7 +46,7 @@ void set_heights(options& o, const series* in, vtkDataSet* grid)
   // A photograph has true heights, and numbers of rays are of true directions.
   if (!o.has_exaggeration && factor > 1.0 && !o.cloud && o.quantities.empty()) {
     o.exaggeration = factor;
-    o.heights = format("heights x %.15g", factor);
   }
+  o.heights = o.exaggeration == 1.0 ? "" : format("heights x %.15g", o.exaggeration);
 }
 } // namespace cli

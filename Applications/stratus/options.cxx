@@ -660,12 +660,6 @@ std::vector<std::string> words_of(int argc, char* argv[])
   return words;
 }
 
-std::string meant(const std::string& word, const std::vector<std::string>& known)
-{
-  const std::string near = nearest(word.substr(0, word.find('=')), known);
-  return near.empty() ? "" : ": did you mean " + near + "?";
-}
-
 void check_output(const options& o)
 {
   if (o.command != "render") {

@@ -98,7 +98,9 @@ void print_reading(const cli::options& o, const cli::series* in, const cli::clou
   if (!o.heights.empty()) {
     row("heights",
       o.globe ? o.heights.substr(o.heights.find('x')) + " on the globe; --exaggerate 1 for true heights"
-              : cli::format("x %.15g, because the data are flat; --exaggerate 1 for true heights", o.exaggeration));
+              : cli::format(
+                  o.has_exaggeration ? "x %.15g, by --exaggerate" : "x %.15g, because the data are flat; --exaggerate 1 for true heights",
+                  o.exaggeration));
   }
   if (water) {
     water->print_rows();

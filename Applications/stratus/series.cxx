@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "series.h"
 
+#include "habits.h"
 #include "reading.h"
 #include "support.h"
 #include "vtkStratusVariableReader.h"
@@ -224,12 +225,15 @@ series::series(const std::string& path, const reading_options& reading)
   this->open();
   if (this->Reader && !this->Variable.empty() && !has_variable(this->Reader, this->Variable)) {
     std::string names;
+    std::vector<std::string> known;
     const std::string wanted = std::exchange(this->Variable, "");
     for (const variable_entry& one : this->variables(0)) {
       names += (names.empty() ? "" : ", ") + one.name + " (" +
         (one.low <= one.high ? format("%g .. %g", one.low, one.high) : "nothing finite") + (one.units.empty() ? "" : " " + one.units) + ")";
+      known.push_back(one.name);
     }
-    throw failure("no variable '" + wanted + "' in '" + path + "'; the variables are: " + names);
+    const std::string near = meant(wanted, known);
+    throw failure("no variable '" + wanted + "' in '" + path + "'" + (near.empty() ? "; the" : near + " The") + " variables are: " + names);
   }
   for (size_t i = 1; i < this->Times.size(); ++i) {
     if (!(this->Times[i] > this->Times[i - 1])) {

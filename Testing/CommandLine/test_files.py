@@ -446,7 +446,7 @@ def test_netcdf():
             fail(f"info of cumulus.nc does not say '{pattern}':\n{said}")
     for time in ("2h", "120min", "+2 hours", "7200 s", "2", "step:8"):
         expect(0, r"time +step 8 of 13, at 2 hours since", "render", "cumulus.nc", "-o", "qc.png", "--size", "32x32", "--time", time)
-    expect(1, r"no variable 'qi' in 'cumulus.nc'; the variables are: qc \(0 \.\. [-0-9.e]+ g kg-1\)$", "render", "cumulus.nc", "-o", "no.png",
+    expect(1, r"no variable 'qi' in 'cumulus.nc': did you mean qc\? The variables are: qc \(0 \.\. [-0-9.e]+ g kg-1\)$", "render", "cumulus.nc", "-o", "no.png",
            "--variable", "qi")
     with open("cumulus.nc", "rb") as file:
         text = file.read()
