@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "colors.h"
 
-#include "habits.h"
+#include "nearest.h"
 #include "support.h"
 
 #include <cmath>

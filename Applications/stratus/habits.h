@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Habits that users bring from other programs: help by topic, the nearest word to one that is not known, completions, a manual page. All
-// of it is made from help() and the tables of options.
+// Habits that users bring from other programs: help by topic, completions, a manual page. All of it is made from help() and the tables of
+// options.
 #pragma once
 
 #include <string>
 #include <vector>
 
 namespace cli {
-
-// Returns the candidate that is nearest to a mistyped word; "" where none is near.
-std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
-
-// Returns ": did you mean CANDIDATE?" with the nearest one to a word, or to an option before its =; "" where none is near.
-std::string meant(const std::string& word, const std::vector<std::string>& candidates);
 
 // Returns the part of help() about a command (render), a topic (camera) or an option (--opacity); without a topic an overview. Throws usage
 // for any other topic.

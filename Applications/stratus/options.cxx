@@ -3,6 +3,7 @@
 #include "cloud.h"
 #include "colors.h"
 #include "habits.h"
+#include "nearest.h"
 #include "support.h"
 
 #include <algorithm>

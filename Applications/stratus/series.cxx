@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "series.h"
 
-#include "habits.h"
+#include "nearest.h"
 #include "reading.h"
 #include "support.h"
 #include "vtkStratusVariableReader.h"
