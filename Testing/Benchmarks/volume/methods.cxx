@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Makes methods by name, and measures all of them in the same way.
 #include "bench.h"
-#include "openvdb_mapper.h"
+#include "vdb_mapper.h"
 #include "window.h"
 
 #include "vtkStratusVolumeMapper.h"
@@ -109,7 +109,7 @@ struct peer_method {
 // Returns false for other names.
 bool parse_peer(const std::string& whole, peer_method& m)
 {
-  static const char* const peers[] = { "vtk:fixedpoint", "vtk:gpu", "openvdb" };
+  static const char* const peers[] = { "vtk:fixedpoint", "vtk:gpu", "openvdb", "nanovdb" };
   const auto found =
     std::find_if(std::begin(peers), std::end(peers), [&](const std::string& peer) { return whole.compare(0, peer.size(), peer) == 0; });
   if (found == std::end(peers)) {
@@ -170,8 +170,8 @@ vtkSmartPointer<vtkVolumeMapper> make_mapper(const scene& s, const std::string& 
   if (peer.name == "vtk:gpu") {
     return make_gpu(peer.step * s.voxel);
   }
-  auto mapper = vtkSmartPointer<openvdb_mapper>::New();
-  mapper->set_volume(s.volume, peer.step * s.voxel);
+  auto mapper = vtkSmartPointer<vdb_mapper>::New();
+  mapper->set_volume(s.volume, peer.step * s.voxel, peer.name == "nanovdb");
   return mapper;
 }
 
@@ -194,7 +194,7 @@ double samples_of(vtkVolumeMapper* mapper)
   if (auto* ours = vtkStratusVolumeMapper::SafeDownCast(mapper)) {
     return static_cast<double>(ours->GetSamplesTaken());
   }
-  if (auto* vdb = openvdb_mapper::SafeDownCast(mapper)) {
+  if (auto* vdb = vdb_mapper::SafeDownCast(mapper)) {
     return static_cast<double>(vdb->samples());
   }
   return -1.0;
@@ -210,7 +210,7 @@ std::vector<std::string> all_methods()
 {
   return { "stratus:none", "stratus:block", "stratus:distance", "stratus:octant", "stratus:hybrid", "stratus:auto", "stratus:none@device",
     "stratus:auto@device", "stratus:auto+ordinary", "stratus:auto~0.0126", "vtk:fixedpoint", "vtk:fixedpoint:0.5",
-    "vtk:fixedpoint+ordinary", "vtk:gpu", "openvdb", "floor", "stratus:auto~fixedpoint" };
+    "vtk:fixedpoint+ordinary", "vtk:gpu", "openvdb", "nanovdb", "floor", "stratus:auto~fixedpoint" };
 }
 
 std::vector<std::string> curve_methods(bool quick)
@@ -231,6 +231,7 @@ std::vector<std::string> curve_methods(bool quick)
     add("vtk:fixedpoint/2", { ":2", "" });
     add("vtk:gpu", { ":2", "", ":0.5" });
     add("openvdb", { ":2", "", ":0.5" });
+    add("nanovdb", { ":2", "", ":0.5" });
     return methods;
   }
   add("stratus:auto",
@@ -248,6 +249,7 @@ std::vector<std::string> curve_methods(bool quick)
   add("vtk:fixedpoint/2", { ":2", "", ":0.5" });
   add("vtk:gpu", { ":2", "", ":0.5" });
   add("openvdb", { ":2", "", ":0.5" });
+  add("nanovdb", { ":2", "", ":0.5" });
   return methods;
 }
 
@@ -261,7 +263,8 @@ void check_method(const std::string& whole)
   if (!dressed || (!parse_stratus(name, ours) && !parse_peer(name, peer) && name != "floor")) {
     throw failure("unknown method '" + whole +
       "'; known: stratus:none|block|distance|octant|hybrid|auto with /2 or /4 (rays every 2 or 4 pixels) or neither, ~TOLERANCE or "
-      "~fixedpoint or neither, and @host or @device or neither, vtk:fixedpoint with /2 or /4 or neither, vtk:gpu and openvdb, each with "
+      "~fixedpoint or neither, and @host or @device or neither, vtk:fixedpoint with /2 or /4 or neither, vtk:gpu, openvdb and nanovdb, "
+      "each with "
       ":STEP (.01 to 100 voxels) or without, floor; "
       "all but floor with +ordinary, +gradient, +samples, +axes or +outline");
   }

@@ -23,9 +23,9 @@ const char* const help = R"(stratus-bench volume [options]
   --size N                  N x N pixels (default 512)
   --method M,...            stratus:none|block|distance|octant|hybrid|auto, with /2 or /4 (rays every 2 or 4 pixels) behind it, then
                             ~TOLERANCE, a number, or ~fixedpoint, which is the root mean square error that vtk:fixedpoint has in this
-                            run, then @host or @device (the first OpenCL device); vtk:fixedpoint, with /2 or /4, vtk:gpu, openvdb, each
-                            with :STEP in voxels behind it (default 1); floor; each but floor with a window behind it: +gradient
-                            (background), +samples (8 a pixel), +axes, +outline, or +ordinary, which is all four
+                            run, then @host or @device (the first OpenCL device); vtk:fixedpoint, with /2 or /4, vtk:gpu, openvdb,
+                            nanovdb, each with :STEP in voxels behind it (default 1); floor; each but floor with a window behind
+                            it: +gradient (background), +samples (8 a pixel), +axes, +outline, or +ordinary, which is all four
                             (default: all methods, stratus:auto and vtk:fixedpoint in ordinary windows, too)
   --curves, --quick-curves  methods over their settings: ours over tolerances, peers over steps
   --repeats N               most frames of each view (default 7): fewer if the middle half of their times is within 3 % of the
@@ -149,10 +149,10 @@ void run_floor(stratus_context* context, const bench::scene& scene, const option
 std::string left_out(const bench::scene& scene, const std::string& method, const options& o)
 {
   const bool plain = !scene.shaded && scene.volume.components == 1;
-  return !plain && (method == "floor" || method.rfind("openvdb", 0) == 0) ? "it has no light and takes one component"
-    : bench::needs_fixed_point(method) && !o.error                        ? "it needs errors, which --no-error does without"
-    : scene.name == "voxel" && method.find("/4") != std::string::npos     ? "its only voxel is smaller than the distance of the rays"
-                                                                          : "";
+  return !plain && (method == "floor" || method.find("vdb") != std::string::npos) ? "it has no light and takes one component"
+    : bench::needs_fixed_point(method) && !o.error                                ? "it needs errors, which --no-error does without"
+    : scene.name == "voxel" && method.find("/4") != std::string::npos ? "its only voxel is smaller than the distance of the rays"
+                                                                      : "";
 }
 
 void run_scene(

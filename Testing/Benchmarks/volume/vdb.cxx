@@ -4,7 +4,12 @@
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/RayIntersector.h>
 
-#include "openvdb_mapper.h"
+#include <nanovdb/util/HDDA.h>
+#include <nanovdb/util/OpenToNanoVDB.h>
+#include <nanovdb/util/Ray.h>
+#include <nanovdb/util/SampleFromVoxels.h>
+
+#include "vdb_mapper.h"
 #include "reference.h"
 
 #include <vtkCamera.h>
@@ -27,12 +32,11 @@
 
 namespace bench {
 
-vtkStandardNewMacro(openvdb_mapper);
+vtkStandardNewMacro(vdb_mapper);
 
 namespace {
 
-using intersector = openvdb::tools::VolumeRayIntersector<openvdb::FloatGrid>;
-using ray = intersector::RayType;
+using intersector = openvdb::tools::VolumeRayIntersector<openvdb::MaskGrid>;
 constexpr int table_size = 4096;
 
 struct entry {
@@ -60,11 +64,13 @@ view view_of(vtkRenderer* renderer)
 }
 } // namespace
 
-struct openvdb_mapper::inside {
+struct vdb_mapper::inside {
   stratus_volume volume;
   double step = 1.0;
+  bool nano = false; // then the NanoVDB grids, copies of the OpenVDB grids, are drawn
   openvdb::FloatGrid::Ptr values;
-  openvdb::FloatGrid::Ptr shown; // its leaves cover the cells that show something
+  openvdb::MaskGrid::Ptr shown; // its leaves cover the cells that show something
+  nanovdb::GridHandle<> nano_values, nano_shown;
   std::unique_ptr<intersector> rays;
   std::vector<entry> table;
   double low = 0.0, high = 1.0;
@@ -76,12 +82,80 @@ struct openvdb_mapper::inside {
   void make_grid();
   void make_table(vtkVolumeProperty* property);
   void make_topology();
-  void cast(const view& v, int width, int height);
-  void trace(intersector& hits, openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, openvdb::tools::BoxSampler>& sampler,
-    const openvdb::Vec3d& eye, const openvdb::Vec3d& direction, float* pixel, unsigned long long& count) const;
+  template <typename Walk> void cast(const view& v, int width, int height);
+  template <typename Walk> unsigned long long trace(Walk& walk, float* pixel) const;
 };
 
-void openvdb_mapper::inside::make_grid()
+namespace {
+
+// The part of a ray that a thread marches along. Times are world lengths, because a direction corresponds to one world unit.
+class open_walk
+{
+public:
+  open_walk(const intersector& rays, const openvdb::FloatGrid& values, const nanovdb::FloatGrid*, const nanovdb::MaskGrid*)
+      : Spans(rays), Accessor(values.getConstAccessor()), Sampler(Accessor, values.transform())
+  {
+  }
+  // Clips the ray to 0..last, because leaves extend beyond the volume. eye, direction and last are in voxels.
+  bool start(const openvdb::Vec3d& eye, const openvdb::Vec3d& direction, const openvdb::Vec3d& last)
+  {
+    this->Ray = intersector::RayType(eye, direction, 1e-6, 1e30);
+    return this->Ray.clip(openvdb::BBoxd(openvdb::Vec3d(0.0), last)) && this->Spans.setIndexRay(this->Ray);
+  }
+  bool next(double& from, double& to) { return this->Spans.march(from, to); }
+  float value(double t) { return this->Sampler.isSample(this->Ray(t)); }
+
+private:
+  using accessor = openvdb::FloatGrid::ConstAccessor;
+  intersector Spans;
+  accessor Accessor;
+  openvdb::tools::GridSampler<accessor, openvdb::tools::BoxSampler> Sampler;
+  intersector::RayType Ray;
+};
+
+// The same by NanoVDB. TreeMarcher needs directions of length 1 in voxels.
+class nano_walk
+{
+public:
+  nano_walk(const intersector&, const openvdb::FloatGrid&, const nanovdb::FloatGrid* values, const nanovdb::MaskGrid* shown)
+      : Shown(shown->getAccessor()), Accessor(values->getAccessor()), Spans(Shown), Sampler(Accessor)
+  {
+  }
+  bool start(const openvdb::Vec3d& eye, const openvdb::Vec3d& direction, const openvdb::Vec3d& last)
+  {
+    this->Length = direction.length();
+    this->Ray = ray(vector(eye), vector(direction / this->Length));
+    return this->Ray.clip(nanovdb::BBox<nanovdb::Vec3f>(nanovdb::Vec3f(0.0f), vector(last))) && this->Spans.init(this->Ray);
+  }
+  bool next(double& from, double& to)
+  {
+    const leaf* hit;
+    float t[2];
+    const bool found = this->Spans.step(&hit, t[0], t[1]);
+    from = t[0] / this->Length;
+    to = t[1] / this->Length;
+    return found;
+  }
+  float value(double t) { return this->Sampler(this->Ray(static_cast<float>(t * this->Length))); }
+
+private:
+  using ray = nanovdb::Ray<float>;
+  using leaf = nanovdb::NanoLeaf<nanovdb::ValueMask>;
+  using accessor = nanovdb::FloatGrid::AccessorType;
+  static nanovdb::Vec3f vector(const openvdb::Vec3d& v)
+  {
+    return nanovdb::Vec3f(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
+  }
+  nanovdb::MaskGrid::AccessorType Shown;
+  accessor Accessor;
+  nanovdb::TreeMarcher<leaf, ray, nanovdb::MaskGrid::AccessorType> Spans;
+  nanovdb::SampleFromVoxels<accessor, 1> Sampler;
+  ray Ray;
+  double Length = 1.0; // voxels in a world unit along the ray
+};
+} // namespace
+
+void vdb_mapper::inside::make_grid()
 {
   const int64_t* n = this->volume.dimensions;
   std::vector<float> dense(static_cast<size_t>(n[0] * n[1] * n[2]));
@@ -96,9 +170,12 @@ void openvdb_mapper::inside::make_grid()
   openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> layout(box, dense.data());
   this->values = openvdb::FloatGrid::create(static_cast<float>(this->low));
   openvdb::tools::copyFromDense(layout, *this->values, 0.0f);
+  if (this->nano) {
+    this->nano_values = nanovdb::openToNanoVDB(*this->values);
+  }
 }
 
-void openvdb_mapper::inside::make_table(vtkVolumeProperty* property)
+void vdb_mapper::inside::make_table(vtkVolumeProperty* property)
 {
   vtkPiecewiseFunction* opacity = property->GetScalarOpacity();
   vtkColorTransferFunction* color = property->GetRGBTransferFunction();
@@ -116,7 +193,7 @@ void openvdb_mapper::inside::make_table(vtkVolumeProperty* property)
 }
 
 // Activates the cells whose opacity is not 0 for all values between their lowest and highest corner.
-void openvdb_mapper::inside::make_topology()
+void vdb_mapper::inside::make_topology()
 {
   const int64_t* n = this->volume.dimensions;
   std::vector<double> next(table_size + 2, 1e300); // lowest visible value from entry i on
@@ -124,8 +201,8 @@ void openvdb_mapper::inside::make_topology()
     const double value = this->low + (this->high - this->low) * i / table_size;
     next[i] = this->table[i].rgba[3] > 0.0f ? value : next[i + 1];
   }
-  this->shown = openvdb::FloatGrid::create(0.0f);
-  openvdb::FloatGrid::Accessor mark = this->shown->getAccessor();
+  this->shown = openvdb::MaskGrid::create();
+  openvdb::MaskGrid::Accessor mark = this->shown->getAccessor();
   const double scale = table_size / std::max(this->high - this->low, 1e-300);
   for (int64_t k = 0; k + 1 < n[2]; ++k) {
     for (int64_t j = 0; j + 1 < n[1]; ++j) {
@@ -138,33 +215,28 @@ void openvdb_mapper::inside::make_topology()
           hi = std::max(hi, v);
         }
         if (hi > this->low && next[static_cast<int>((lo - this->low) * scale)] <= hi + 1.0 / scale) {
-          mark.setValueOn(openvdb::Coord(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)), 1.0f);
+          mark.setValueOn(openvdb::Coord(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)));
         }
       }
     }
   }
   this->rays = this->shown->empty() ? nullptr : std::make_unique<intersector>(*this->shown);
+  if (this->nano && this->rays) {
+    this->nano_shown = nanovdb::openToNanoVDB(*this->shown);
+  }
 }
 
-void openvdb_mapper::inside::trace(intersector& hits,
-  openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, openvdb::tools::BoxSampler>& sampler, const openvdb::Vec3d& eye,
-  const openvdb::Vec3d& direction, float* pixel, unsigned long long& count) const
+// Returns the number of samples.
+template <typename Walk> unsigned long long vdb_mapper::inside::trace(Walk& walk, float* pixel) const
 {
   const float scale = static_cast<float>(table_size / (this->high - this->low));
+  unsigned long long count = 0;
   float left = 1.0f;
   double from = 0.0;
   double to = 0.0;
-  // Times are world lengths, because the direction in voxels corresponds to one world unit.
-  ray r(eye, direction, 1e-6, 1e30);
-  const openvdb::Vec3d last(
-    double(this->volume.dimensions[0] - 1), double(this->volume.dimensions[1] - 1), double(this->volume.dimensions[2] - 1));
-  // Leaves extend beyond the volume, so clip the ray to it.
-  if (!r.clip(openvdb::BBoxd(openvdb::Vec3d(0.0), last)) || !hits.setIndexRay(r)) {
-    return;
-  }
-  while (hits.march(from, to)) {
+  while (walk.next(from, to)) {
     for (double t = (std::floor(from / this->step - 0.5) + 1.5) * this->step; t < to; t += this->step) {
-      const float value = sampler.isSample(eye + t * direction);
+      const float value = walk.value(t);
       const int at = std::min(std::max(static_cast<int>((value - static_cast<float>(this->low)) * scale + 0.5f), 0), table_size);
       const entry& e = this->table[static_cast<size_t>(at)];
       ++count;
@@ -173,13 +245,14 @@ void openvdb_mapper::inside::trace(intersector& hits,
       }
       left *= 1.0f - e.rgba[3];
       if (left < 0.001f) {
-        return;
+        return count;
       }
     }
   }
+  return count;
 }
 
-void openvdb_mapper::inside::cast(const view& v, int width, int height)
+template <typename Walk> void vdb_mapper::inside::cast(const view& v, int width, int height)
 {
   this->bytes.assign(4 * static_cast<size_t>(width) * static_cast<size_t>(height), 0);
   this->samples = 0;
@@ -188,17 +261,19 @@ void openvdb_mapper::inside::cast(const view& v, int width, int height)
   }
   const openvdb::Vec3d spacing(this->volume.spacing);
   const openvdb::Vec3d eye = (v.eye - openvdb::Vec3d(this->volume.origin)) / spacing;
+  const int64_t* n = this->volume.dimensions;
+  const openvdb::Vec3d last(double(n[0] - 1), double(n[1] - 1), double(n[2] - 1));
   tbb::parallel_for(tbb::blocked_range2d<int>(0, height, 16, 0, width, 16), [&](const tbb::blocked_range2d<int>& tile) {
-    intersector hits(*this->rays);
-    openvdb::FloatGrid::ConstAccessor accessor = this->values->getConstAccessor();
-    openvdb::tools::GridSampler<openvdb::FloatGrid::ConstAccessor, openvdb::tools::BoxSampler> sampler(accessor, this->values->transform());
+    Walk walk(*this->rays, *this->values, this->nano_values.grid<float>(), this->nano_shown.grid<nanovdb::ValueMask>());
     unsigned long long count = 0;
     for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
       for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
         const openvdb::Vec3d direction =
           (v.forward + ((2.0 * x + 1.0) / width - 1.0) * v.right + ((2.0 * y + 1.0) / height - 1.0) * v.up).unit();
         float pixel[4] = { 0, 0, 0, 0 };
-        this->trace(hits, sampler, eye, direction / spacing, pixel, count);
+        if (walk.start(eye, direction / spacing, last)) {
+          count += this->trace(walk, pixel);
+        }
         for (int c = 0; c < 4; ++c) {
           this->bytes[4 * (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)) + static_cast<size_t>(c)] =
             static_cast<uint8_t>(std::min(pixel[c], 1.0f) * 255.0f + 0.5f);
@@ -209,26 +284,27 @@ void openvdb_mapper::inside::cast(const view& v, int width, int height)
   });
 }
 
-openvdb_mapper::openvdb_mapper() : In(new inside)
+vdb_mapper::vdb_mapper() : In(new inside)
 {
   openvdb::initialize();
 }
 
-openvdb_mapper::~openvdb_mapper() = default;
+vdb_mapper::~vdb_mapper() = default;
 
-void openvdb_mapper::set_volume(const stratus_volume& volume, double step)
+void vdb_mapper::set_volume(const stratus_volume& volume, double step, bool nano)
 {
   this->In->volume = volume;
   this->In->step = step;
+  this->In->nano = nano;
   this->In->values.reset();
 }
 
-unsigned long long openvdb_mapper::samples() const
+unsigned long long vdb_mapper::samples() const
 {
   return this->In->samples;
 }
 
-void openvdb_mapper::Render(vtkRenderer* renderer, vtkVolume* volume)
+void vdb_mapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   vtkVolumeProperty* property = volume->GetProperty();
   if (!this->In->values) {
@@ -241,8 +317,12 @@ void openvdb_mapper::Render(vtkRenderer* renderer, vtkVolume* volume)
     this->In->built = property->GetMTime();
   }
   const int* size = renderer->GetSize();
-  this->In->cast(view_of(renderer), size[0], size[1]);
-  // Draw each texel on its pixel. vtkRayCastImageDisplayHelper would stretch the picture by up to a pixel, an error that is not OpenVDB's.
+  if (this->In->nano) {
+    this->In->cast<nano_walk>(view_of(renderer), size[0], size[1]);
+  } else {
+    this->In->cast<open_walk>(view_of(renderer), size[0], size[1]);
+  }
+  // Draw each texel on its pixel. vtkRayCastImageDisplayHelper would stretch the picture by up to a pixel, an error that is not VDB's.
   // Nothing is behind it, so neither blending nor a depth test is needed.
   auto* target = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
   vtkOpenGLState* state = target->GetState();
