@@ -8,6 +8,7 @@
 // the packets (8 or 16 rays) and the resolution of intervals that are fastest on the first view; its metrics `width` and `hint` are these.
 #include "march_16.h"
 #include "reference.h"
+#include "reference_shading.h"
 
 #include "stratus/scenes.h"
 
@@ -138,28 +139,6 @@ struct vkl_method : method {
   }
 };
 
-// Evaluates a transfer function: the colour of a value, and its opacity per unit_distance.
-void look_up(const stratus_transfer& t, double value, double rgb[3], double* opacity)
-{
-  const auto at = [value](const double* points, size_t count, size_t width, size_t c) {
-    if (value <= points[0]) {
-      return points[c];
-    }
-    for (size_t i = 1; i < count; ++i) {
-      const double* a = points + width * (i - 1);
-      const double* b = points + width * i;
-      if (value <= b[0]) {
-        return b[0] > a[0] ? a[c] + (b[c] - a[c]) * (value - a[0]) / (b[0] - a[0]) : b[c];
-      }
-    }
-    return points[width * (count - 1) + c];
-  };
-  *opacity = at(t.opacity, t.opacity_count, 2, 1);
-  for (size_t c = 0; c < 3; ++c) {
-    rgb[c] = at(t.color, t.color_count, 4, c + 1);
-  }
-}
-
 void vkl_method::make_table(const input& in)
 {
   const stratus_transfer& t = in.scene->transfer;
@@ -167,9 +146,10 @@ void vkl_method::make_table(const input& in)
   this->Scale = static_cast<float>(table_last / (in.high - in.low));
   this->Table.resize(4 * (table_last + 1));
   for (int i = 0; i <= table_last; ++i) {
-    double rgb[3], opacity;
-    look_up(t, in.low + (in.high - in.low) * i / table_last, rgb, &opacity);
-    const double alpha = 1.0 - std::pow(1.0 - opacity, this->Step * in.voxel / t.unit_distance);
+    const double value = in.low + (in.high - in.low) * i / table_last;
+    double rgb[3];
+    reference_color(&t, value, rgb);
+    const double alpha = 1.0 - std::pow(1.0 - reference_opacity(&t, value), this->Step * in.voxel / t.unit_distance);
     for (int c = 0; c < 4; ++c) {
       this->Table[static_cast<size_t>(4 * i + c)] = static_cast<float>(c < 3 ? rgb[c] * alpha : alpha);
     }
