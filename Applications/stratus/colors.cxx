@@ -23,6 +23,15 @@ static std::vector<double> parse_points(const std::string& text)
   return points;
 }
 
+static std::vector<std::string> color_maps()
+{
+  std::vector<std::string> names;
+  while (const char* name = stratus_color_map_name(static_cast<int>(names.size()))) {
+    names.emplace_back(name);
+  }
+  return names;
+}
+
 std::vector<double> parse_color(const std::string& text, double low, double high)
 {
   if (text.find(':') != std::string::npos) {
@@ -31,11 +40,7 @@ std::vector<double> parse_color(const std::string& text, double low, double high
   const context core("host", 1);
   std::vector<double> points(4 * STRATUS_COLOR_MAP_COLORS);
   if (stratus_color_map_points(core, text.c_str(), low, high, points.data()) != STRATUS_OK) {
-    std::vector<std::string> names;
-    while (const char* name = stratus_color_map_name(static_cast<int>(names.size()))) {
-      names.emplace_back(name);
-    }
-    const std::string near = meant(text, names);
+    const std::string near = meant(text, color_maps());
     throw usage(near.empty() ? "--color: " + std::string(stratus_context_message(core)) + "; or a list value:r:g:b,..."
                              : "--color: no colour map '" + text + "'" + near);
   }
@@ -44,11 +49,11 @@ std::vector<double> parse_color(const std::string& text, double low, double high
 
 std::string color_names(const std::string& between)
 {
-  std::string names;
-  for (int i = 0; const char* name = stratus_color_map_name(i); ++i) {
-    names += (names.empty() ? "" : between) + name;
+  std::string text;
+  for (const std::string& name : color_maps()) {
+    text += (text.empty() ? "" : between) + name;
   }
-  return names;
+  return text;
 }
 
 std::vector<double> logarithmic_color(const std::string& name, double low, double high)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Faces of longitudes and latitudes on a plane: what is done with each face. flat_nodes.c has the nodes that this needs, and the arrays. */
+ * Faces of longitudes and latitudes on a plane: how each face is cut. flat_nodes.c has the nodes that this needs, and the arrays. */
 #include "flat_faces.h"
 #include "longitudes.h"
 

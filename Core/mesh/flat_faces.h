@@ -30,7 +30,7 @@ typedef struct flat_builder {
   stratus_context* context;
   bool around;           /* the mesh goes round the Earth, and is cut at `west` */
   double west;           /* longitudes are from here on, over less than a turn */
-  flat_node* nodes;      /* those of the mesh first */
+  flat_node* nodes;      /* the mesh's nodes first */
   int64_t count, room;   /* of nodes */
   int64_t own;           /* nodes of the mesh */
   int32_t* buckets;      /* the last node of each, -1: none */

@@ -82,8 +82,8 @@ bool stratus_longitudes_jump(const stratus_edges* edges, const double* degrees)
   return search.found;
 }
 
-/* Moves groups that no neighbours join by whole turns, to where their middles are nearest to that of the widest one.
- * ends: two numbers for each place, of which those of groups' first places are used */
+/* Moves groups that no neighbours join by whole turns, to where their middles are nearest to the widest group's middle.
+ * ends: two numbers for each place; only groups' first places use theirs */
 static void gather_groups(longitude_groups* groups, int64_t count, const double* degrees, double* ends)
 {
   for (int64_t i = 0; i < count; ++i) {

@@ -284,6 +284,7 @@ def refusals():
     refuse(TypeError, "spacing", show, field, spacing=2)
     refuse(ValueError, "axes", show, field, axes="xyy")
     refuse(ValueError, "opacity", show, field, opacity=2)
+    refuse(ValueError, "did you mean viridis?", show, field, color="viridiss")
     refuse(ValueError, "opacity", show, field, opacity=[(0, 0), (1, 1.5)])
     refuse(ValueError, "opacity", show, field, opacity=[])
     refuse(ValueError, "color", show, field, color=[(0, 2, 0, 0)])
