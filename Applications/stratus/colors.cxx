@@ -40,9 +40,7 @@ std::vector<double> parse_color(const std::string& text, double low, double high
   const context core("host", 1);
   std::vector<double> points(4 * STRATUS_COLOR_MAP_COLORS);
   if (stratus_color_map_points(core, text.c_str(), low, high, points.data()) != STRATUS_OK) {
-    const std::string near = meant(text, color_maps());
-    throw usage(near.empty() ? "--color: " + std::string(stratus_context_message(core)) + "; or a list value:r:g:b,..."
-                             : "--color: no colour map '" + text + "'" + near);
+    throw usage("--color: " + std::string(stratus_context_message(core)) + "; or a list value:r:g:b,..." + meant(text, color_maps()));
   }
   return points;
 }

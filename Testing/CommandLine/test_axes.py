@@ -53,6 +53,14 @@ def run(*words):
 
 
 def drawn(name, *words, size="512x512"):
+    """As annotations(), without the caption that names a factor of heights."""
+    lines = annotations(name, *words, size=size)
+    if "--exaggerate" in words:
+        lines[annotations(name, "--exaggerate", words[words.index("--exaggerate") + 1], size=size) > 0] = 0
+    return lines
+
+
+def annotations(name, *words, size):
     """The annotations of a picture that shows nothing otherwise, over black: brightness[row, column], bottom row first. Of files with and
     without units heights and view are the same."""
     for word, usual in ("--exaggerate", "1"), ("--azimuth", "30"), ("--elevation", "30"):
@@ -73,7 +81,7 @@ shapes = {"flat": (numpy.linspace(0, 500, nz), 1), "deep": (numpy.linspace(-5700
 for name, (height, exaggeration) in shapes.items():
     path = write(name, (("zh", height, metres), ("yh", north, metres), ("xh", east, metres)))
     for size in ("512x512", "800x500") if name == "flat" else ("512x512",):
-        bar = drawn(path, "--color-bar", size=size)
+        bar = drawn(path, "--color-bar", "--exaggerate", str(exaggeration), size=size)  # a caption moves the bar
         rows, columns = numpy.nonzero(bar)
         left = numpy.nonzero(bar[(rows.min() + rows.max()) // 2])[0].min()
         place = slice(rows.min(), rows.max() + 1), slice(left, bar.shape[1])
