@@ -23,6 +23,7 @@
 #include "stratus/context.h"
 #include "stratus/volume.h"
 #include "stratus/bricks.h"
+#include "stratus/calendar.h"
 #include "stratus/camera.h"
 #include "stratus/skipping.h"
 #include "stratus/voxels.h"

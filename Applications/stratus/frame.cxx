@@ -46,6 +46,15 @@ stratus_image frame::view()
   return image;
 }
 
+bool frame::shows_nothing() const
+{
+  float largest = 0.0F;
+  for (size_t alpha = 3; alpha < this->Rgba.size(); alpha += 4) {
+    largest = std::max(largest, this->Rgba[alpha]);
+  }
+  return this->shows_colors() && largest < 0.5F / 255.0F;
+}
+
 void frame::set_units(const double scale[3], double metres, const std::string& values)
 {
   this->InMetres = metres > 0.0;
@@ -155,8 +164,7 @@ heat_scale frame::scale_of(size_t number) const
 
 void frame::annotate(const context& core, const annotation& wish, const scene_frame& place, const transfer& look, const std::string& time)
 {
-  const bool shows_colors = !this->IsExr && !this->ShowsSamples && this->Wanted.empty();
-  if (wish.any() && shows_colors) {
+  if (wish.any() && !this->IsExr && this->shows_colors()) {
     wish.draw(core, this->view(), place, look, time);
   }
 }
@@ -165,7 +173,7 @@ void frame::write(const context& core, output_file& file) const
 {
   if (this->IsExr) {
     file.write(this->encode_exr());
-  } else if (this->ShowsSamples || !this->Wanted.empty()) {
+  } else if (!this->shows_colors()) {
     const std::vector<float> samples(this->Samples.begin(), this->Samples.end());
     const heat_scale scale =
       this->ShowsSamples ? heat_scale{ 0.0, std::max(1.0, range_of(samples).high), "samples a pixel", "" } : this->scale_of(0);

@@ -22,6 +22,8 @@ public:
   // Sets the units of numbers of rays: lengths are measured in the coordinates of the data, not of the scene, which `scale` stretches.
   // metres: of a unit of the coordinates, 0: unknown. values: the unit of the values, "": unknown.
   void set_units(const double scale[3], double metres, const std::string& values);
+  // Whether the picture is of colours, and no pixel would differ from the background in 8 bits.
+  bool shows_nothing() const;
   // The numbers of rays that the options need; none: nothing is wanted.
   stratus_quantities numbers();
   bool has_numbers() const { return !this->Wanted.empty(); }
@@ -34,6 +36,7 @@ public:
   void write(const context& core, output_file& file) const;
 
 private:
+  bool shows_colors() const { return !this->ShowsSamples && (this->IsExr || this->Wanted.empty()); }
   std::vector<uint8_t> encode_exr() const;
   std::string units_of(stratus_quantity quantity) const;
   heat_scale scale_of(size_t number) const;

@@ -73,12 +73,13 @@ Data and appearance
                           the start
   --select NAME=INDEX     netCDF, Zarr: read a dimension at one index only, from 0, such as an ensemble's member. Separate several by
                           commas, or repeat --select (default: 0 for dimensions that are neither space nor time, which info lists)
-  --time T                the time step: first, last, step:N (from 0), a time in the file's units, or a duration with its unit (3h, 90min,
-                          "2 d") since the file's reference time, or with + before it since its first step. The nearest step is used
-                          and printed
+  --time T                the time step: first, last, step:N (from 0), a moment ("2001-01-01 03:00", by the file's calendar), a time in the
+                          file's units, or a duration with its unit (3h, 90min, "2 d") since the file's reference time, or with +
+                          before it since its first step. The nearest step is used and printed
   --frames OUT-%04d.png   one image for each time step (--time all), all with one transfer function and one camera
   --opacity LIST          "value:alpha,..." with alpha in 0..1 per unit distance (default: the scene's own, otherwise guessed from
-                          the histogram: transparent at the background's value, a ramp beyond it)
+                          the histogram: transparent at the background's value, a ramp beyond it; surfaces are opaque, several
+                          isosurfaces by half)
   --color NAME|LIST       a colour map, stretched over the values shown; NAME_r reverses it; or "value:r:g:b,..." with r, g, b in 0..1.
                           --color list prints the names: )" +
     wrapped(color_names(", "), 26, 140 - 26 - 31) + R"(

@@ -110,6 +110,24 @@ void print_reading(const cli::options& o, const cli::series* in, const cli::clou
   }
 }
 
+void warn_of_nothing(const cli::drawing& drawing)
+{
+  const std::vector<double>& opacity = drawing.functions().opacity;
+  bool all_zero = true;
+  for (size_t i = 1; i < opacity.size(); i += 2) {
+    all_zero = all_zero && opacity[i] <= 0.0;
+  }
+  double low = 0.0, high = 0.0;
+  drawing.functions().shown(low, high);
+  const std::pair<double, double> values = drawing.range();
+  std::fprintf(stderr, "stratus: warning: the picture shows nothing: %s, and the values are in %.6g .. %.6g\n",
+    all_zero
+      ? "the opacity is 0 for every value"
+      : cli::format("the opacity, for a length of %.6g, is above 0 only in %.6g .. %.6g", drawing.functions().unit_distance, low, high)
+          .c_str(),
+    values.first, values.second);
+}
+
 // `in` is null for a scene.
 void render_one(const cli::options& given, const cli::routed& data, const cli::series* in, size_t step, const cli::cloud* water)
 {
@@ -124,6 +142,9 @@ void render_one(const cli::options& given, const cli::routed& data, const cli::s
   cli::output_file out(o.output); // before the work, so that a path that cannot be written is reported at once
   const stratus_image image = frame.view();
   drawing->draw(image);
+  if (frame.shows_nothing()) {
+    warn_of_nothing(*drawing);
+  }
   if (frame.has_numbers()) {
     set_units(frame, *drawing, data, in, o);
     drawing->measure(frame.numbers());

@@ -154,24 +154,6 @@ private:
 
 namespace cli {
 
-double seconds_of(const std::string& units)
-{
-  const std::string word = units.substr(0, units.find(' '));
-  constexpr struct {
-    const char* name;
-    double seconds;
-  } names[] = { { "s", 1 }, { "sec", 1 }, { "secs", 1 }, { "second", 1 }, { "seconds", 1 }, { "ms", 1e-3 }, { "millisecond", 1e-3 },
-    { "milliseconds", 1e-3 }, { "min", 60 }, { "mins", 60 }, { "minute", 60 }, { "minutes", 60 }, { "h", 3600 }, { "hr", 3600 },
-    { "hrs", 3600 }, { "hour", 3600 }, { "hours", 3600 }, { "d", 86400 }, { "day", 86400 }, { "days", 86400 }, { "week", 604800 },
-    { "weeks", 604800 } };
-  for (const auto& known : names) {
-    if (word == known.name) {
-      return known.seconds;
-    }
-  }
-  return 0.0;
-}
-
 void series::open()
 {
   const std::string& path = this->Path;
@@ -233,7 +215,8 @@ series::series(const std::string& path, const reading_options& reading)
       known.push_back(one.name);
     }
     const std::string near = meant(wanted, known);
-    throw failure("no variable '" + wanted + "' in '" + path + "'" + (near.empty() ? "; the" : near + " The") + " variables are: " + names);
+    throw failure("no variable '" + wanted + "' on a grid of three dimensions in '" + path + "'" +
+      (near.empty() ? "; those" : near + " Those") + " that are: " + names);
   }
   for (size_t i = 1; i < this->Times.size(); ++i) {
     if (!(this->Times[i] > this->Times[i - 1])) {
@@ -310,7 +293,14 @@ vtkSmartPointer<vtkDataObject> series::read_parts(const collection_step& step)
 
 std::string series::time_of(size_t step) const
 {
-  return this->Times.empty() ? "" : format("%.9g", this->Times[step]) + (this->Units.empty() ? "" : " " + this->Units);
+  if (this->Times.empty()) {
+    return "";
+  }
+  const context core("host", 1);
+  char text[STRATUS_TIME_TEXT];
+  return stratus_time_write(core, this->Times[step], this->Units.c_str(), this->calendar().c_str(), text) == STRATUS_OK
+    ? text
+    : format("%.9g", this->Times[step]) + (this->Units.empty() ? "" : " " + this->Units);
 }
 
 std::string series::axis_name(int axis) const
@@ -359,6 +349,51 @@ std::string series::describe(size_t step) const
   return this->Times.empty() ? "" : format("step %zu of %zu, at ", step, this->Times.size()) + this->time_of(step);
 }
 
+// Whether a text begins as a date does: digits, and a hyphen behind them.
+bool series::is_moment(const std::string& time)
+{
+  const size_t behind = time.find_first_not_of("0123456789");
+  return behind != std::string::npos && behind > 0 && time[behind] == '-';
+}
+
+double series::value_of_moment(const std::string& time) const
+{
+  const context core("host", 1);
+  const std::string calendar = this->calendar();
+  double value = 0.0;
+  if (stratus_time_value(core, "2000-01-01", this->Units.c_str(), calendar.c_str(), &value) != STRATUS_OK) {
+    throw usage("--time: '" + this->Path + "' has no times since a date" + (this->Units.empty() ? "" : " (it has '" + this->Units + "')") +
+      ": give a number or step:N, not " + time);
+  }
+  if (stratus_time_value(core, time.c_str(), this->Units.c_str(), calendar.c_str(), &value) != STRATUS_OK) {
+    throw usage("--time: " + std::string(stratus_context_message(core)));
+  }
+  return value;
+}
+
+// A number in the file's units, or with a unit of its own.
+double series::value_of_time(const std::string& text) const
+{
+  size_t digits = text.size();
+  while (digits > 0 && !std::isdigit(static_cast<unsigned char>(text[digits - 1])) && text[digits - 1] != '.') {
+    --digits;
+  }
+  const size_t word = text.find_first_not_of(' ', digits);
+  const double value = number(text.substr(0, digits), "--time");
+  if (word == std::string::npos) {
+    return value;
+  }
+  const double given = stratus_time_unit(text.c_str() + word), own = stratus_time_unit(this->Units.c_str());
+  if (given == 0.0) {
+    throw usage("--time: '" + text.substr(word) + "' is no unit of time: ms, s, min, h, d, weeks");
+  }
+  if (own == 0.0) {
+    throw usage("--time: '" + this->Path + "' does not give the unit of its time (it has '" + this->Units + "'): give " + text +
+      " as a number or as step:N");
+  }
+  return value * given / own;
+}
+
 size_t series::find(const std::string& time) const
 {
   if (time.empty() || time == "first") {
@@ -371,24 +406,7 @@ size_t series::find(const std::string& time) const
     return static_cast<size_t>(whole_number(time.substr(5), "--time", 0, static_cast<int>(this->steps()) - 1));
   }
   const bool after_first = time[0] == '+';
-  const std::string text = time.substr(after_first ? 1 : 0);
-  size_t digits = text.size();
-  while (digits > 0 && !std::isdigit(static_cast<unsigned char>(text[digits - 1])) && text[digits - 1] != '.') {
-    --digits;
-  }
-  const size_t word = text.find_first_not_of(' ', digits);
-  double wanted = number(text.substr(0, digits), "--time");
-  if (word != std::string::npos) {
-    const double given = seconds_of(text.substr(word)), own = seconds_of(this->Units);
-    if (given == 0.0) {
-      throw usage("--time: '" + text.substr(word) + "' is no unit of time: ms, s, min, h, d, weeks");
-    }
-    if (own == 0.0) {
-      throw usage("--time: '" + this->Path + "' does not give the unit of its time (it has '" + this->Units + "'): give " + time +
-        " as a number or as step:N");
-    }
-    wanted *= given / own;
-  }
+  double wanted = is_moment(time) ? this->value_of_moment(time) : this->value_of_time(time.substr(after_first ? 1 : 0));
   if (this->Times.empty()) {
     throw usage("--time: '" + this->Path + "' has no time");
   }

@@ -29,7 +29,7 @@ public:
   vtkSmartPointer<vtkDataObject> read(size_t step);
   bool makes_new_arrays() const { return this->Reader && this->Reader->IsA("vtkStratusVariableReader"); }
   bool reads_ahead() const; // the values are bricks in their file
-  // "1.5 hours since ...", "" for a file without time.
+  // "2001-01-01 01:30", "1.5 hours" of times without a date, "" for a file without time.
   std::string time_of(size_t step) const;
   // The name and unit of an axis of coordinates, and the unit of the variable: "" if the file or the format has none.
   std::string axis_name(int axis) const;
@@ -38,7 +38,7 @@ public:
   // The drawn variable's name, standard name and unit, and whether the file is netCDF with coordinates that are lengths.
   data_about about() const;
   double height_factor() const; // of heights on a globe; 0: there is none
-  // Returns "step 3 of 24, at 1.5 hours since ...", or "" for a file without time.
+  // Returns "step 3 of 24, at 2001-01-01 01:30", or "" for a file without time.
   std::string describe(size_t step) const;
   // The file's variables at a step, none of a file that is not read by variables.
   std::vector<variable_entry> variables(size_t step);
@@ -48,12 +48,15 @@ public:
   std::string choice() const;
   // How coordinates became a grid, "" where that is VTK's own affair.
   std::string grid() const;
-  // Finds the step for --time: "first", "last", "step:N", a time in the file's units, a duration with its unit ("3h", "90min", "2 d") since
-  // the file's reference time, or with a plus before it since the first step. Returns the nearest step.
+  // Finds the step for --time: "first", "last", "step:N", a moment ("2001-01-01 01:30"), a time in the file's units, a duration with its
+  // unit ("3h", "90min", "2 d") since the file's reference time, or with a plus before it since the first step. Returns the nearest step.
   size_t find(const std::string& time) const;
 
 private:
   vtkSmartPointer<vtkDataObject> read_parts(const collection_step& step);
+  static bool is_moment(const std::string& time);
+  double value_of_moment(const std::string& time) const;
+  double value_of_time(const std::string& text) const;
 
   void open();
 
@@ -65,7 +68,4 @@ private:
   std::vector<double> Times;
   std::string Units;
 };
-
-// Returns the seconds of a unit of time ("h", "hours since 2001-01-01"), or 0 for a word that is none.
-double seconds_of(const std::string& units);
 } // namespace cli

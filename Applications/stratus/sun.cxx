@@ -29,7 +29,7 @@ bool find_moment(const cli::series* in, size_t step, double& seconds)
 {
   const std::string units = in ? in->units() : "";
   const size_t since = units.find(" since ");
-  const double unit = cli::seconds_of(units);
+  const double unit = stratus_time_unit(units.c_str());
   if (!in || in->times().empty() || since == std::string::npos || unit == 0.0) {
     return false;
   }

@@ -112,6 +112,16 @@ static void set_guess(const stratus_look& look, transfer& result)
   result.origin = std::string("histogram") + (result.logarithmic ? ", " : ": ") + look.reason;
 }
 
+// Surfaces are opaque, several isosurfaces by half, so that all of them show.
+static void set_surfaces(const options& o, transfer& result)
+{
+  if (o.mode == STRATUS_MODE_SLICE || o.mode == STRATUS_MODE_ISOSURFACE) {
+    const double opacity = o.mode == STRATUS_MODE_ISOSURFACE && o.contours.size() > 1 ? 0.5 : 1.0;
+    result.opacity = { result.low, opacity };
+    result.origin = format("%g for surfaces", opacity);
+  }
+}
+
 transfer make_transfer(const context& core, const look_input& data, const stratus_scene* scene, const options& o)
 {
   transfer result;
@@ -135,6 +145,7 @@ transfer make_transfer(const context& core, const look_input& data, const stratu
   } else {
     const stratus_look look = guess(core, data, kind, o);
     set_guess(look, result);
+    set_surfaces(o, result);
     usual = !map && look.kind == STRATUS_LOOK_SIGNED ? "cool-warm" : usual;
   }
   if (o.logarithmic && !(result.low > 0.0)) { // opacities that were given may begin at 0

@@ -19,8 +19,9 @@ static stratus_status check_contours(stratus_context* context, const stratus_ray
     }
   }
   if (options->sampling.interpolation == STRATUS_INTERPOLATION_NEAREST) {
-    return stratus_fail(
-      context, STRATUS_UNSUPPORTED, "isosurfaces of values taken as they are (nearest) are not supported, only linear interpolation is");
+    return stratus_fail(context, STRATUS_UNSUPPORTED,
+      "isosurfaces of values taken as they are (nearest) are not supported, only linear interpolation is: vtkVolumeProperty has "
+      "SetInterpolationTypeToLinear()");
   }
   return STRATUS_OK;
 }

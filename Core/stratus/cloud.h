@@ -3,6 +3,7 @@
 #ifndef STRATUS_PUBLIC_CLOUD_H
 #define STRATUS_PUBLIC_CLOUD_H
 
+#include "calendar.h"
 #include "context.h"
 
 #ifdef __cplusplus
@@ -90,10 +91,6 @@ STRATUS_API stratus_status stratus_air_standard(stratus_context* context, double
 /* Compute heights above the sea (m) of pressures (Pa) in the standard atmosphere, and temperatures (K) there. Pressures below that at 80000
  * m, 1.05 Pa, are at 80000 m. NaN where a pressure is below 0 or NaN. heights, temperatures: NULL: not wanted. */
 STRATUS_API void stratus_air_heights(int64_t count, const double* pressures, double* heights, double* temperatures);
-
-/* Read a moment: "2024-06-01", "2024-06-01 09:00", "2024-06-01T09:00:30.5Z", "2024-06-01_09:00:00", "2024-06-01 09:00 +02:00". Without a
- * zone it is in UTC. Seconds are counted from 1970-01-01 00:00 UTC in days of 86400 s, by the Gregorian calendar. Years 1 to 9999. */
-STRATUS_API stratus_status stratus_time_parse(stratus_context* context, const char* text, double* seconds);
 
 /* Compute where the sun's centre is in the sky, without the air's refraction, which lifts it by .1 degrees at 10 degrees of elevation and
  * by .5 at the horizon. The Astronomical Almanac's formula, by Michalsky 1988 (Solar Energy 40, 227), within .02 degrees.

@@ -27,10 +27,10 @@ from ._octree import Octree, Visible
 from ._picture import Film, Picture, Rendering
 from ._several import render_several
 from ._tetrahedra import Tetrahedra
-from ._values import NothingShown
+from ._values import NothingShown, PlacesUnused
 from ._volume import Volume
 from ._voxels import Hits, Tree, distance_field, first_hits
 
-__all__ = ["Cancelled", "Context", "DeviceError", "Film", "Hits", "NothingShown", "Octree", "Partition", "Picture", "Rendering", "Tetrahedra", "Tree",
-           "Unsupported", "View", "VisibilityOrder", "Visible", "Volume", "cloud", "color_maps", "devices", "distance_field", "first_hits", "partition", "render",
+__all__ = ["Cancelled", "Context", "DeviceError", "Film", "Hits", "NothingShown", "Octree", "Partition", "Picture", "PlacesUnused", "Rendering", "Tetrahedra",
+           "Tree", "Unsupported", "View", "VisibilityOrder", "Visible", "Volume", "cloud", "color_maps", "devices", "distance_field", "first_hits", "partition", "render",
            "render_several", "render_tetrahedra", "show", "slab", "turn", "view"]

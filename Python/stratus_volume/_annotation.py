@@ -63,7 +63,8 @@ class Annotation:
         self.struct.bounds[:] = bounds
         own = axes or [Axis()] * 3
         if self.struct.coast and [axis.kind for axis in own[:2]] != ["longitude", "latitude"]:
-            raise ValueError("coast is True, but the data have no longitudes and latitudes, as an xarray.DataArray may have")
+            raise ValueError("coast is True, but places are no longitudes and latitudes: an xarray.DataArray needs both, of one dimension each and "
+                             "in degrees, and a height, depth or pressure with its unit")
         for axis, to in zip(own, self.struct.axis):
             texts = [axis.title.encode(), axis.units.encode()]
             to.kind, to.title, to.units, to.scale = _KINDS[f"STRATUS_AXIS_{axis.kind.upper()}"], *texts, axis.scale

@@ -76,7 +76,7 @@ def render(data, opacity=None, color=None, size=(640, 480), camera=None, spacing
                    the seam between two poles, too. Cells are drawn, as of structured grids
     opacity        pairs of a value and its opacity in 0..1 per unit_distance. Two pairs at one value are a step. A number is the top of a
                    ramp away from the most frequent value, or the opacity of the whole volume if all values are equal; default 0.3, in mode
-                   slice 1 for all values. For several components one of these for all, or a list with one for each
+                   slice and of one isosurface 1 for all values, of several isosurfaces 0.5. For several components one of these for all, or a list with one for each
     color          (r, g, b) in 0..1 for all values, or several (value, r, g, b), two at one value being a step; or a colour map over the range of
                    the values: a function of 0..1, or the name of one of `color_maps()`, or of a map or colour of matplotlib's, if that is
                    installed. For several components one of these for all, or a list with one for each

@@ -21,6 +21,10 @@ def _units(coordinate):
     return str(coordinate.attrs.get("units", "")).strip()
 
 
+def is_degrees(coordinate):
+    return coordinate is not None and _units(coordinate).lower().startswith("degree")
+
+
 def is_down(name, coordinate):
     """Whether a vertical coordinate of a length counts downwards."""
     positive = str(coordinate.attrs.get("positive", "")).lower()

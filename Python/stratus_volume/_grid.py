@@ -9,10 +9,10 @@ import numpy
 from . import _declarations as c
 from . import _earth
 from ._core import address, context as context_of, library, type_of
-from ._dimensions import coordinate_of, space_axes_of, values_of
+from ._dimensions import axis_of, coordinate_of, space_axes_of, values_of
 from ._lazy import Lazy, bytes_of, lazy_of
 from ._pages import Pages, Seen, opened
-from ._values import Spread, mask_of, native, none_visible, numbers, power_of, scaled, visible
+from ._values import PlacesUnused, Spread, mask_of, native, none_visible, numbers, power_of, scaled, visible, warn
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 _POINT_HIDDEN = c.CONSTANTS["STRATUS_GHOST_HIDDEN_POINT"]
@@ -307,9 +307,33 @@ def _of_xarray(data, spacing, origin, axes, memory, paged):
                 places = [(place - place[0]) * ((place.size - 1) / abs(place[-1] - place[0])) for place in places]
             coordinates = places
             labels = _earth.axes_of(*named, [places[at] for at in ordered], earth is not None)
+    if spacing is None and origin is None and earth is None:
+        _warn_of_unused(data, dict(zip(data.dims, axes)), coordinates is None)
     grid = _of_array(values, spacing, origin, axes, coordinates)
     grid.about, grid.earth, grid.metres, grid.axes = _earth.About(data), earth is not None, earth[1] if earth else None, labels
     return grid
+
+
+def _warn_of_unused(data, axes, by_index):
+    """Warns of longitudes, latitudes and heights of a DataArray whose places are others.
+
+    axes      the axis of each dimension
+    by_index  True: places are indices
+    """
+    wide = [str(name) for name, own in data.coords.items() if len(getattr(own, "dims", ())) > 1 and set(own.dims) <= set(data.dims) and
+            axis_of(name, own) in ("x", "y", "z")]
+    if wide and by_index:
+        warn(f"places are indices, because coordinates have more than one dimension: {', '.join(wide)}. globe=True uses longitudes and latitudes of two; "
+             "the command stratus and the readers for VTK and ParaView use all of them", PlacesUnused)
+        return
+    own = {axis: coordinate_of(data, name) for name, axis in axes.items()}
+    if not (_earth.is_degrees(own.get("x")) and _earth.is_degrees(own.get("y"))):
+        return
+    level = next((name for name, axis in axes.items() if axis == "z"), "")
+    reason = "has no coordinate" if own.get("z") is None else f"is in {own['z'].attrs.get('units', '')!r}, neither a length nor a pressure"
+    if own.get("z") is None or _earth.heights_of(level, own["z"]) is None:
+        warn(f"places are no longitudes and latitudes, because {level!r} {reason}. The command stratus and the readers for VTK and ParaView know the heights "
+             "of sigma and hybrid levels", PlacesUnused)
 
 
 def chosen(values, component, name):

@@ -194,14 +194,19 @@ def surface_of(surface):
     return result
 
 
-def set_surface(options, mode, surface, opacity):
-    """Sets the surface of mode slice. Returns the opacity: of mode slice 1 for all values, unless it is given."""
+def set_surface(options, mode, surface):
+    """Sets the surface of mode slice."""
     if mode == "slice":
         options.slice = surface_of(surface)
-        return [(0, 1)] if opacity is None else opacity
-    if surface is not None:
+    elif surface is not None:
         raise ValueError(f"surface is of mode slice, the mode is {mode}")
-    return opacity
+
+
+def opacity_of_surfaces(mode, contours):
+    """The opacity of all values where none is given: 1 in mode slice and of one isosurface, a half of several, of which all then show; None in other
+    modes."""
+    several = mode == "isosurface" and not (contours is None or is_number(contours) or numpy.size(contours) == 1)
+    return [(0, 0.5 if several else 1)] if mode in ("slice", "isosurface") else None
 
 
 def _direction(vector, name):

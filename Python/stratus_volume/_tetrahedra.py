@@ -11,7 +11,7 @@ from ._annotation import Annotation
 from ._core import Owned, address, as_dict, choice, context as context_of, library, type_of
 from ._grid import affine, chosen, of_package
 from ._look import Image, Quantities, Units, crop_box, set_contours, set_planes, value_interval
-from ._media import explain_each, functions_of, materials_of, set_surface
+from ._media import explain_each, functions_of, materials_of, opacity_of_surfaces, set_surface
 from ._values import (Spread, explain, length_of, mask_of, native, none_visible, number, own_points, pixels, positive, power_of, scaled,
                       unit_length, visible, warn)
 
@@ -245,7 +245,8 @@ class AskedOfCells:
             options.tolerance = number(tolerance, "tolerance")
         options.dependent, options.mean_components = int(bool(dependent)), int(bool(mean_components))
         self._materials = materials_of(options, True if mode == "first-hit" and shade is False else shade, drawn.components)
-        opacity = set_surface(options, mode, surface, opacity)
+        set_surface(options, mode, surface)
+        surfaces = opacity_of_surfaces(mode, contours) if opacity is None else None
         set_planes(options, clip_planes, c.CONSTANTS["STRATUS_TETRA_CLIP_PLANES_MAX"])
         if crop is not None:
             options.crop, options.crop_bounds[:] = 1, crop_box(crop)
@@ -260,6 +261,7 @@ class AskedOfCells:
         if guessed:
             opacity, color = guessed[0], guessed[1] if color is None else color
             unit_distance = guessed[2] if unit_distance is None else unit_distance
+        opacity = surfaces or opacity
         self._wanted = functions_of(drawn, opacity, color, gradient_opacity, weights, dependent, None)
         for each in self._wanted:
             own_points(each.opacity)

@@ -18,12 +18,16 @@ class NothingShown(UserWarning):
     """A picture shows nothing, or next to nothing, of its data. The message names the reason."""
 
 
-def warn(reason):
+class PlacesUnused(UserWarning):
+    """A picture is drawn along indices, although the data have other places. The message names them."""
+
+
+def warn(reason, kind=NothingShown):
     """Warns at the line that called the package."""
     level, frame, folder = 2, sys._getframe(1), os.path.dirname(__file__)
     while frame.f_back and os.path.dirname(frame.f_code.co_filename) == folder:
         level, frame = level + 1, frame.f_back
-    warnings.warn(reason, NothingShown, stacklevel=level)
+    warnings.warn(reason, kind, stacklevel=level)
 
 
 # ---- numbers

@@ -10,7 +10,7 @@ from ._annotation import Annotation
 from ._core import Owned, address, as_dict, choice, context as context_of, library
 from ._grid import affine, grid_of
 from ._look import Image, Quantities, Units, crop_box, set_contours, set_planes, set_shading, value_interval
-from ._media import Function2D, Labels, explain_each, functions_of, looks_of, materials_of, set_surface
+from ._media import Function2D, Labels, explain_each, functions_of, looks_of, materials_of, opacity_of_surfaces, set_surface
 from ._values import explain, is_number, length_of, number, own_points, pixels, positive, unit_length, warn
 
 
@@ -189,7 +189,8 @@ class Asked:
         if unit_distance is not None:
             positive(unit_distance, "unit_distance")
         positive(extinction, "extinction")
-        opacity = set_surface(options, mode, surface, opacity)
+        set_surface(options, mode, surface)
+        surfaces = opacity_of_surfaces(mode, contours) if opacity is None else None
         looks = looks_of(labels, looks)
         self._labels = None if labels is None else Labels(labels, grid)
         if looks:
@@ -203,6 +204,7 @@ class Asked:
         if opacity is None and self._is_guessed(mode, looks, function_2d):
             opacity, colors, own_unit = _earth.functions(drawn.context, grid.about, grid.sampled(), grid.world.index(2))
             color, unit_distance = colors if color is None else color, own_unit if unit_distance is None else unit_distance
+        opacity = surfaces or opacity
         wanted = self._wanted = functions_of(grid, opacity, color, gradient_opacity, weights, dependent, looks)
         own = [point for each in wanted for point in own_points(each.opacity) or ()]
         self.power = power = grid.power(own or None)

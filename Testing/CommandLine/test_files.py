@@ -221,6 +221,32 @@ def collection(name, entries):
         file.write("</Collection></VTKFile>\n")
 
 
+def test_pictures_of_nothing():
+    write(vtkXMLImageDataWriter, image(), "values.vti")
+    write(vtkXMLStructuredGridWriter, fill(curved(*(range(n) for n in SIDE))), "values.vts")
+    for name in ("values.vti", "values.vts"):
+        small = ("render", name, "--array", "qc", "-o", "none.png", "--size", "24", "--device", "host", "--color", "viridis", "--unit-distance", "2")
+        expect(0, r"warning: the picture shows nothing: the opacity is 0 for every value, and the values are in 0 \.\. 30$", *small, "--opacity", "0:0,9:0")
+        expect(0, r"nothing: the opacity, for a length of 2, is above 0 only in 40 \.\. 60, and the values are in 0 \.\. 30$", *small, "--opacity",
+               "10:0,40:0,50:1,60:0,70:0")
+        for words in (("--opacity", "0:0,30:.6"), ("--opacity", "0:0", "--quantity", "integral"), ("--opacity", "0:.5", "--background", "black")):
+            if "shows nothing" in expect(0, "picture", *small, *words):
+                fail(f"a picture of {name} with {words} is said to show nothing")
+
+
+def test_surfaces_without_opacity():
+    for name, mode, opacity in (("values.vti", ("isosurface", "--contours", "12"), "0:1"), ("values.vti", ("isosurface", "--contours", "12,20"), "0:.5"),
+                                ("values.vti", ("slice", "--slice", "2,1,3,1,1,1"), "0:1"), ("values.vts", ("isosurface", "--contours", "12"), "0:1")):
+        words = ("--array", "qc", "-o", "surface.png", "--size", "24", "--device", "host", "--color", "0:0:0:1,30:1:0:0", "--mode", *mode)
+        pictures = []
+        for given in ((), ("--opacity", opacity), ("--opacity", "0:.2")):
+            expect(0, "picture", "render", name, *words, *given)
+            with open("surface.png", "rb") as file:
+                pictures.append(file.read())
+        if pictures[0] != pictures[1] or pictures[0] == pictures[2]:
+            fail(f"{mode} of {name} has not the opacity {opacity}")
+
+
 def test_collections():
     for step in range(4):
         write(vtkXMLImageDataWriter, image(10 * step), f"step{step}.vti")
@@ -233,6 +259,8 @@ def test_collections():
         fail("a step of a collection is not its file's picture")
     expect(2, "within 0..3", "render", "steps.pvd", "-o", "no.png", "--time", "step:4")
     expect(2, "does not give the unit", "render", "steps.pvd", "-o", "no.png", "--time", "3h")
+    expect(2, "'steps.pvd' has no times since a date: give a number or step:N, not 2001-01-01", "render", "steps.pvd", "-o", "no.png", "--time",
+           "2001-01-01")
     expect(2, "'fortnight' is no unit", "render", "steps.pvd", "-o", "no.png", "--time", "3 fortnight")
     expect(2, "has no time", "render", "step0.vti", "-o", "no.png", "--time", "3")
     collection("back.pvd", [(0, 0, "step0.vti"), (2, 0, "step1.vti"), (1, 0, "step2.vti")])
@@ -440,13 +468,14 @@ def test_netcdf():
         return
     subprocess.run([MAKERS["make-cumulus"], "cumulus.nc", "24"], check=True)
     said = expect(0, "rectilinear grid of 24 x 24 x 64 points", "info", "cumulus.nc", "--time", "2h")
-    for pattern in (r"time +13 steps: 0 0\.25 0\.5 0\.75 1 \.\.\. 3 hours since 2024-06-01 09:00", r"step 8 of 13, at 2 hours",
+    for pattern in (r"time +13 steps: 0 0\.25 0\.5 0\.75 1 \.\.\. 3 hours since 2024-06-01 09:00", r"step 8 of 13, at 2024-06-01 11:00$",
                     r"variable +'qc' in g kg-1, cloud liquid water mixing ratio, 0 \.\. [0-9.]+$", r"z by 'z' \(m\)"):
         if not re.search(pattern, said, re.MULTILINE):
             fail(f"info of cumulus.nc does not say '{pattern}':\n{said}")
-    for time in ("2h", "120min", "+2 hours", "7200 s", "2", "step:8"):
-        expect(0, r"time +step 8 of 13, at 2 hours since", "render", "cumulus.nc", "-o", "qc.png", "--size", "32x32", "--time", time)
-    expect(1, r"no variable 'qi' in 'cumulus.nc': did you mean qc\? The variables are: qc \(0 \.\. [-0-9.e]+ g kg-1\)$", "render", "cumulus.nc", "-o", "no.png",
+    for time in ("2h", "120min", "+2 hours", "7200 s", "2", "step:8", "2024-06-01 11:00", "2024-06-01T11:07", "2024-06-01 13:00 +02:00"):
+        expect(0, r"time +step 8 of 13, at 2024-06-01 11:00$", "render", "cumulus.nc", "-o", "qc.png", "--size", "32x32", "--time", time)
+    expect(2, r"--time: time '2024-06-31' is no moment of the calendar standard", "render", "cumulus.nc", "-o", "no.png", "--time", "2024-06-31")
+    expect(1, r"no variable 'qi' on a grid of three dimensions in 'cumulus.nc': did you mean qc\? Those that are: qc \(0 \.\. [-0-9.e]+ g kg-1\)$", "render", "cumulus.nc", "-o", "no.png",
            "--variable", "qi")
     with open("cumulus.nc", "rb") as file:
         text = file.read()
@@ -490,7 +519,7 @@ def test_vdb():
                  f"0:0:0:1,{scale}:1:1:0" if scale > 0 else f"{scale}:1:1:0,0:0:0:1")
         if abs(drawn("cloud.vdb", *look, *words) - single).max() > 1:  # by other roundings of the values
             fail(f"{name} of cloud.vdb is another picture than the density it is a multiple of")
-    expect(1, r"no variable 'qc' in 'cloud.vdb'; the variables are: density \(0 \.\. 1\), wind \(0 \.\. 5\)$",
+    expect(1, r"no variable 'qc' on a grid of three dimensions in 'cloud.vdb'; those that are: density \(0 \.\. 1\), wind \(0 \.\. 5\)$",
            "render", "cloud.vdb", "-o", "no.png", "--variable", "qc")
     apart = drawn("apart.vdb", *look)  # 18 MB as an image, more than the least that stays in its file
     for words in (), ("--memory", "16M"):
@@ -825,7 +854,7 @@ PARTS = {  # within a part, tests read files of those before
     "grids": (test_kinds, test_modes_of_grids, test_bad_grids, test_collections, test_films),
     "memory": (test_memory, test_memory_of_meshes_that_stay),
     "memory_of_cells": (test_memory_of_meshes_that_move,),
-    "looks": (test_exaggeration, test_annotations, test_colors_and_logarithm, test_vectors, test_picture_formats),
+    "looks": (test_pictures_of_nothing, test_surfaces_without_opacity, test_exaggeration, test_annotations, test_colors_and_logarithm, test_vectors, test_picture_formats),
     "images": (test_raw_types, test_raw, test_scans, test_refined, test_limit_of_memory),
     "readers": (test_netcdf, test_vdb, test_vtkhdf, test_openfoam, test_ensight),
 }

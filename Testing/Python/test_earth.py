@@ -4,8 +4,10 @@
 variable is."""
 from checking import ball, check, done, refuse
 
+import warnings
+
 import numpy
-from stratus_volume import Volume, render, show
+from stratus_volume import PlacesUnused, Volume, render, show
 
 RADIUS = 6371000.0
 host = dict(device="host", size=(60, 45))
@@ -49,6 +51,34 @@ def places():
     check(Volume(Labelled(field, same), device="host").bounds == (0, 46, 0, 38, 0, 22), "lengths of one unit keep it")
     small = dict(zip("zyx", (Coordinate(numpy.arange(n) * scale, units="um") for n, scale in zip(field.shape, (0.01, 1, 1)))))
     check(Volume(Labelled(field, small), device="host").exaggeration == 1, "micrometres are not on the Earth")
+
+
+def unused():
+    def said(data, **options):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            Volume(data, device="host", **options)
+        check(all(each.category is PlacesUnused and each.filename == __file__ for each in caught), "at the caller's line")
+        return [str(each.message) for each in caught]
+
+    def wide(units):
+        result = Coordinate(numpy.zeros(field.shape[1:]), units=units)
+        result.dims = ("eta", "xi")
+        return result
+    roms = Labelled(field, dict.fromkeys(("s_rho", "eta", "xi")))
+    roms.coords = dict(lon_rho=wide("degree_east"), lat_rho=wide("degree_north"), mask=wide("1"))
+    warned = said(roms)
+    check(len(warned) == 1 and "places are indices, because coordinates have more than one dimension: lon_rho, lat_rho." in warned[0], f"two dimensions: {warned}")
+    check(said(roms, spacing=(1, 1, 1)) == [], "places that are given are used")
+    sigma = ocean(vertical=Coordinate(numpy.linspace(-1, 0, 12), units="1", standard_name="ocean_sigma_coordinate"))
+    warned = said(sigma)
+    check(len(warned) == 1 and "because 'depth' is in '1', neither a length nor a pressure." in warned[0], f"sigma levels: {warned}")
+    refuse(ValueError, "coast is True, but places are no longitudes and latitudes", render, Volume(sigma, device="host"), coast=True)
+    bare = ocean()
+    del bare.coords["depth"]
+    warned = said(bare)
+    check(len(warned) == 1 and "because 'depth' has no coordinate." in warned[0], f"levels without a coordinate: {warned}")
+    check(said(ocean()) == [] and said(field) == [] and said(Labelled(field, dict.fromkeys("zyx"))) == [], "others are used, or there are none")
 
 
 def heights():
@@ -105,6 +135,7 @@ def colors_and_opacity():
 
 
 places()
+unused()
 heights()
 framed()
 colors_and_opacity()

@@ -94,6 +94,9 @@ def components():
     refuse(ValueError, "5)", render, numpy.zeros((4, 4, 4, 5)))
     refuse(ValueError, "2 components", distance_field, several)
     check(render(several, mode="isosurface", contours=[0.5], **host).rgba[..., 3].max() > 0, "surfaces of components")
+    for contours, opacity in (0.5, 1), ([0.5], 1), ([0.3, 0.6], 0.5):
+        own, given = (render(lit, mode="isosurface", contours=contours, color=(1, 1, 1), **host, **each) for each in ({}, dict(opacity=[(0, opacity)])))
+        check(numpy.array_equal(own.rgba, given.rgba) and own.rgba.max() > 0.4, f"the opacity of surfaces at {contours} is {opacity}")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         render(several, opacity=[[(0, 0), (1, 0)]] * 2, **host)

@@ -390,6 +390,7 @@ static void ray_casters(const small_scene* scene)
 static void clouds(void)
 {
   double value = 0.0;
+  char moment[STRATUS_TIME_TEXT];
   IS_SILENT(stratus_cloud_extinction(NULL, 1e-3, 1e-5, 1e3, &value));
   REFUSES(stratus_cloud_extinction(context, 1e-3, 1e-5, 1e3, NULL));
   IS_SILENT(stratus_cloud_opacity(NULL, 1, 1, six, &value));
@@ -409,6 +410,14 @@ static void clouds(void)
   IS_SILENT(stratus_time_parse(NULL, "2024-06-01", &value));
   REFUSES(stratus_time_parse(context, NULL, &value));
   REFUSES(stratus_time_parse(context, "2024-06-01", NULL));
+  GIVES(0.0, stratus_time_unit(NULL));
+  IS_SILENT(stratus_time_write(NULL, 0, "days since 2001-01-01", NULL, moment));
+  REFUSES(stratus_time_write(context, 0, "days since 2001-01-01", NULL, NULL));
+  REFUSES(stratus_time_write(context, 0, NULL, NULL, moment));
+  IS_SILENT(stratus_time_value(NULL, "2024-06-01", "days since 2001-01-01", NULL, &value));
+  REFUSES(stratus_time_value(context, NULL, "days since 2001-01-01", NULL, &value));
+  REFUSES(stratus_time_value(context, "2024-06-01", NULL, NULL, &value));
+  REFUSES(stratus_time_value(context, "2024-06-01", "days since 2001-01-01", NULL, NULL));
   IS_SILENT(stratus_sun_position(NULL, 0, 0, 0, &value, six));
   REFUSES(stratus_sun_position(context, 0, 0, 0, NULL, &value));
   REFUSES(stratus_sun_position(context, 0, 0, 0, &value, NULL));

@@ -231,7 +231,7 @@ std::vector<std::string> curve_methods(bool quick)
     add("vtk:fixedpoint/2", { ":2", "" });
     add("vtk:gpu", { ":2", "", ":0.5" });
     add("openvdb", { ":2", "", ":0.5" });
-    add("nanovdb", { ":2", "", ":0.5" });
+    add("nanovdb", { "" });
     return methods;
   }
   add("stratus:auto",
@@ -249,7 +249,7 @@ std::vector<std::string> curve_methods(bool quick)
   add("vtk:fixedpoint/2", { ":2", "", ":0.5" });
   add("vtk:gpu", { ":2", "", ":0.5" });
   add("openvdb", { ":2", "", ":0.5" });
-  add("nanovdb", { ":2", "", ":0.5" });
+  add("nanovdb", { "" }); // takes openvdb's samples
   return methods;
 }
 

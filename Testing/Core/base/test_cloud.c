@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause
- * Clouds in physical units: extinction, the transfer function's error, units and names, air, moments, and the sun against an ephemeris. */
+ * Clouds in physical units: extinction, the transfer function's error, units and names, air, and the sun against an ephemeris. */
 #include "structures.h"
 
 #include "stratus/cloud.h"
@@ -179,29 +179,6 @@ static void heights_of_pressures_are_those_of_the_standard_atmosphere(void** sta
   assert_true(isnan(heights[2]) && isnan(heights[3]));
 }
 
-static void moments_are_counted_from_1970(void** state)
-{
-  static const struct {
-    const char* text;
-    double seconds;
-  } cases[] = { { "1970-01-01", 0.0 }, { "1970-01-01T00:00:01.5Z", 1.5 }, { "1969-12-31 23:59", -60.0 }, { "2000-03-01", 951868800.0 },
-    { "2024-06-01 09:00", 1717232400.0 }, { "2024-06-01_09:00:00", 1717232400.0 }, { "2024-06-01T11:00:00+02:00", 1717232400.0 },
-    { "2024-06-01 04:30 -0430", 1717232400.0 }, { "2024-6-1 9:0:0 UTC", 1717232400.0 }, { "2001-09-09 01:46:40", 1000000000.0 },
-    { "1900-01-01", -2208988800.0 } };
-  static const char* const bad[] = { "", "2024", "2024-13-01", "2024-02-30", "1900-02-29", "2024-06-01 25:00", "2024-06-01 09:61", "noon",
-    "2024-06-01 09:00 home", "2024-06-01x", "0-01-01" };
-  (void)state;
-  double seconds = 7.0;
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-    if (stratus_time_parse(context, cases[i].text, &seconds) != STRATUS_OK || seconds != cases[i].seconds) {
-      fail_msg("'%s' is %.17g: %s", cases[i].text, seconds, stratus_context_message(context));
-    }
-  }
-  for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
-    refused(stratus_time_parse(context, bad[i], &seconds), "is no moment like 2024-06-01");
-  }
-}
-
 /* The first position is published: 39.872046 degrees above the horizon and azimuth 194.340241 (Reda & Andreas 2004, Solar Energy 76, 577,
  * table A5.1, their e0). The others are PyEphem 4.2.1's, whose VSOP87 is right to an arc second, without refraction. In 25,000 positions
  * the largest distance from them was .0143 degrees. */
@@ -315,7 +292,6 @@ int test_cloud(void)
     cmocka_unit_test(units_of_water_are_known),
     cmocka_unit_test(standard_atmosphere_is_that_of_the_tables),
     cmocka_unit_test(heights_of_pressures_are_those_of_the_standard_atmosphere),
-    cmocka_unit_test(moments_are_counted_from_1970),
     cmocka_unit_test(sun_is_where_an_ephemeris_has_it),
     cmocka_unit_test(direction_turns_from_north_to_east),
     cmocka_unit_test(light_shows_a_thick_cloud_as_white),
