@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace {
 constexpr double margin = 1.02; // of the window around what it shows
@@ -45,6 +46,19 @@ void shown_bounds(const cli::context& core, const stratus_volume& volume, const 
   stratus_value_range_destroy(ranges);
   core.check(status, "what is shown");
   core.check(stratus_volume_bounds(core, &part, bounds), "bounds");
+}
+
+// Points of an opacity that is 0 but at contours, by which a camera shows isosurfaces only.
+std::vector<double> opacity_at(const std::vector<double>& contours)
+{
+  std::vector<double> points;
+  for (double contour : std::set<double>(contours.begin(), contours.end())) {
+    const double width = 1e-6 * std::fabs(contour) + 1e-30;
+    if (points.empty() || contour - width > points[points.size() - 2]) {
+      points.insert(points.end(), { contour - width, 0.0, contour, 1.0, contour + width, 0.0 });
+    }
+  }
+  return points;
 }
 
 // Finds the tangents of the widest and highest view of the bounds at this elevation, for any azimuth, so that a turn about the upward axis
@@ -104,8 +118,13 @@ stratus_camera place_camera(const context& core, const options& o, const std::ve
   double focal[3];
   double half[3];
   double eye[3];
-  for (const shown_volume& one : shown) {
+  const std::vector<double> at_contours = opacity_at(o.mode == STRATUS_MODE_ISOSURFACE ? o.contours : std::vector<double>());
+  for (shown_volume one : shown) {
     double own[6];
+    if (!at_contours.empty()) {
+      one.transfer.opacity = at_contours.data();
+      one.transfer.opacity_count = at_contours.size() / 2;
+    }
     if (o.axes || (o.coast && !o.globe)) { // the box is seen as a whole
       core.check(stratus_volume_bounds(core, one.volume, own), "bounds");
     } else {

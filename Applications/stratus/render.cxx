@@ -13,6 +13,7 @@
 
 #include "vtkStratusMetres.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -110,21 +111,29 @@ void print_reading(const cli::options& o, const cli::series* in, const cli::clou
   }
 }
 
-void warn_of_nothing(const cli::drawing& drawing)
+void warn_of_nothing(const cli::options& o, const cli::drawing& drawing)
 {
-  const std::vector<double>& opacity = drawing.functions().opacity;
+  const cli::transfer& functions = drawing.functions();
+  const std::vector<double>& opacity = functions.opacity; // its first and last value are those of all values beyond
+  const std::pair<double, double> values = drawing.range();
   bool all_zero = true;
   for (size_t i = 1; i < opacity.size(); i += 2) {
     all_zero = all_zero && opacity[i] <= 0.0;
   }
-  double low = 0.0, high = 0.0;
-  drawing.functions().shown(low, high);
-  const std::pair<double, double> values = drawing.range();
-  std::fprintf(stderr, "stratus: warning: the picture shows nothing: %s, and the values are in %.6g .. %.6g\n",
-    all_zero
-      ? "the opacity is 0 for every value"
-      : cli::format("the opacity, for a length of %.6g, is above 0 only in %.6g .. %.6g", drawing.functions().unit_distance, low, high)
-          .c_str(),
+  const bool misses = o.mode == STRATUS_MODE_ISOSURFACE &&
+    std::none_of(o.contours.begin(), o.contours.end(), [&values](double c) { return c >= values.first && c <= values.second; });
+  std::string reason =
+    cli::format("no ray meets a value that shows, or opacities are too low for a length of %.6g", functions.unit_distance);
+  if (all_zero) {
+    reason = "the opacity is 0 for every value";
+  } else if (misses) {
+    reason = "no contour is within the values";
+  } else if (opacity[1] <= 0.0 && opacity.back() <= 0.0) {
+    double low = 0.0, high = 0.0;
+    functions.shown(low, high);
+    reason = cli::format("the opacity, for a length of %.6g, is above 0 only in %.6g .. %.6g", functions.unit_distance, low, high);
+  }
+  std::fprintf(stderr, "stratus: warning: the picture shows nothing: %s, and the values are in %.6g .. %.6g\n", reason.c_str(),
     values.first, values.second);
 }
 
@@ -143,7 +152,7 @@ void render_one(const cli::options& given, const cli::routed& data, const cli::s
   const stratus_image image = frame.view();
   drawing->draw(image);
   if (frame.shows_nothing()) {
-    warn_of_nothing(*drawing);
+    warn_of_nothing(o, *drawing);
   }
   if (frame.has_numbers()) {
     set_units(frame, *drawing, data, in, o);

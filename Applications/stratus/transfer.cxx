@@ -145,8 +145,10 @@ transfer make_transfer(const context& core, const look_input& data, const stratu
   } else {
     const stratus_look look = guess(core, data, kind, o);
     set_guess(look, result);
-    set_surfaces(o, result);
     usual = !map && look.kind == STRATUS_LOOK_SIGNED ? "cool-warm" : usual;
+  }
+  if (o.opacity.empty()) {
+    set_surfaces(o, result);
   }
   if (o.logarithmic && !(result.low > 0.0)) { // opacities that were given may begin at 0
     result.low = guess(core, data, kind, o).low;

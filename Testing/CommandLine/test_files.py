@@ -229,6 +229,8 @@ def test_pictures_of_nothing():
         expect(0, r"warning: the picture shows nothing: the opacity is 0 for every value, and the values are in 0 \.\. 30$", *small, "--opacity", "0:0,9:0")
         expect(0, r"nothing: the opacity, for a length of 2, is above 0 only in 40 \.\. 60, and the values are in 0 \.\. 30$", *small, "--opacity",
                "10:0,40:0,50:1,60:0,70:0")
+        expect(0, r"nothing: no contour is within the values, and the values are in 0 \.\. 30$", *small, "--mode", "isosurface", "--contours", "31")
+        expect(0, r"nothing: no ray meets a value that shows", *small, "--opacity", "0:1", "--crop", "90,91,90,91,90,91")
         for words in (("--opacity", "0:0,30:.6"), ("--opacity", "0:0", "--quantity", "integral"), ("--opacity", "0:.5", "--background", "black")):
             if "shows nothing" in expect(0, "picture", *small, *words):
                 fail(f"a picture of {name} with {words} is said to show nothing")
