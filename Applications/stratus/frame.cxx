@@ -48,11 +48,11 @@ stratus_image frame::view()
 
 bool frame::shows_nothing() const
 {
-  float largest = 0.0F;
-  for (size_t alpha = 3; alpha < this->Rgba.size(); alpha += 4) {
-    largest = std::max(largest, this->Rgba[alpha]);
+  bool any = !this->shows_colors();
+  for (size_t alpha = 3; alpha < this->Rgba.size() && !any; alpha += 4) {
+    any = this->Rgba[alpha] >= 0.5F / 255.0F;
   }
-  return this->shows_colors() && largest < 0.5F / 255.0F;
+  return !any;
 }
 
 void frame::set_units(const double scale[3], double metres, const std::string& values)

@@ -114,7 +114,7 @@ void print_reading(const cli::options& o, const cli::series* in, const cli::clou
 void warn_of_nothing(const cli::options& o, const cli::drawing& drawing)
 {
   const cli::transfer& functions = drawing.functions();
-  const std::vector<double>& opacity = functions.opacity; // its first and last value are those of all values beyond
+  const std::vector<double>& opacity = functions.opacity; // values beyond its ends have the opacity of the ends
   const std::pair<double, double> values = drawing.range();
   bool all_zero = true;
   for (size_t i = 1; i < opacity.size(); i += 2) {

@@ -58,7 +58,7 @@ def places_of(names, coordinates):
     x, y = (numpy.asarray(each.values, numpy.float64) for each in coordinates[:2])
     units = [_units(each) for each in coordinates]
     one = _LENGTHS.get(units[0]) if len(set(units)) == 1 else None
-    if all(unit.lower().startswith("degree") for unit in units[:2]):
+    if all(is_degrees(each) for each in coordinates[:2]):
         north = numpy.radians(y)
         east = numpy.radians(numpy.unwrap(x, period=360.0)) * numpy.cos(0.5 * (north.min() + north.max()))
         x, y = _RADIUS * east, _RADIUS * north
@@ -90,7 +90,7 @@ def axes_of(names, coordinates, places, earth):
     result = []
     for axis in range(3):
         coordinate, unit, kind = coordinates[axis], units[axis], "number"
-        if earth and axis < 2 and unit.lower().startswith("degree"):
+        if earth and axis < 2 and is_degrees(coordinate):
             north = numpy.radians(numbers[1])
             metres = numpy.radians(_RADIUS) * (numpy.cos(0.5 * (north.min() + north.max())) if axis == 0 else 1.0)
             kind = ("longitude", "latitude")[axis]

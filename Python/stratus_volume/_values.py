@@ -19,7 +19,7 @@ class NothingShown(UserWarning):
 
 
 class PlacesUnused(UserWarning):
-    """A picture is drawn along indices, although the data have other places. The message names them."""
+    """A picture has other places than the data's longitudes, latitudes and heights. The message names the reason."""
 
 
 def warn(reason, kind=NothingShown):

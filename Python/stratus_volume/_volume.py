@@ -200,7 +200,7 @@ class Asked:
             if grid.components == 1:
                 own_points(opacity)
             return
-        self._automatic = opacity is None or is_number(opacity)
+        self._automatic = surfaces is None and opacity is None or is_number(opacity)
         if opacity is None and self._is_guessed(mode, looks, function_2d):
             opacity, colors, own_unit = _earth.functions(drawn.context, grid.about, grid.sampled(), grid.world.index(2))
             color, unit_distance = colors if color is None else color, own_unit if unit_distance is None else unit_distance

@@ -99,6 +99,12 @@ def components():
         check(numpy.array_equal(own.rgba, given.rgba) and own.rgba.max() > 0.4, f"the opacity of surfaces at {contours} is {opacity}")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
+        far = lit.copy()
+        far[0, 0, 0] = 1e12
+        render(far, mode="slice", surface=dict(center=(10, 10, 10), normal=(1, 1, 1)), **host)
+    check(not caught, "a slice is opaque, and one value far from all others hides nothing of it")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
         render(several, opacity=[[(0, 0), (1, 0)]] * 2, **host)
     check(len(caught) == 1 and caught[0].category is NothingShown and "component 0" in str(caught[0].message) and caught[0].filename == __file__,
           f"one warning: {[str(one.message) for one in caught]}")
